@@ -1,2 +1,3 @@
-//! TBD
+//! The `pointillist` command.
+
 fn main() {}

@@ -1,0 +1,20 @@
+//! What one run of `render` is asked to do, and how it tells what it does.
+
+mod progress;
+mod stats;
+
+pub use progress::{Progress, ProgressMode};
+pub use stats::{Stats, ThreadClock};
+
+use crate::image_io::{LayerKind, Window};
+
+/// What of a scene to draw, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderJob {
+    /// The part of the picture that the whole job is about: all of it, or `--crop`.
+    pub region: Window,
+    /// The part that this run draws: `region`, or its share of it with `--tile`.
+    pub window: Window,
+    /// What to deliver beside colour and depth, in this order.
+    pub layers: Vec<LayerKind>,
+}

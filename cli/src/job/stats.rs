@@ -1,0 +1,114 @@
+//! What a run took and how much it did: `--stats`.
+
+use cpu_time::{ProcessTime, ThreadTime};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Collects seconds and counts of a run, from any thread.
+///
+/// A stage that runs once is wrapped in [`Stats::stage`]. Stages that alternate inside parallel work measure
+/// themselves on each thread with a [`ThreadClock`]; their wall seconds are then their share of processor time, which
+/// the caller adds with [`Stats::add_wall`] if it knows better.
+#[derive(Debug)]
+pub struct Stats {
+    start: Instant,
+    cpu_start: Option<ProcessTime>,
+    record: Mutex<Record>,
+}
+
+#[derive(Clone, Debug, Default, Serialize)]
+struct Record {
+    seconds: BTreeMap<String, f64>,
+    cpu_seconds: BTreeMap<String, f64>,
+    counts: BTreeMap<String, u64>,
+    skipped: BTreeMap<String, u64>,
+    peak_bytes: u64,
+}
+
+impl Default for Stats {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Stats {
+    /// Starts the total.
+    pub fn new() -> Self {
+        Self { start: Instant::now(), cpu_start: ProcessTime::try_now().ok(), record: Mutex::default() }
+    }
+
+    /// Runs `work` and books its wall time and the processor time of all threads under `name`.
+    pub fn stage<T>(&self, name: &str, work: impl FnOnce() -> T) -> T {
+        let (wall, cpu) = (Instant::now(), ProcessTime::try_now().ok());
+        let result = work();
+        self.add_wall(name, wall.elapsed());
+        self.add_cpu(name, cpu.and_then(|start| start.try_elapsed().ok()).unwrap_or_default());
+        result
+    }
+
+    /// Adds wall time to a stage.
+    pub fn add_wall(&self, name: &str, time: Duration) {
+        *self.lock().seconds.entry(name.to_owned()).or_default() += time.as_secs_f64();
+    }
+
+    /// Adds processor time to a stage.
+    pub fn add_cpu(&self, name: &str, time: Duration) {
+        *self.lock().cpu_seconds.entry(name.to_owned()).or_default() += time.as_secs_f64();
+    }
+
+    /// Adds to the count of what was processed.
+    pub fn count(&self, name: &str, n: u64) {
+        *self.lock().counts.entry(name.to_owned()).or_default() += n;
+    }
+
+    /// Adds to the count of what was found not to matter.
+    pub fn skip(&self, name: &str, n: u64) {
+        *self.lock().skipped.entry(name.to_owned()).or_default() += n;
+    }
+
+    /// The record so far as JSON, with totals and peak memory up to now.
+    pub fn to_json(&self) -> serde_json::Value {
+        let mut record = self.lock().clone();
+        let cpu = self.cpu_start.and_then(|start| start.try_elapsed().ok()).unwrap_or_default();
+        record.seconds.insert("total".to_owned(), self.start.elapsed().as_secs_f64());
+        record.cpu_seconds.insert("total".to_owned(), cpu.as_secs_f64());
+        // The two maps have the same keys; a stage that was timed in one way only has 0 in the other.
+        let keys: Vec<String> = record.seconds.keys().chain(record.cpu_seconds.keys()).cloned().collect();
+        for key in keys {
+            record.seconds.entry(key.clone()).or_default();
+            record.cpu_seconds.entry(key).or_default();
+        }
+        record.peak_bytes = crate::memory::peak_bytes();
+        serde_json::json!(record)
+    }
+
+    /// Wall time since the start.
+    pub fn elapsed(&self) -> Duration {
+        self.start.elapsed()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Record> {
+        // Sums are valid after every line, so a panic elsewhere does not spoil them.
+        self.record.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Measures the calling thread's processor time, for stages inside parallel work.
+#[derive(Debug)]
+pub struct ThreadClock(Option<ThreadTime>);
+
+impl ThreadClock {
+    /// Starts measuring on this thread.
+    pub fn start() -> Self {
+        Self(ThreadTime::try_now().ok())
+    }
+
+    /// Books the time since the start, or the last call, under `name`: to be called on the thread that started it.
+    pub fn book(&mut self, stats: &Stats, name: &str) {
+        let used = self.0.and_then(|start| start.try_elapsed().ok()).unwrap_or_default();
+        stats.add_cpu(name, used);
+        self.0 = ThreadTime::try_now().ok();
+    }
+}

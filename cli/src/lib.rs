@@ -1,0 +1,9 @@
+//! The parts of the `pointillist` command, as a library: for its own tests and fuzz targets.
+//!
+//! The crates below this one are the library to build on; this one may change with every version.
+#![forbid(unsafe_code)]
+
+pub mod image_io;
+pub mod job;
+pub mod memory;
+pub mod scene;

@@ -1,0 +1,31 @@
+/// What can be wrong with the input of this crate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShadeError {
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} names vertex {vertex}, but there are only {count}")]
+    IndexOutOfRange {
+        /// Position of the triangle in the list.
+        triangle: usize,
+        /// The index it holds.
+        vertex: u32,
+        /// How many vertices there are.
+        count: usize,
+    },
+    /// A vertex position is NaN or infinite.
+    #[error("vertex {index} is not finite")]
+    NotFinite {
+        /// Position of the vertex in the list.
+        index: usize,
+    },
+    /// A texture's slice does not hold `width · height` texels.
+    #[error("{len} texels do not make a texture of {width} by {height}")]
+    TextureSize {
+        /// Texels in the slice.
+        len: usize,
+        /// Texels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+}

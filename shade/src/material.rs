@@ -1,0 +1,120 @@
+//! A surface's own constants, and the light it sends to the eye.
+
+use crate::{Incident, LARGEST_IRRADIANCE, brdf};
+use glam::Vec3;
+
+/// Which formula a [`Material`] reflects by.
+///
+/// The normalised models conserve energy when `diffuse + specular ≤ 1`; the plain ones do not promise to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Model {
+    /// `diffuse/π`, the same in all directions.
+    #[default]
+    Lambert,
+    /// Lambert plus `specular · (r·v)^m`, with `r` the mirrored light \[1\].
+    Phong,
+    /// Lambert plus `specular · (m+2)/2π · (r·v)^m` \[3\].
+    NormalizedPhong,
+    /// Lambert plus `specular · (h·n)^m`, with `h` half way between light and eye \[2\].
+    BlinnPhong,
+    /// Lambert plus `specular · c(m) · (h·n)^m`, with `c` so that a mirror-like surface returns all light at normal
+    /// incidence \[4\].
+    NormalizedBlinnPhong,
+}
+
+/// What a surface is made of, at one point (textures are looked up before).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// How it reflects.
+    pub model: Model,
+    /// Diffuse albedo.
+    pub diffuse: Vec3,
+    /// Specular albedo; not used by [`Model::Lambert`].
+    pub specular: Vec3,
+    /// The exponent `m`; negative counts as 0.
+    pub shininess: f32,
+    /// Radiance that the surface sends out by itself.
+    pub emission: Vec3,
+    /// 1 hides what is behind, 0 is not there.
+    pub opacity: f32,
+}
+
+impl Default for Material {
+    /// A grey Lambert surface of albedo 0.8.
+    fn default() -> Self {
+        Self::lambert(Vec3::splat(0.8))
+    }
+}
+
+impl Material {
+    /// An opaque Lambert surface.
+    pub const fn lambert(diffuse: Vec3) -> Self {
+        Self {
+            model: Model::Lambert,
+            diffuse,
+            specular: Vec3::ZERO,
+            shininess: 0.0,
+            emission: Vec3::ZERO,
+            opacity: 1.0,
+        }
+    }
+
+    /// The same with another diffuse albedo, as read from a texture.
+    #[must_use]
+    pub const fn with_diffuse(mut self, diffuse: Vec3) -> Self {
+        self.diffuse = diffuse;
+        self
+    }
+
+    /// The same with another model, specular albedo and exponent.
+    #[must_use]
+    pub const fn with_specular(mut self, model: Model, specular: Vec3, shininess: f32) -> Self {
+        self.model = model;
+        self.specular = specular;
+        self.shininess = shininess;
+        self
+    }
+
+    /// The BRDF: radiance towards `to_eye` per irradiance from `to_light`; 0 where either is below the surface.
+    ///
+    /// All three are unit vectors away from the surface. Reciprocal: exchanging light and eye gives the same.
+    pub fn brdf(&self, normal: Vec3, to_light: Vec3, to_eye: Vec3) -> Vec3 {
+        if normal.dot(to_light) <= 0.0 || normal.dot(to_eye) <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let m = self.shininess;
+        let lobe = match self.model {
+            Model::Lambert => return brdf::lambert(self.diffuse),
+            Model::Phong => brdf::phong_lobe(normal, to_light, to_eye, m),
+            Model::NormalizedPhong => brdf::phong_norm(m) * brdf::phong_lobe(normal, to_light, to_eye, m),
+            Model::BlinnPhong => brdf::blinn_lobe(normal, to_light, to_eye, m),
+            Model::NormalizedBlinnPhong => brdf::blinn_norm(m) * brdf::blinn_lobe(normal, to_light, to_eye, m),
+        };
+        brdf::lambert(self.diffuse) + self.specular * lobe
+    }
+
+    /// Radiance towards `to_eye` of what arrives: BRDF · irradiance · cosine. Without emission.
+    ///
+    /// A surface seen exactly edge-on counts as just visible, so that a Lambert surface keeps its value there.
+    pub fn reflect(&self, incident: &Incident, normal: Vec3, to_eye: Vec3) -> Vec3 {
+        let cos_light = normal.dot(incident.to_light);
+        if cos_light <= 0.0 || incident.is_dark() {
+            return Vec3::ZERO;
+        }
+        let f = match self.model {
+            Model::Lambert => brdf::lambert(self.diffuse),
+            _ => self.brdf(normal, incident.to_light, to_eye),
+        };
+        finite(f * incident.irradiance * cos_light)
+    }
+
+    /// Whether reflection depends on where the eye is; if not, one value serves all views.
+    pub fn depends_on_view(&self) -> bool {
+        self.model != Model::Lambert && self.specular != Vec3::ZERO
+    }
+}
+
+fn finite(color: Vec3) -> Vec3 {
+    color.clamp(Vec3::splat(-LARGEST_IRRADIANCE), Vec3::splat(LARGEST_IRRADIANCE))
+}

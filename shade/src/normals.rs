@@ -1,0 +1,94 @@
+//! Face normals, vertex normals, and which side of a surface is lit.
+
+use crate::ShadeError;
+use glam::{DVec3, Vec3};
+
+/// How much each face counts in the normal of a vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Weighting {
+    /// By its area, so that slivers do not tilt the surface.
+    #[default]
+    Area,
+    /// All the same.
+    Plain,
+}
+
+/// Unit normal of the triangle, counter-clockwise seen from its front; zero for a triangle without area.
+pub fn face_normal(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
+    // Scaled by the longest side first: the cross product of 1e-200 sides would underflow to "no area".
+    let (ab, ac) = (b - a, c - a);
+    let largest = ab.abs().max_element().max(ac.abs().max_element());
+    if largest == 0.0 || !largest.is_finite() {
+        return DVec3::ZERO;
+    }
+    (ab / largest).cross(ac / largest).normalize_or_zero()
+}
+
+/// A unit normal for every vertex: the mean of its faces' normals; zero for a vertex without faces.
+///
+/// Sums run in the order of `triangles`, so the same input gives the same bytes.
+///
+/// # Errors
+///
+/// An index out of range, or a position that is not finite.
+pub fn vertex_normals(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    weighting: Weighting,
+) -> Result<Vec<Vec3>, ShadeError> {
+    if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
+        return Err(ShadeError::NotFinite { index });
+    }
+    // Cross products are taken of sides divided by this, so that areas neither overflow nor underflow.
+    let extent = extent(positions);
+    let mut sums = vec![DVec3::ZERO; positions.len()];
+    for (triangle, corners) in triangles.iter().enumerate() {
+        let [a, b, c] = corners_of(positions, triangle, *corners)?;
+        let face = match weighting {
+            Weighting::Area => ((b - a) / extent).cross((c - a) / extent),
+            Weighting::Plain => face_normal(a, b, c),
+        };
+        for &vertex in corners {
+            sums[vertex as usize] += face;
+        }
+    }
+    Ok(sums.iter().map(|&sum| unit(sum)).collect())
+}
+
+/// `normal`, or its opposite if that is the one on the side of `towards`.
+pub fn turn_to(normal: Vec3, towards: Vec3) -> Vec3 {
+    if normal.dot(towards) < 0.0 { -normal } else { normal }
+}
+
+/// The two-sided rule: light arrives where the eye looks only if both are on the same side of the face.
+///
+/// `face` is the face normal turned to the eye; `to_light` points to the light.
+pub fn sees_light(face: Vec3, to_light: Vec3) -> bool {
+    face.dot(to_light) > 0.0
+}
+
+fn corners_of(positions: &[DVec3], triangle: usize, corners: [u32; 3]) -> Result<[DVec3; 3], ShadeError> {
+    let mut points = [DVec3::ZERO; 3];
+    for (point, vertex) in points.iter_mut().zip(corners) {
+        *point = *positions.get(vertex as usize).ok_or(ShadeError::IndexOutOfRange {
+            triangle,
+            vertex,
+            count: positions.len(),
+        })?;
+    }
+    Ok(points)
+}
+
+fn extent(positions: &[DVec3]) -> f64 {
+    let (low, high) = positions
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+    // Halved before subtracting, because the difference of two finite numbers may be infinite.
+    let half = (high * 0.5 - low * 0.5).max_element();
+    if half.is_finite() && half > 0.0 { half } else { 1.0 }
+}
+
+fn unit(sum: DVec3) -> Vec3 {
+    let largest = sum.abs().max_element();
+    if largest == 0.0 { Vec3::ZERO } else { (sum / largest).normalize().as_vec3() }
+}
