@@ -1,0 +1,310 @@
+//! Convex polygons of bounded size on the stack: the currency of every exact visibility test.
+
+use glam::DVec2;
+
+/// A half-plane `{p : normal · p + offset ≥ 0}`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfPlane {
+    /// Points into the half-plane; need not be a unit vector.
+    pub normal: DVec2,
+    /// Value at the origin.
+    pub offset: f64,
+}
+
+impl HalfPlane {
+    /// The half-plane to the left of the directed line `a → b` (the inner side of an edge of a
+    /// polygon with positive signed area).
+    ///
+    /// The line is described from `a`, so for points near `a` the value suffers no cancellation
+    /// that the coordinates themselves do not carry.
+    #[must_use]
+    #[inline]
+    pub fn left_of(a: DVec2, b: DVec2) -> Self {
+        let d = b - a;
+        let normal = DVec2::new(-d.y, d.x);
+        Self { normal, offset: -normal.dot(a) }
+    }
+
+    /// Signed distance of `p`, scaled by the length of the normal.
+    #[must_use]
+    #[inline]
+    pub fn value(&self, p: DVec2) -> f64 {
+        self.normal.dot(p) + self.offset
+    }
+}
+
+/// Most vertices that a [`ConvexPolygon`] holds.
+///
+/// A triangle cut by a view pyramid and a cell has at most eleven; sixteen leaves room for the cuts
+/// that occluders make.
+pub const MAX_VERTICES: usize = 16;
+
+/// A convex polygon with positive signed area (`∮ x dy > 0`) and at most [`MAX_VERTICES`] vertices.
+///
+/// Cutting adds at most one vertex. A cut that would exceed the capacity leaves out the vertex
+/// whose corner is flattest, which changes the area by the least possible amount; it takes a
+/// sixteen-gon to get there.
+#[derive(Clone, Copy, Debug)]
+pub struct ConvexPolygon {
+    len: usize,
+    vertices: [DVec2; MAX_VERTICES],
+}
+
+impl Default for ConvexPolygon {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+impl PartialEq for ConvexPolygon {
+    fn eq(&self, other: &Self) -> bool {
+        self.vertices() == other.vertices()
+    }
+}
+
+impl ConvexPolygon {
+    /// No vertices, no area.
+    pub const EMPTY: Self = Self { len: 0, vertices: [DVec2::ZERO; MAX_VERTICES] };
+
+    /// The polygon with these vertices, which must be convex and in positive order.
+    ///
+    /// # Panics
+    /// If there are more than [`MAX_VERTICES`].
+    #[must_use]
+    pub fn from_vertices(vertices: &[DVec2]) -> Self {
+        let mut polygon = Self::EMPTY;
+        polygon.vertices[..vertices.len()].copy_from_slice(vertices);
+        polygon.len = vertices.len();
+        polygon
+    }
+
+    /// The axis-aligned rectangle from `min` to `max`.
+    #[must_use]
+    pub fn rectangle(min: DVec2, max: DVec2) -> Self {
+        Self::from_vertices(&[min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)])
+    }
+
+    /// The vertices in order.
+    #[must_use]
+    #[inline]
+    pub fn vertices(&self) -> &[DVec2] {
+        &self.vertices[..self.len]
+    }
+
+    /// Whether fewer than three vertices are left.
+    #[must_use]
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.len < 3
+    }
+
+    /// Appends a vertex; at capacity the flattest corner makes room.
+    #[inline]
+    pub fn push(&mut self, p: DVec2) {
+        if self.len == MAX_VERTICES {
+            self.remove_flattest();
+        }
+        self.vertices[self.len] = p;
+        self.len += 1;
+    }
+
+    #[cold]
+    fn remove_flattest(&mut self) {
+        let n = self.len;
+        let corner = |i: usize| {
+            let (a, b, c) = (self.vertices[(i + n - 1) % n], self.vertices[i], self.vertices[(i + 1) % n]);
+            (b - a).perp_dot(c - b).abs()
+        };
+        let flattest = (0..n).min_by(|&i, &j| corner(i).total_cmp(&corner(j))).unwrap_or(0);
+        self.vertices.copy_within(flattest + 1..n, flattest);
+        self.len -= 1;
+    }
+
+    /// Signed area, taken relative to the first vertex.
+    #[must_use]
+    #[inline]
+    pub fn area(&self) -> f64 {
+        area(self.vertices())
+    }
+
+    /// Area and centroid; the centroid of a polygon without area is its first vertex.
+    #[must_use]
+    #[inline]
+    pub fn area_and_centroid(&self) -> (f64, DVec2) {
+        area_and_centroid(self.vertices())
+    }
+
+    /// Smallest and largest coordinates.
+    #[must_use]
+    #[inline]
+    pub fn bounds(&self) -> (DVec2, DVec2) {
+        bounds(self.vertices())
+    }
+
+    /// Whether some edge of `self` has all of `other` on or beyond it, within rounding.
+    ///
+    /// True means that the interiors are disjoint. Only the edges of `self` are tried; two convex
+    /// polygons are disjoint exactly if this holds one way or the other.
+    #[must_use]
+    #[inline]
+    pub fn has_separating_edge(&self, other: &[DVec2]) -> bool {
+        has_separating_edge(self.vertices(), other)
+    }
+
+    /// The part inside the half-plane.
+    #[must_use]
+    #[inline]
+    pub fn clipped(&self, half: &HalfPlane) -> Self {
+        self.divided(half).0
+    }
+
+    /// The parts inside and outside the half-plane. Both share the cut's end points bit for bit.
+    ///
+    /// A polygon wholly on one side comes back unchanged on that side.
+    #[must_use]
+    pub fn divided(&self, half: &HalfPlane) -> (Self, Self) {
+        let n = self.len;
+        let mut side = [0.0; MAX_VERTICES];
+        let (mut any_in, mut any_out) = (false, false);
+        for (s, v) in side.iter_mut().zip(self.vertices()) {
+            *s = half.value(*v);
+            any_in |= *s > 0.0;
+            any_out |= *s < 0.0;
+        }
+        if !any_out {
+            return (*self, Self::EMPTY);
+        }
+        if !any_in {
+            return (Self::EMPTY, *self);
+        }
+        let (mut inside, mut outside) = (Self::EMPTY, Self::EMPTY);
+        for i in 0..n {
+            let j = if i + 1 == n { 0 } else { i + 1 };
+            let (p, q) = (self.vertices[i], self.vertices[j]);
+            if side[i] >= 0.0 {
+                inside.push(p);
+            }
+            if side[i] <= 0.0 {
+                outside.push(p);
+            }
+            if side[i] * side[j] < 0.0 {
+                let crossing = p + (q - p) * (side[i] / (side[i] - side[j]));
+                inside.push(crossing);
+                outside.push(crossing);
+            }
+        }
+        (inside, outside)
+    }
+}
+
+/// Signed area `∮ x dy` of a ring, relative to its first vertex.
+#[must_use]
+#[inline]
+pub fn area(ring: &[DVec2]) -> f64 {
+    let Some((&o, rest)) = ring.split_first() else { return 0.0 };
+    let mut twice = 0.0;
+    for pair in rest.windows(2) {
+        twice += (pair[0] - o).perp_dot(pair[1] - o);
+    }
+    0.5 * twice
+}
+
+/// Signed area and centroid of a ring; without area, the centroid is the first vertex.
+#[must_use]
+#[inline]
+pub fn area_and_centroid(ring: &[DVec2]) -> (f64, DVec2) {
+    let Some((&o, rest)) = ring.split_first() else { return (0.0, DVec2::ZERO) };
+    let mut twice = 0.0;
+    let mut moment = DVec2::ZERO;
+    for pair in rest.windows(2) {
+        let (a, b) = (pair[0] - o, pair[1] - o);
+        let cross = a.perp_dot(b);
+        twice += cross;
+        moment += cross * (a + b);
+    }
+    if twice == 0.0 { (0.0, o) } else { (0.5 * twice, o + moment / (3.0 * twice)) }
+}
+
+/// Smallest and largest coordinates of some points; `(+∞, −∞)` of none.
+#[must_use]
+#[inline]
+pub fn bounds(points: &[DVec2]) -> (DVec2, DVec2) {
+    let start = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    points.iter().fold(start, |(lo, hi), &p| (lo.min(p), hi.max(p)))
+}
+
+/// Relative slack of [`has_separating_edge`], in units of edge length times distance.
+///
+/// Neighbours share the end points of their cuts bit for bit, so that their common edge separates
+/// them up to the rounding of one cross product of cell-sized numbers; a thousand ulp are generous
+/// and still far below any area that can be seen.
+const SEPARATION_SLACK: f64 = 1e-13;
+
+/// Whether some edge of the convex ring `a` (positive order) has every point of `b` on or beyond it.
+#[must_use]
+#[inline]
+pub fn has_separating_edge(a: &[DVec2], b: &[DVec2]) -> bool {
+    let mut p = match a.last() {
+        Some(&last) => last,
+        None => return true,
+    };
+    for &q in a {
+        let d = q - p;
+        let length = d.x.abs() + d.y.abs();
+        let slack = SEPARATION_SLACK * length;
+        if length > 0.0 && b.iter().all(|&v| d.perp_dot(v - p) <= slack) {
+            return true;
+        }
+        p = q;
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec2;
+
+    fn square() -> ConvexPolygon {
+        ConvexPolygon::rectangle(dvec2(0.0, 0.0), dvec2(1.0, 1.0))
+    }
+
+    #[test]
+    fn division_conserves_area_and_shares_the_cut() {
+        let half = HalfPlane::left_of(dvec2(0.3, 0.0), dvec2(0.6, 1.0));
+        let (a, b) = square().divided(&half);
+        assert!((a.area() + b.area() - 1.0).abs() < 1e-15);
+        assert!((a.area() - 0.45).abs() < 1e-15);
+        let shared = a.vertices().iter().filter(|v| b.vertices().contains(v)).count();
+        assert_eq!(shared, 2);
+    }
+
+    #[test]
+    fn a_polygon_on_one_side_is_returned_unchanged() {
+        let half = HalfPlane::left_of(dvec2(0.0, 1.0), dvec2(0.0, 0.0));
+        let (inside, outside) = square().divided(&half);
+        assert_eq!(inside, square());
+        assert!(outside.is_empty());
+    }
+
+    #[test]
+    fn neighbours_are_separated_by_their_common_edge() {
+        let diagonal = HalfPlane::left_of(dvec2(0.0, 0.0), dvec2(1.0, 1.0));
+        let (a, b) = square().divided(&diagonal);
+        assert!(a.has_separating_edge(b.vertices()) || b.has_separating_edge(a.vertices()));
+        assert!(!a.has_separating_edge(square().vertices()));
+    }
+
+    #[test]
+    fn capacity_is_kept_by_dropping_the_flattest_corner() {
+        let mut polygon = square();
+        for i in 0..64 {
+            let angle = f64::from(i) * 0.1;
+            let (n, c) = (DVec2::from_angle(angle), dvec2(0.5, 0.5));
+            polygon = polygon.clipped(&HalfPlane { normal: -n, offset: n.dot(c) + 0.48 });
+        }
+        assert!(polygon.vertices().len() <= MAX_VERTICES);
+        let disc = std::f64::consts::PI * 0.48 * 0.48;
+        assert!((polygon.area() - disc).abs() < 0.03);
+    }
+}

@@ -1,0 +1,278 @@
+//! One convex piece per cell, with spans of covered cells: the cut that renderers want.
+//!
+//! [`split`](crate::split) follows the paper and cuts at every vertex, too; here a polygon is clipped
+//! to a row of cells once, then walked from left to right. Cells that it covers wholly are never cut
+//! but reported as one span.
+
+use crate::convex::ConvexPolygon;
+use glam::{DVec2, IVec2};
+use std::ops::Range;
+
+/// A rectangle of cells: columns `x0..x1`, rows `y0..y1`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CellWindow {
+    /// First column.
+    pub x0: i32,
+    /// First row.
+    pub y0: i32,
+    /// One past the last column.
+    pub x1: i32,
+    /// One past the last row.
+    pub y1: i32,
+}
+
+/// What [`cut`] reports.
+#[derive(Clone, Copy, Debug)]
+pub enum Cut<'a> {
+    /// Cells `first..end` of this row are covered wholly.
+    Span {
+        /// The row.
+        row: i32,
+        /// First column.
+        first: i32,
+        /// One past the last column.
+        end: i32,
+    },
+    /// The part of the polygon in one cell, in positive order, inside the closed cell.
+    Piece {
+        /// Column and row.
+        cell: IVec2,
+        /// The part.
+        polygon: &'a ConvexPolygon,
+    },
+}
+
+/// Most vertices of a polygon given to [`cut`]: a piece has at most four more.
+pub const MAX_CUT_VERTICES: usize = 12;
+
+/// An edge of the input with its end points in canonical order, so that both polygons that share it
+/// compute the same crossings, bit for bit.
+#[derive(Clone, Copy)]
+struct Edge {
+    low: DVec2,
+    high: DVec2,
+    /// dx/dy.
+    run: f64,
+    /// dy/dx.
+    rise: f64,
+}
+
+impl Edge {
+    const NONE: Self = Self { low: DVec2::ZERO, high: DVec2::ZERO, run: 0.0, rise: 0.0 };
+
+    fn new(a: DVec2, b: DVec2) -> Self {
+        let ordered = (a.y, a.x) <= (b.y, b.x);
+        let (low, high) = if ordered { (a, b) } else { (b, a) };
+        let d = high - low;
+        Self { low, high, run: d.x / d.y, rise: d.y / d.x }
+    }
+
+    /// x where the edge meets the horizontal line `y`; the caller knows that it does.
+    #[inline]
+    fn x_at(&self, y: f64) -> f64 {
+        let x = self.low.x + (y - self.low.y) * self.run;
+        x.clamp(self.low.x.min(self.high.x), self.low.x.max(self.high.x))
+    }
+
+    /// y where the edge meets the vertical line `x`.
+    #[inline]
+    fn y_at(&self, x: f64) -> f64 {
+        let y = self.low.y + (x - self.low.x) * self.rise;
+        y.clamp(self.low.y, self.high.y)
+    }
+}
+
+/// The polygon within one row of cells. `edges[i]` is what the side from vertex `i` lies on: an edge
+/// of the input, or a grid line.
+struct Slab {
+    len: usize,
+    vertices: [DVec2; 16],
+    edges: [Option<u8>; 16],
+}
+
+impl Slab {
+    #[inline]
+    fn push(&mut self, p: DVec2, edge: Option<u8>) {
+        // Corners on a grid line arrive once from each of their two edges.
+        if self.len > 0 && self.vertices[self.len - 1] == p {
+            self.edges[self.len - 1] = edge;
+            return;
+        }
+        self.vertices[self.len] = p;
+        self.edges[self.len] = edge;
+        self.len += 1;
+    }
+}
+
+/// Cuts a convex polygon (cell units, positive area, at most [`MAX_CUT_VERTICES`] vertices) into one
+/// piece per cell of the window, left to right and top to bottom.
+///
+/// The caller promises finite coordinates within ±2³⁰. Crossings with grid lines depend only on the
+/// edge, not on the polygon or the window, so that neighbours share them bit for bit and a window cut
+/// in two gives the same pieces. Pieces without area may be reported where an edge runs along a grid
+/// line; polygons with fewer than three vertices give nothing.
+///
+/// # Panics
+/// If there are too many vertices.
+///
+/// ```
+/// use glam::dvec2;
+/// use pointillist_dice::{CellWindow, Cut, cut};
+///
+/// let triangle = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(0.0, 4.0)];
+/// let window = CellWindow { x0: 0, y0: 0, x1: 4, y1: 4 };
+/// let (mut full, mut partial) = (0, 0.0);
+/// cut(&triangle, window, |part| match part {
+///     Cut::Span { first, end, .. } => full += end - first,
+///     Cut::Piece { polygon, .. } => partial += polygon.area(),
+/// });
+/// assert_eq!((full, partial), (6, 2.0));
+/// ```
+#[inline]
+pub fn cut(polygon: &[DVec2], window: CellWindow, mut visit: impl FnMut(Cut<'_>)) {
+    let n = polygon.len();
+    assert!(n <= MAX_CUT_VERTICES, "at most {MAX_CUT_VERTICES} vertices, not {n}");
+    if n < 3 {
+        return;
+    }
+    let (lo, hi) = crate::convex::bounds(polygon);
+    let rows = cells_between(lo.y, hi.y, window.y0..window.y1);
+    let columns = cells_between(lo.x, hi.x, window.x0..window.x1);
+    if rows.is_empty() || columns.is_empty() {
+        return;
+    }
+    let one_row = f64::from(rows.start) <= lo.y && hi.y <= f64::from(rows.start + 1);
+    let one_column = f64::from(columns.start) <= lo.x && hi.x <= f64::from(columns.start + 1);
+    if one_row && one_column {
+        let whole = ConvexPolygon::from_vertices(polygon);
+        visit(Cut::Piece { cell: IVec2::new(columns.start, rows.start), polygon: &whole });
+        return;
+    }
+    let mut edges = [Edge::NONE; MAX_CUT_VERTICES];
+    for i in 0..n {
+        edges[i] = Edge::new(polygon[i], polygon[if i + 1 == n { 0 } else { i + 1 }]);
+    }
+    for row in rows {
+        let slab = clip_to_row(polygon, &edges[..n], row);
+        if slab.len >= 3 {
+            walk_row(&slab, &edges, row, columns.clone(), &mut visit);
+        }
+    }
+}
+
+/// The cells that the interval touches with more than a point, within limits.
+fn cells_between(lo: f64, hi: f64, limits: Range<i32>) -> Range<i32> {
+    let first = lo.floor().max(f64::from(limits.start)) as i32;
+    let end = hi.ceil().min(f64::from(limits.end)) as i32;
+    // An interval that is one grid line still belongs to a cell, so that nothing gets lost unseen.
+    let end = if hi == lo && hi.floor() == hi { (first + 1).min(limits.end) } else { end };
+    first..end
+}
+
+fn clip_to_row(polygon: &[DVec2], edges: &[Edge], row: i32) -> Slab {
+    let (top, bottom) = (f64::from(row), f64::from(row + 1));
+    let mut slab = Slab { len: 0, vertices: [DVec2::ZERO; 16], edges: [None; 16] };
+    let n = polygon.len();
+    for i in 0..n {
+        let (a, b) = (polygon[i], polygon[if i + 1 == n { 0 } else { i + 1 }]);
+        let (above_a, below_a) = (a.y < top, a.y > bottom);
+        let (above_b, below_b) = (b.y < top, b.y > bottom);
+        if (above_a && above_b) || (below_a && below_b) {
+            continue;
+        }
+        let edge = Some(i as u8);
+        if above_a {
+            slab.push(DVec2::new(edges[i].x_at(top), top), edge);
+        } else if below_a {
+            slab.push(DVec2::new(edges[i].x_at(bottom), bottom), edge);
+        } else {
+            slab.push(a, edge);
+        }
+        // Where the edge leaves the row, a side along the grid line follows.
+        if above_b {
+            slab.push(DVec2::new(edges[i].x_at(top), top), None);
+        } else if below_b {
+            slab.push(DVec2::new(edges[i].x_at(bottom), bottom), None);
+        }
+    }
+    while slab.len > 1 && slab.vertices[slab.len - 1] == slab.vertices[0] {
+        slab.len -= 1;
+    }
+    slab
+}
+
+/// Walks a row's polygon from left to right.
+#[inline]
+fn walk_row(
+    slab: &Slab,
+    edges: &[Edge; MAX_CUT_VERTICES],
+    row: i32,
+    columns: Range<i32>,
+    visit: &mut impl FnMut(Cut<'_>),
+) {
+    let vertices = &slab.vertices[..slab.len];
+    let (lo, hi) = crate::convex::bounds(vertices);
+    let touched = cells_between(lo.x, hi.x, columns);
+    let full = covered_columns(vertices, row);
+    let mut column = touched.start;
+    while column < touched.end {
+        if full.start <= column && column < full.end {
+            let end = full.end.min(touched.end);
+            visit(Cut::Span { row, first: column, end });
+            column = end;
+            continue;
+        }
+        let piece = clip_to_column(slab, edges, row, column);
+        if !piece.is_empty() {
+            visit(Cut::Piece { cell: IVec2::new(column, row), polygon: &piece });
+        }
+        column += 1;
+    }
+}
+
+/// The columns that a row's polygon covers wholly: between the innermost ends of its top and bottom
+/// sides, because the chains between those bulge outward.
+fn covered_columns(vertices: &[DVec2], row: i32) -> Range<i32> {
+    let span_on = |y: f64| {
+        let on_line = vertices.iter().filter(|v| v.y == y).map(|v| v.x);
+        on_line.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, r), x| (l.min(x), r.max(x)))
+    };
+    let (top, bottom) = (span_on(f64::from(row)), span_on(f64::from(row + 1)));
+    let (left, right) = (top.0.max(bottom.0), top.1.min(bottom.1));
+    if left < right { left.ceil() as i32..right.floor() as i32 } else { 0..0 }
+}
+
+fn clip_to_column(slab: &Slab, edges: &[Edge; MAX_CUT_VERTICES], row: i32, column: i32) -> ConvexPolygon {
+    let (left, right) = (f64::from(column), f64::from(column + 1));
+    let (top, bottom) = (f64::from(row), f64::from(row + 1));
+    let crossing = |edge: Option<u8>, from: DVec2, x: f64| {
+        let y = edge.map_or(from.y, |e| edges[usize::from(e)].y_at(x));
+        DVec2::new(x, y.clamp(top, bottom))
+    };
+    let mut piece = ConvexPolygon::EMPTY;
+    let mut push = |p: DVec2| {
+        if piece.vertices().last() != Some(&p) {
+            piece.push(p);
+        }
+    };
+    for i in 0..slab.len {
+        let j = if i + 1 == slab.len { 0 } else { i + 1 };
+        let (a, b, edge) = (slab.vertices[i], slab.vertices[j], slab.edges[i]);
+        if (a.x < left && b.x < left) || (a.x > right && b.x > right) {
+            continue;
+        }
+        if a.x < left {
+            push(crossing(edge, a, left));
+        } else if a.x > right {
+            push(crossing(edge, a, right));
+        } else {
+            push(a);
+        }
+        if b.x < left {
+            push(crossing(edge, a, left));
+        } else if b.x > right {
+            push(crossing(edge, a, right));
+        }
+    }
+    piece
+}

@@ -1,0 +1,258 @@
+//! A triangle as one lens sees it.
+
+use crate::geometry::{HiddenSides, Surface, Triangle};
+use crate::lens::{Lens, LensKind, Plane};
+use glam::{DVec2, DVec3};
+
+/// A triangle in the frame of a lens.
+#[derive(Clone, Copy, Debug)]
+pub struct Face {
+    /// Position in the caller's triangle array.
+    pub id: u32,
+    /// Index of its surface.
+    pub surface: u32,
+    /// Where the triangle is prepared: cluster, and position in it.
+    pub source: (u32, u32),
+    /// The side from which it winds counter-clockwise is seen.
+    pub front: bool,
+    /// Corners in the lens's frame.
+    pub corners: [DVec3; 3],
+    /// Nearness over the grid.
+    pub plane: Plane,
+    /// Smallest and largest nearness of the visible part.
+    pub nearness: (f64, f64),
+}
+
+impl Face {
+    /// Nearness at a grid position, kept within the face's own range: the plane of a face seen almost
+    /// edge-on is steep, and what lies outside the face must not be believed.
+    #[must_use]
+    #[inline]
+    pub fn nearness_at(&self, p: DVec2) -> f64 {
+        self.plane.at(p).max(self.nearness.0).min(self.nearness.1)
+    }
+
+    /// Barycentric coordinates of a point of the plane (lens frame), kept within the triangle.
+    #[must_use]
+    pub fn barycentric(&self, p: DVec3) -> DVec3 {
+        let [a, b, c] = self.corners;
+        let n = (b - a).cross(c - a);
+        let weights = DVec3::new(
+            n.dot((b - p).cross(c - p)),
+            n.dot((c - p).cross(a - p)),
+            n.dot((a - p).cross(b - p)),
+        )
+        .max(DVec3::ZERO);
+        let sum = weights.element_sum();
+        if sum > 0.0 && sum.is_finite() { weights / sum } else { DVec3::splat(1.0 / 3.0) }
+    }
+}
+
+/// A point of a surface as a lens sees it; corners of the polygons over which textures are averaged.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint {
+    /// Position in the grid.
+    pub grid: DVec2,
+    /// Nearness (see [`Lens`]).
+    pub nearness: f64,
+    /// Barycentric coordinates in its triangle.
+    pub barycentric: DVec3,
+}
+
+/// Opacity that varies over a surface (an alpha mask).
+pub trait TexturedOpacity: Sync {
+    /// Mean opacity, 0..=1, over a polygon of the triangle, weighted by grid area.
+    fn mean_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32;
+}
+
+/// For scenes without textured opacity.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PlainOpacity;
+
+impl TexturedOpacity for PlainOpacity {
+    fn mean_opacity(&self, _triangle: u32, _polygon: &[SurfacePoint]) -> f32 {
+        1.0
+    }
+}
+
+/// A vertex of a cluster in the frame of a lens and on its grid.
+#[derive(Clone, Copy, Debug)]
+pub struct ProjectedVertex {
+    /// Lens frame.
+    pub local: DVec3,
+    /// Grid; meaningless if `in_front` is false.
+    pub grid: DVec2,
+    /// The vertex can be projected, and lands within bounds in which f64 is still fine.
+    pub in_front: bool,
+}
+
+/// Grid positions beyond this are clipped before they are used: 2²⁴ cells leave 28 bits to a cell.
+const GUARD: f64 = (1 << 24) as f64;
+
+/// Nearest depth relative to the largest coordinate of the triangle. What is nearer is cut away:
+/// a slice of one part in 10⁹.
+const NEAR: f64 = 1e-9;
+
+impl ProjectedVertex {
+    /// Projects a vertex.
+    #[must_use]
+    #[inline]
+    pub fn new(lens: &Lens, world: DVec3) -> Self {
+        let local = lens.local(world);
+        let grid = lens.project(local);
+        let before = match lens.kind {
+            LensKind::Perspective => local.z > NEAR * local.abs().max_element(),
+            LensKind::Orthographic => local.z >= 0.0,
+        };
+        Self { local, grid, in_front: before && grid.abs().max_element() < GUARD }
+    }
+}
+
+/// A rectangle of the grid that holds everything of interest; faces that reach behind the lens are
+/// clipped to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridRect {
+    /// Smallest coordinates.
+    pub low: DVec2,
+    /// Largest coordinates.
+    pub high: DVec2,
+}
+
+/// The outline of a face on the grid, in positive order.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline {
+    vertices: [DVec2; 8],
+    len: usize,
+}
+
+impl Outline {
+    /// The vertices; fewer than three if nothing is visible.
+    #[must_use]
+    #[inline]
+    pub fn vertices(&self) -> &[DVec2] {
+        &self.vertices[..self.len]
+    }
+}
+
+/// Sets up a triangle for a lens: culls it, clips it if it reaches behind the lens, and gives the
+/// face with its outline. `None` if there is nothing to see.
+///
+/// `keep_both_sides` switches off the culling of single-sided surfaces (they still cast shadow).
+#[must_use]
+#[inline]
+pub fn set_up_face(
+    lens: &Lens,
+    rect: &GridRect,
+    triangle: &Triangle,
+    source: (u32, u32),
+    v: [&ProjectedVertex; 3],
+    surface: &Surface,
+    hidden: &HiddenSides,
+    keep_both_sides: bool,
+) -> Option<(Face, Outline)> {
+    let corners = [v[0].local, v[1].local, v[2].local];
+    let front = match v.iter().all(|p| p.in_front) {
+        // The frame (right, down, forward) turns counter-clockwise into negative area.
+        true => {
+            let twice = (v[1].grid - v[0].grid).perp_dot(v[2].grid - v[0].grid);
+            if twice == 0.0 || twice.is_nan() {
+                return None;
+            }
+            twice < 0.0
+        }
+        false => {
+            let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            match lens.kind {
+                LensKind::Perspective => n.dot(corners[0]) < 0.0,
+                LensKind::Orthographic => n.z < 0.0,
+            }
+        }
+    };
+    let solid = hidden.0.get(triangle.solid as usize).copied().unwrap_or(0);
+    let outward_front = if solid >= 0 { front } else { !front };
+    if (solid != 0 && !outward_front) || (!front && !surface.two_sided && !keep_both_sides) {
+        return None;
+    }
+    let (outline, nearness) = if v.iter().all(|p| p.in_front) {
+        let (a, b, c) = (v[0].grid, v[1].grid, v[2].grid);
+        let ring = if front { [a, c, b] } else { [a, b, c] };
+        let mut outline = Outline { vertices: [DVec2::ZERO; 8], len: 3 };
+        outline.vertices[..3].copy_from_slice(&ring);
+        let q = corners.map(|p| lens.nearness(p.z));
+        (outline, (q[0].min(q[1]).min(q[2]), q[0].max(q[1]).max(q[2])))
+    } else {
+        clip_outline(lens, rect, corners, front)?
+    };
+    let plane = lens.plane(corners);
+    let (id, surface) = (triangle.id, triangle.surface);
+    Some((Face { id, surface, source, front, corners, plane, nearness }, outline))
+}
+
+/// Clips a triangle against the near plane and the sides of the rectangle, in the lens's frame.
+#[cold]
+fn clip_outline(
+    lens: &Lens,
+    rect: &GridRect,
+    corners: [DVec3; 3],
+    front: bool,
+) -> Option<(Outline, (f64, f64))> {
+    let size = corners.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+    let perspective = lens.kind == LensKind::Perspective;
+    let side = move |p: DVec3, axis: DVec3, line: f64, sign: f64| {
+        // sign · (grid coordinate − line) ≥ 0, multiplied by depth where there is one.
+        sign * (axis.dot(p) - if perspective { line * p.z } else { line })
+    };
+    let (x, y) = (DVec3::X * lens.scale.x, DVec3::Y * lens.scale.y);
+    let near = if perspective { 2.0 * NEAR * size } else { 0.0 };
+    let mut ring = [DVec3::ZERO; 8];
+    ring[..3].copy_from_slice(&corners);
+    let mut len = 3;
+    for cut in 0..5 {
+        let value = |p: DVec3| match cut {
+            0 => p.z - near,
+            1 => side(p, x, rect.low.x - lens.centre.x, 1.0),
+            2 => side(p, x, rect.high.x - lens.centre.x, -1.0),
+            3 => side(p, y, rect.low.y - lens.centre.y, 1.0),
+            _ => side(p, y, rect.high.y - lens.centre.y, -1.0),
+        };
+        (ring, len) = clip_ring(&ring[..len], value);
+    }
+    let mut outline = Outline { vertices: [DVec2::ZERO; 8], len };
+    let mut nearness = (f64::INFINITY, f64::NEG_INFINITY);
+    for (to, p) in outline.vertices.iter_mut().zip(&ring[..len]) {
+        *to = lens.project(*p).clamp(rect.low, rect.high);
+        let q = lens.nearness(p.z);
+        nearness = (nearness.0.min(q), nearness.1.max(q));
+    }
+    if front {
+        outline.vertices[..len].reverse();
+    }
+    let area = pointillist_dice::convex::area(outline.vertices());
+    (len >= 3 && area > 0.0).then_some((outline, nearness))
+}
+
+/// Sutherland–Hodgman against one plane; crossings do not depend on the direction of the edge.
+fn clip_ring(ring: &[DVec3], value: impl Fn(DVec3) -> f64) -> ([DVec3; 8], usize) {
+    let mut out = [DVec3::ZERO; 8];
+    let mut len = 0;
+    let mut push = |p: DVec3| {
+        // A convex ring gains one vertex per plane, so eight are enough; rounding may invent another.
+        if len < out.len() {
+            out[len] = p;
+            len += 1;
+        }
+    };
+    for (i, &a) in ring.iter().enumerate() {
+        let b = ring[(i + 1) % ring.len()];
+        let (va, vb) = (value(a), value(b));
+        if va >= 0.0 {
+            push(a);
+        }
+        if (va >= 0.0) != (vb >= 0.0) {
+            let swap = (b.x, b.y, b.z) < (a.x, a.y, a.z);
+            let ((p, vp), (q, vq)) = if swap { ((b, vb), (a, va)) } else { ((a, va), (b, vb)) };
+            push(p + (q - p) * (vp / (vp - vq)));
+        }
+    }
+    (out, len)
+}

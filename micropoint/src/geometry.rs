@@ -1,0 +1,443 @@
+//! Triangles prepared once for any number of views and lights.
+
+use crate::closed::{OPEN, Solid, find_solids, solid_angle};
+use crate::error::MicropointError;
+use glam::DVec3;
+
+/// How a surface lets light through; the rest of a material is the shader's business.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Opacity, 0..=1, of every point of the surface, or the factor on a textured opacity.
+    pub opacity: f32,
+    /// The opacity varies: it is asked for through [`TexturedOpacity`](crate::TexturedOpacity).
+    pub textured_opacity: bool,
+    /// Back faces are visible, too.
+    pub two_sided: bool,
+}
+
+impl Default for Surface {
+    /// Opaque and two-sided.
+    fn default() -> Self {
+        Self { opacity: 1.0, textured_opacity: false, two_sided: true }
+    }
+}
+
+impl Surface {
+    /// Whether nothing shows through.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        self.opacity >= 1.0 && !self.textured_opacity
+    }
+}
+
+/// A prepared triangle; its corners index the vertices of its cluster.
+#[derive(Clone, Copy, Debug)]
+pub struct Triangle {
+    /// Corners within the cluster's vertices.
+    pub corners: [u8; 3],
+    /// Position in the caller's triangle array.
+    pub id: u32,
+    /// Index of its surface.
+    pub surface: u32,
+    pub(crate) solid: u32,
+}
+
+/// Up to 64 neighbouring triangles with their own vertices and bounds.
+#[derive(Clone, Debug)]
+pub struct Cluster {
+    /// Bounds in the world.
+    pub bounds: Bounds,
+    first_vertex: u32,
+    vertex_count: u32,
+    first_triangle: u32,
+    triangle_count: u32,
+}
+
+/// An axis-aligned box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest coordinates.
+    pub low: DVec3,
+    /// Largest coordinates.
+    pub high: DVec3,
+}
+
+impl Bounds {
+    const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+
+    fn include(&mut self, p: DVec3) {
+        self.low = self.low.min(p);
+        self.high = self.high.max(p);
+    }
+
+    fn union(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// Smallest and largest value of `direction · (p − origin)` over the box, widened by rounding.
+    #[must_use]
+    #[inline]
+    pub fn extent_along(&self, origin: DVec3, direction: DVec3) -> (f64, f64) {
+        let centre = 0.5 * (self.low + self.high) - origin;
+        let half = 0.5 * (self.high - self.low);
+        let middle = direction.dot(centre);
+        let reach = direction.abs().dot(half) + 1e-12 * direction.abs().dot(centre.abs() + half);
+        (middle - reach, middle + reach)
+    }
+}
+
+/// Most triangles in a cluster: small enough that bounds are tight, large enough that refusing one
+/// saves real work. 64 triangles have at most 192 vertices, so that a corner fits in a byte.
+const CLUSTER_SIZE: usize = 64;
+
+/// Children of a node of the hierarchy.
+const FAN_OUT: usize = 4;
+
+/// Which winding of a closed component a viewer can never see, for each component.
+#[derive(Clone, Debug, Default)]
+pub struct HiddenSides(pub(crate) Vec<i8>);
+
+/// A scene's triangles in clusters, with a hierarchy of bounds and knowledge of closed components.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    pub(crate) vertices: Vec<DVec3>,
+    pub(crate) triangles: Vec<Triangle>,
+    pub(crate) clusters: Vec<Cluster>,
+    /// `levels[0]` bounds groups of clusters, each further level groups of the one before.
+    levels: Vec<Vec<Bounds>>,
+    surfaces: Vec<Surface>,
+    solids: Vec<Solid>,
+    bounds: Bounds,
+}
+
+impl Geometry {
+    /// Prepares triangles: checks them, finds closed components, sorts along a space-filling curve
+    /// and bounds clusters.
+    ///
+    /// Triangles without area are kept and draw nothing. An empty set is a scene without geometry.
+    ///
+    /// # Errors
+    /// [`MicropointError`] names the first vertex, triangle or surface that cannot be used.
+    pub fn new(
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+        surface_of: &[u32],
+        surfaces: &[Surface],
+    ) -> Result<Self, MicropointError> {
+        check(positions, triangles, surface_of, surfaces)?;
+        let opaque = |t: usize| surfaces[surface_of[t] as usize].is_opaque();
+        let (solids, solid_of) = find_solids(positions, triangles, opaque);
+        let order = morton_order(positions, triangles);
+        let mut geometry = Self {
+            vertices: Vec::with_capacity(triangles.len()),
+            triangles: Vec::with_capacity(triangles.len()),
+            clusters: Vec::with_capacity(triangles.len() / CLUSTER_SIZE + 1),
+            levels: Vec::new(),
+            surfaces: surfaces.to_vec(),
+            solids,
+            bounds: Bounds::EMPTY,
+        };
+        let mut local = LocalNumbers::new(positions.len());
+        for ids in order.chunks(CLUSTER_SIZE) {
+            geometry.push_cluster(ids, positions, triangles, surface_of, &solid_of, &mut local);
+        }
+        geometry.build_levels();
+        Ok(geometry)
+    }
+
+    fn push_cluster(
+        &mut self,
+        ids: &[u32],
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+        surface_of: &[u32],
+        solid_of: &[u32],
+        local: &mut LocalNumbers,
+    ) {
+        let (first_vertex, first_triangle) = (self.vertices.len(), self.triangles.len());
+        let mut bounds = Bounds::EMPTY;
+        local.next_cluster();
+        for &id in ids {
+            let t = id as usize;
+            let corners = triangles[t].map(|v| {
+                let (number, new) = local.number(v);
+                if new {
+                    let p = positions[v as usize];
+                    bounds.include(p);
+                    self.vertices.push(p);
+                }
+                number
+            });
+            self.triangles.push(Triangle { corners, id, surface: surface_of[t], solid: solid_of[t] });
+        }
+        self.bounds = self.bounds.union(bounds);
+        self.clusters.push(Cluster {
+            bounds,
+            first_vertex: first_vertex as u32,
+            vertex_count: (self.vertices.len() - first_vertex) as u32,
+            first_triangle: first_triangle as u32,
+            triangle_count: ids.len() as u32,
+        });
+    }
+
+    fn build_levels(&mut self) {
+        let union = |group: &[Bounds]| group.iter().fold(Bounds::EMPTY, |a, &b| a.union(b));
+        let leaves: Vec<Bounds> = self.clusters.iter().map(|c| c.bounds).collect();
+        let mut level: Vec<Bounds> = leaves.chunks(FAN_OUT).map(union).collect();
+        while !level.is_empty() {
+            let next: Vec<Bounds> = level.chunks(FAN_OUT).map(union).collect();
+            let last = level.len() == 1;
+            self.levels.push(level);
+            if last {
+                break;
+            }
+            level = next;
+        }
+    }
+
+    /// Number of triangles.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Number of triangles that bound solids.
+    #[must_use]
+    pub fn solid_triangle_count(&self) -> usize {
+        self.triangles.iter().filter(|t| t.solid != OPEN).count()
+    }
+
+    /// Number of clusters.
+    #[must_use]
+    pub fn cluster_count(&self) -> usize {
+        self.clusters.len()
+    }
+
+    /// Bounds of everything; `low > high` of an empty scene.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// The surfaces, as given.
+    #[must_use]
+    pub fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
+    /// A cluster's bounds, vertices and triangles.
+    #[must_use]
+    #[inline]
+    pub fn cluster(&self, index: u32) -> (&Bounds, &[DVec3], &[Triangle]) {
+        let c = &self.clusters[index as usize];
+        let vertices = &self.vertices[c.first_vertex as usize..][..c.vertex_count as usize];
+        let triangles = &self.triangles[c.first_triangle as usize..][..c.triangle_count as usize];
+        (&c.bounds, vertices, triangles)
+    }
+
+    /// Corners of a prepared triangle in the world; `cluster` and `index` as visited.
+    #[must_use]
+    #[inline]
+    pub fn corners(&self, cluster: u32, index: u32) -> [DVec3; 3] {
+        let (_, vertices, triangles) = self.cluster(cluster);
+        triangles[index as usize].corners.map(|c| vertices[usize::from(c)])
+    }
+
+    /// What a viewer at `origin` (a point; or far away against `direction`) never sees of closed
+    /// components. A component that the viewer may be inside of keeps both sides.
+    #[must_use]
+    pub fn hidden_sides(&self, origin: Option<DVec3>) -> HiddenSides {
+        let inside = |i: usize, s: &Solid| {
+            let Some(o) = origin else { return false };
+            let margin = 1e-9 * (s.high - s.low).length();
+            let in_box = (o - s.low).min_element() >= -margin && (s.high - o).min_element() >= -margin;
+            in_box && self.winding(i as u32, o).abs() > 0.01
+        };
+        let hidden = |(i, s): (usize, &Solid)| if inside(i, s) { 0 } else { s.orientation };
+        HiddenSides(self.solids.iter().enumerate().map(hidden).collect())
+    }
+
+    /// How often a closed component winds around a point.
+    fn winding(&self, solid: u32, origin: DVec3) -> f64 {
+        let mut total = 0.0;
+        for cluster in 0..self.clusters.len() as u32 {
+            let (_, vertices, triangles) = self.cluster(cluster);
+            for t in triangles.iter().filter(|t| t.solid == solid) {
+                total += solid_angle(t.corners.map(|c| vertices[usize::from(c)] - origin));
+            }
+        }
+        total / (4.0 * std::f64::consts::PI)
+    }
+
+    /// Visits the clusters that `bound` admits, in order of the distance it gives, nearest first.
+    ///
+    /// `bound` returns a lower bound of the distance of anything in the box, or `None` to refuse it
+    /// with all its contents; `visit` returns the distance beyond which nothing matters any more.
+    /// Returns how many boxes were refused or left unvisited.
+    pub fn visit_near_to_far(
+        &self,
+        queue: &mut ClusterQueue,
+        mut bound: impl FnMut(&Bounds) -> Option<f64>,
+        mut visit: impl FnMut(u32) -> f64,
+    ) -> u64 {
+        let heap = &mut queue.heap;
+        heap.clear();
+        let mut skipped = 0;
+        let Some(root) = self.levels.last().and_then(|l| l.first()) else { return 0 };
+        let clusters_below = |level: usize| (FAN_OUT as u64).pow(level as u32);
+        if let Some(d) = bound(root) {
+            heap.push(Entry { distance: d, level: self.levels.len() as u32, index: 0 });
+        }
+        let mut limit = f64::INFINITY;
+        while let Some(Entry { distance, level, index }) = heap.pop() {
+            if distance > limit {
+                skipped += heap.drain().map(|e| clusters_below(e.level as usize)).sum::<u64>() + 1;
+                break;
+            }
+            if level == 0 {
+                limit = visit(index);
+                continue;
+            }
+            let below = level as usize - 1;
+            let count = if below == 0 { self.clusters.len() } else { self.levels[below - 1].len() };
+            let first = index as usize * FAN_OUT;
+            for child in first..(first + FAN_OUT).min(count) {
+                let bounds =
+                    if below == 0 { &self.clusters[child].bounds } else { &self.levels[below - 1][child] };
+                match bound(bounds) {
+                    Some(d) if d <= limit => {
+                        heap.push(Entry { distance: d, level: below as u32, index: child as u32 });
+                    }
+                    _ => skipped += clusters_below(below),
+                }
+            }
+        }
+        skipped
+    }
+}
+
+/// Reusable memory of [`Geometry::visit_near_to_far`].
+#[derive(Debug, Default)]
+pub struct ClusterQueue {
+    heap: std::collections::BinaryHeap<Entry>,
+}
+
+/// A box in the queue, ordered so that the heap gives the nearest first.
+#[derive(Debug, PartialEq)]
+struct Entry {
+    distance: f64,
+    level: u32,
+    index: u32,
+}
+
+impl Eq for Entry {}
+
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Entry {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        other
+            .distance
+            .total_cmp(&self.distance)
+            .then(other.level.cmp(&self.level))
+            .then(other.index.cmp(&self.index))
+    }
+}
+
+fn check(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    surface_of: &[u32],
+    surfaces: &[Surface],
+) -> Result<(), MicropointError> {
+    if triangles.len() >= (u32::MAX / 4) as usize {
+        return Err(MicropointError::TooManyTriangles { count: triangles.len() });
+    }
+    if surface_of.len() != triangles.len() {
+        let (surfaces, triangles) = (surface_of.len(), triangles.len());
+        return Err(MicropointError::LengthMismatch { surfaces, triangles });
+    }
+    // Squares and products of three coordinates must not overflow.
+    let usable = |p: &DVec3| p.is_finite() && p.abs().max_element() < 1e90;
+    if let Some(index) = positions.iter().position(|p| !usable(p)) {
+        return Err(MicropointError::VertexNotFinite { index, value: positions[index].to_array() });
+    }
+    for (triangle, t) in triangles.iter().enumerate() {
+        if let Some(&vertex) = t.iter().find(|&&v| v as usize >= positions.len()) {
+            return Err(MicropointError::VertexOutOfRange { triangle, vertex, count: positions.len() });
+        }
+    }
+    for (triangle, &surface) in surface_of.iter().enumerate() {
+        if surface as usize >= surfaces.len() {
+            return Err(MicropointError::SurfaceOutOfRange { triangle, surface, count: surfaces.len() });
+        }
+    }
+    for (index, s) in surfaces.iter().enumerate() {
+        if !(0.0..=1.0).contains(&s.opacity) {
+            return Err(MicropointError::BadOpacity { index, opacity: s.opacity });
+        }
+    }
+    Ok(())
+}
+
+/// Triangle numbers along a Morton curve of their centres.
+fn morton_order(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<u32> {
+    let mut bounds = Bounds::EMPTY;
+    let centre = |t: &[u32; 3]| t.iter().map(|&v| positions[v as usize] / 3.0).sum::<DVec3>();
+    for t in triangles {
+        bounds.include(centre(t));
+    }
+    // One scale for all axes keeps clusters compact in flat scenes.
+    let size = (bounds.high - bounds.low).max_element();
+    let scale = if size > 0.0 { 1023.0 / size } else { 0.0 };
+    let key = |(i, t): (usize, &[u32; 3])| {
+        let q = (centre(t) - bounds.low) * scale;
+        let code = spread(q.x as u32) | spread(q.y as u32) << 1 | spread(q.z as u32) << 2;
+        u64::from(code) << 32 | i as u64
+    };
+    let mut keys: Vec<u64> = triangles.iter().enumerate().map(key).collect();
+    keys.sort_unstable();
+    keys.into_iter().map(|k| k as u32).collect()
+}
+
+/// Spreads ten bits so that two zero bits follow each.
+fn spread(v: u32) -> u32 {
+    let v = v.min(1023);
+    let v = (v | v << 16) & 0x0300_00ff;
+    let v = (v | v << 8) & 0x0300_f00f;
+    let v = (v | v << 4) & 0x030c_30c3;
+    (v | v << 2) & 0x0924_9249
+}
+
+/// Numbers the vertices of one cluster from 0, in order of first use.
+struct LocalNumbers {
+    /// For each vertex: the last cluster that used it (from 1), and its number there.
+    last: Vec<(u32, u8)>,
+    cluster: u32,
+    used: u32,
+}
+
+impl LocalNumbers {
+    fn new(vertices: usize) -> Self {
+        Self { last: vec![(0, 0); vertices], cluster: 0, used: 0 }
+    }
+
+    fn next_cluster(&mut self) {
+        self.cluster += 1;
+        self.used = 0;
+    }
+
+    fn number(&mut self, vertex: u32) -> (u8, bool) {
+        let entry = &mut self.last[vertex as usize];
+        let new = entry.0 != self.cluster;
+        if new {
+            *entry = (self.cluster, self.used as u8);
+            self.used += 1;
+        }
+        (entry.1, new)
+    }
+}

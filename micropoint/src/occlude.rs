@@ -1,0 +1,158 @@
+//! What is left of a polygon behind other polygons, exactly: the kernel of hiding and of shadow.
+
+use glam::DVec2;
+use pointillist_dice::{ConvexPolygon, HalfPlane};
+
+/// A part of a polygon and the light that reaches it.
+#[derive(Clone, Copy, Debug)]
+pub struct Region {
+    /// Convex, positive order.
+    pub polygon: ConvexPolygon,
+    /// Product of `1 − opacity` of everything in front, 0..=1.
+    pub transmittance: f64,
+}
+
+/// A polygon divided into convex regions, each behind the same set of occluders.
+///
+/// Occluders may come in any order. Regions that nothing reaches any more are dropped, so that an
+/// empty list means *hidden*. Memory is reused from one polygon to the next.
+#[derive(Debug, Default)]
+pub struct Regions {
+    list: Vec<Region>,
+    outside: Vec<ConvexPolygon>,
+    negligible: f64,
+}
+
+impl Regions {
+    /// Begins with a polygon that nothing hides. Parts of at most `negligible` area are not worth a
+    /// region: an overlap that small is taken for a touch, a remainder that small for nothing.
+    pub fn start(&mut self, polygon: ConvexPolygon, negligible: f64) {
+        self.list.clear();
+        self.list.push(Region { polygon, transmittance: 1.0 });
+        self.negligible = negligible;
+    }
+
+    /// The regions that some light reaches.
+    #[must_use]
+    pub fn list(&self) -> &[Region] {
+        &self.list
+    }
+
+    /// Whether nothing is left.
+    #[must_use]
+    pub fn is_hidden(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Puts an occluder in front: inside it, and inside `front` if given, light is scaled by
+    /// `1 − opacity` of the overlap. `front` limits an occluder to where it is the nearer surface.
+    pub fn attenuate(
+        &mut self,
+        occluder: &[DVec2],
+        front: Option<HalfPlane>,
+        mut opacity: impl FnMut(&ConvexPolygon) -> f64,
+    ) {
+        let mut i = 0;
+        let mut end = self.list.len();
+        while i < end {
+            match self.overlap(i, occluder, front.as_ref()) {
+                None => i += 1,
+                Some(inside) => {
+                    let transmittance = self.list[i].transmittance;
+                    let passed = transmittance * (1.0 - opacity(&inside));
+                    // Order matters to nobody but to the last bit of a sum: keep it deterministic.
+                    self.list.remove(i);
+                    end -= 1;
+                    let negligible = self.negligible;
+                    let outside = self.outside.drain(..).filter(|p| p.area() > negligible);
+                    self.list.extend(outside.map(|polygon| Region { polygon, transmittance }));
+                    if passed > 0.0 {
+                        self.list.push(Region { polygon: inside, transmittance: passed });
+                    }
+                }
+            }
+        }
+    }
+
+    /// The part of region `i` inside the occluder, with the parts outside left in `self.outside`.
+    fn overlap(&mut self, i: usize, occluder: &[DVec2], front: Option<&HalfPlane>) -> Option<ConvexPolygon> {
+        self.outside.clear();
+        let region = &self.list[i].polygon;
+        if region.has_separating_edge(occluder) {
+            return None;
+        }
+        let mut inside = *region;
+        let mut previous = *occluder.last()?;
+        let edges = occluder.iter().map(|&v| {
+            let half = HalfPlane::left_of(previous, v);
+            previous = v;
+            half
+        });
+        for half in edges.chain(front.copied()) {
+            if inside.vertices().iter().all(|&v| half.value(v) >= 0.0) {
+                continue;
+            }
+            let (kept, cut_off) = inside.divided(&half);
+            if kept.is_empty() {
+                return None;
+            }
+            inside = kept;
+            if !cut_off.is_empty() {
+                self.outside.push(cut_off);
+            }
+        }
+        (inside.area() > self.negligible).then_some(inside)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec2;
+
+    fn area(regions: &Regions) -> f64 {
+        regions.list().iter().map(|r| r.polygon.area() * r.transmittance).sum()
+    }
+
+    #[test]
+    fn two_crossing_bars_hide_their_union() {
+        let cell = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
+        let bars = [
+            ConvexPolygon::rectangle(dvec2(0.4, -1.0), dvec2(0.6, 2.0)),
+            ConvexPolygon::rectangle(dvec2(-1.0, 0.4), dvec2(2.0, 0.6)),
+        ];
+        let mut regions = Regions::default();
+        regions.start(cell, 1e-12);
+        for bar in &bars {
+            regions.attenuate(bar.vertices(), None, |_| 1.0);
+        }
+        assert!((area(&regions) - 0.64).abs() < 1e-15);
+        regions.start(cell, 1e-12);
+        for bar in &bars {
+            regions.attenuate(bar.vertices(), None, |_| 0.5);
+        }
+        assert!((area(&regions) - (0.64 + 0.32 * 0.5 + 0.04 * 0.25)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_front_half_plane_limits_an_occluder() {
+        let cell = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
+        let front = HalfPlane { normal: dvec2(1.0, 0.0), offset: -0.25 };
+        let mut regions = Regions::default();
+        regions.start(cell, 1e-12);
+        regions.attenuate(cell.vertices(), Some(front), |_| 1.0);
+        assert!((area(&regions) - 0.25).abs() < 1e-15);
+        regions.attenuate(cell.vertices(), None, |_| 1.0);
+        assert!(regions.is_hidden());
+    }
+
+    #[test]
+    fn neighbours_leave_each_other_alone() {
+        let mut regions = Regions::default();
+        regions.start(ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE), 1e-12);
+        let neighbour = ConvexPolygon::rectangle(dvec2(1.0, 0.0), dvec2(2.0, 1.0));
+        regions.attenuate(neighbour.vertices(), None, |_| 1.0);
+        assert_eq!(regions.list().len(), 1);
+        assert_eq!(area(&regions), 1.0);
+    }
+}

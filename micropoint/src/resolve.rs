@@ -1,0 +1,218 @@
+//! From the parts in a cell to what is seen of them.
+
+use crate::lens::Lens;
+use crate::occlude::Regions;
+use crate::tile::{Dicer, Part, are_disjoint};
+use glam::DVec2;
+use pointillist_dice::{ConvexPolygon, HalfPlane};
+
+/// How parts in one cell hide one another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Occlusion {
+    /// Exactly: a part is cut by the parts in front of it.
+    #[default]
+    Correlated,
+    /// As in the paper, §4.2.6: parts whose depth ranges overlap or touch are one layer; layers are
+    /// composited as if each were spread evenly over the cell.
+    Paper,
+}
+
+/// What is seen of a part.
+pub(crate) struct Visible<'a> {
+    pub(crate) part: u32,
+    /// Visible share of the cell: area × transmittance × opacity.
+    pub(crate) weight: f64,
+    /// Transmittance-weighted centroid of the visible area, relative to the cell.
+    pub(crate) centroid: DVec2,
+    /// The visible area in convex pieces with their own weights; `None`: the whole part.
+    pub(crate) pieces: Option<&'a [crate::occlude::Region]>,
+}
+
+/// Overlaps smaller than this share of a cell are rounding.
+pub(crate) const NEGLIGIBLE_AREA: f64 = 1e-11;
+
+/// A cell in which less than this is still open is finished.
+const FINISHED: f64 = 1e-11;
+
+/// Depth ranges closer than this, relative to their nearness, touch (algorithms: 1e-9…1e-6).
+const TOUCH: f64 = 1e-7;
+
+/// Resolves one cell under the exact rule.
+pub(crate) fn resolve_exactly(
+    dicer: &mut Dicer,
+    regions: &mut Regions,
+    lens: &Lens,
+    cell: usize,
+    corner: DVec2,
+    mut emit: impl FnMut(&Dicer, Visible<'_>),
+) {
+    let order = dicer.sorted_parts(cell);
+    let whole = |dicer: &Dicer, index: u32| {
+        let part = dicer.part(index);
+        let weight = part.area * f64::from(part.opacity);
+        Visible { part: index, weight, centroid: part.centroid, pieces: None }
+    };
+    if let Some(count) = dicer.tiling(cell).or((order.len() == 1).then_some(1)) {
+        for &p in &order[..count] {
+            emit(dicer, whole(dicer, p));
+        }
+        dicer.counts.cells_single += u64::from(count == 1);
+        dicer.counts.cells_tiled += u64::from(count > 1);
+    } else if order.is_empty() {
+        dicer.counts.cells_empty += 1;
+    } else {
+        dicer.counts.cells_compared += 1;
+        let mut seen = 0.0;
+        for (i, &p) in order.iter().enumerate() {
+            let part = *dicer.part(p);
+            let visible = if hide(dicer, regions, lens, corner, &order, i) {
+                let opacity = f64::from(part.opacity);
+                let (mut weight, mut moment) = (0.0, DVec2::ZERO);
+                for r in regions.list() {
+                    let (area, centroid) = r.polygon.area_and_centroid();
+                    weight += area * r.transmittance * opacity;
+                    moment += centroid * (area * r.transmittance * opacity);
+                }
+                if weight <= 0.0 {
+                    continue;
+                }
+                Visible { part: p, weight, centroid: moment / weight, pieces: Some(regions.list()) }
+            } else {
+                whole(dicer, p)
+            };
+            seen += visible.weight;
+            emit(dicer, visible);
+            if seen >= 1.0 - FINISHED {
+                break;
+            }
+        }
+    }
+    dicer.recycle(order);
+}
+
+/// Cuts part `order[i]` by the parts in front of it. Returns false if none of them touches it; the
+/// regions are meaningless then.
+fn hide(dicer: &Dicer, regions: &mut Regions, lens: &Lens, corner: DVec2, order: &[u32], i: usize) -> bool {
+    let part = dicer.part(order[i]);
+    let polygon = dicer.polygon(part);
+    let mut touched = false;
+    for (j, &o) in order.iter().enumerate() {
+        let other = dicer.part(o);
+        if other.nearness.1 < part.nearness.0 {
+            // The parts are sorted by their nearest point: all that follow lie behind.
+            break;
+        }
+        if j == i {
+            continue;
+        }
+        let outline = dicer.polygon(other);
+        if are_disjoint(&polygon, &outline) {
+            continue;
+        }
+        let front = match in_front(dicer, lens, corner, (other, &outline), (part, &polygon), j < i) {
+            Front::Nowhere => continue,
+            Front::Everywhere => None,
+            Front::Within(half) => Some(half),
+        };
+        if !touched {
+            regions.start(polygon, NEGLIGIBLE_AREA);
+            touched = true;
+        }
+        let opacity = f64::from(other.opacity);
+        regions.attenuate(outline.vertices(), front, |_| opacity);
+        if regions.is_hidden() {
+            break;
+        }
+    }
+    touched
+}
+
+/// Where one part is nearer than another.
+enum Front {
+    Nowhere,
+    Everywhere,
+    Within(HalfPlane),
+}
+
+/// Where `other` is in front of `part`, over their common area. Coincident parts hide one another in
+/// their sorting order (`first`: `other` comes before `part`).
+fn in_front(
+    dicer: &Dicer,
+    lens: &Lens,
+    corner: DVec2,
+    (other, outline): (&Part, &ConvexPolygon),
+    (part, polygon): (&Part, &ConvexPolygon),
+    first: bool,
+) -> Front {
+    let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
+    let tie = lens.tie(part.nearness.1, fo.plane.slope.abs() + fp.plane.slope.abs());
+    if other.nearness.0 >= part.nearness.1 + tie {
+        return Front::Everywhere;
+    }
+    let mut common = *polygon;
+    let mut previous = outline.vertices()[outline.vertices().len() - 1];
+    for &v in outline.vertices() {
+        common = common.clipped(&HalfPlane::left_of(previous, v));
+        previous = v;
+    }
+    let mut least = f64::INFINITY;
+    let mut most = f64::NEG_INFINITY;
+    for &v in common.vertices() {
+        let difference = fo.nearness_at(v + corner) - fp.nearness_at(v + corner);
+        least = least.min(difference);
+        most = most.max(difference);
+    }
+    if common.is_empty() {
+        Front::Nowhere
+    } else if most <= tie {
+        if least >= -tie && first { Front::Everywhere } else { Front::Nowhere }
+    } else if least >= -tie {
+        Front::Everywhere
+    } else {
+        // They cross: nearness is affine on both, so the line of equal depth is straight.
+        let normal = fo.plane.slope - fp.plane.slope;
+        let offset = fo.plane.at(corner) - fp.plane.at(corner);
+        Front::Within(HalfPlane { normal, offset })
+    }
+}
+
+/// Resolves one cell under the paper's rule.
+pub(crate) fn resolve_by_layers(
+    dicer: &mut Dicer,
+    cell: usize,
+    mut emit: impl FnMut(&Dicer, Visible<'_>),
+) {
+    let order = dicer.sorted_parts(cell);
+    let mut transmittance = 1.0;
+    let mut start = 0;
+    while start < order.len() && transmittance > FINISHED {
+        let first = dicer.part(order[start]);
+        let mut layer_low = first.nearness.0;
+        let mut end = start + 1;
+        // Sorted by the nearest point, so a layer ends where the next part does not reach it.
+        while end < order.len() {
+            let next = dicer.part(order[end]);
+            if next.nearness.1 < layer_low - TOUCH * layer_low.abs() {
+                break;
+            }
+            layer_low = layer_low.min(next.nearness.0);
+            end += 1;
+        }
+        let opacity_of = |p: u32| dicer.part(p).area * f64::from(dicer.part(p).opacity);
+        let sum: f64 = order[start..end].iter().map(|&p| opacity_of(p)).sum();
+        let layer = sum.min(1.0);
+        for &p in &order[start..end] {
+            let weight = transmittance * layer * (opacity_of(p) / sum);
+            let centroid = dicer.part(p).centroid;
+            emit(dicer, Visible { part: p, weight, centroid, pieces: None });
+        }
+        transmittance *= 1.0 - layer;
+        start = end;
+    }
+    match order.len() {
+        0 => dicer.counts.cells_empty += 1,
+        1 => dicer.counts.cells_single += 1,
+        _ => dicer.counts.cells_compared += 1,
+    }
+    dicer.recycle(order);
+}

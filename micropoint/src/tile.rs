@@ -1,0 +1,565 @@
+//! The bucket of cells that one thread finishes: faces diced into parts, nearest first.
+
+use crate::face::{Face, GridRect, ProjectedVertex, SurfacePoint, TexturedOpacity, set_up_face};
+use crate::geometry::{Bounds, ClusterQueue, Geometry, HiddenSides};
+use crate::lens::{Lens, LensKind};
+use glam::{DVec2, DVec3, IVec2};
+use pointillist_dice::{CellWindow, ConvexPolygon, Cut, convex, cut};
+use std::cmp::Ordering;
+
+/// End of a list of parts.
+const NONE: u32 = u32::MAX;
+
+/// Cells on a side of the blocks in which closing depths are summed up.
+const BLOCK: usize = 4;
+
+/// What of a face falls into one cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    /// The next part of the same cell.
+    next: u32,
+    /// Index into [`Dicer::faces`].
+    pub(crate) face: u32,
+    first_vertex: u32,
+    /// 0: the whole cell.
+    vertex_count: u32,
+    /// Area in cells.
+    pub(crate) area: f64,
+    /// Centroid relative to the cell.
+    pub(crate) centroid: DVec2,
+    /// Smallest and largest nearness.
+    pub(crate) nearness: (f64, f64),
+    pub(crate) opacity: f32,
+}
+
+/// State of one cell.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    head: u32,
+    count: u32,
+    /// Everything at most this near is hidden.
+    closed: f64,
+    /// Area of the opaque parts, overlaps counted twice.
+    opaque_area: f64,
+    /// Area at which to try next whether the parts close the cell.
+    next_try: f64,
+    /// If the nearest parts were found to tile the cell: how many they are, and how many parts
+    /// the cell had then.
+    tiling: u32,
+    tiling_count: u32,
+}
+
+impl Cell {
+    const OPEN: Self = Self {
+        head: NONE,
+        count: 0,
+        closed: f64::NEG_INFINITY,
+        opaque_area: 0.0,
+        next_try: 1.0 - COVERED,
+        tiling: 0,
+        tiling_count: 0,
+    };
+}
+
+/// A cell whose disjoint parts leave less than this uncovered is covered; the parts' own rounding
+/// is a thousand times smaller.
+const COVERED: f64 = 1e-9;
+
+/// What was done and what was not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TileCounts {
+    /// Clusters that were looked into.
+    pub clusters: u64,
+    /// Clusters refused: outside the tile or behind its closed cells.
+    pub clusters_skipped: u64,
+    /// Triangles set up.
+    pub triangles: u64,
+    /// Triangles that were culled: back faces of solids, outside the tile.
+    pub triangles_culled: u64,
+    /// Triangles that lay behind closed cells and were never diced.
+    pub triangles_hidden: u64,
+    /// Parts made by cutting.
+    pub pieces: u64,
+    /// Whole cells inside spans: not cut.
+    pub span_cells: u64,
+    /// Parts refused by a closed cell.
+    pub parts_hidden: u64,
+    /// Cells by how they were resolved: empty, one part, parts that tile the cell.
+    pub cells_empty: u64,
+    /// See `cells_empty`.
+    pub cells_single: u64,
+    /// See `cells_empty`.
+    pub cells_tiled: u64,
+    /// Cells in which parts had to be compared pair by pair.
+    pub cells_compared: u64,
+    /// Visible micropoints.
+    pub micropoints: u64,
+}
+
+impl std::ops::AddAssign for TileCounts {
+    fn add_assign(&mut self, o: Self) {
+        self.clusters += o.clusters;
+        self.clusters_skipped += o.clusters_skipped;
+        self.triangles += o.triangles;
+        self.triangles_culled += o.triangles_culled;
+        self.triangles_hidden += o.triangles_hidden;
+        self.pieces += o.pieces;
+        self.span_cells += o.span_cells;
+        self.parts_hidden += o.parts_hidden;
+        self.cells_empty += o.cells_empty;
+        self.cells_single += o.cells_single;
+        self.cells_tiled += o.cells_tiled;
+        self.cells_compared += o.cells_compared;
+        self.micropoints += o.micropoints;
+    }
+}
+
+/// Dices the faces of one tile. Memory is reused from tile to tile.
+#[derive(Debug, Default)]
+pub(crate) struct Dicer {
+    window: Option<CellWindow>,
+    cells: Vec<Cell>,
+    /// Smallest `closed` of each block of cells.
+    blocks: Vec<f64>,
+    block_columns: usize,
+    /// Smallest `closed` of the tile.
+    tile_closed: f64,
+    parts: Vec<Part>,
+    vertices: Vec<DVec2>,
+    pub(crate) faces: Vec<Face>,
+    projected: Vec<ProjectedVertex>,
+    queue: ClusterQueue,
+    order: Vec<u32>,
+    pub(crate) counts: TileCounts,
+}
+
+/// What all tiles of a picture share.
+#[derive(Clone, Copy)]
+pub(crate) struct DiceJob<'a> {
+    pub(crate) geometry: &'a Geometry,
+    pub(crate) lens: &'a Lens,
+    pub(crate) rect: &'a GridRect,
+    pub(crate) hidden: &'a HiddenSides,
+    pub(crate) opacity: &'a dyn TexturedOpacity,
+}
+
+impl Dicer {
+    /// Dices everything that may be visible in the window.
+    pub(crate) fn dice(&mut self, job: &DiceJob<'_>, window: CellWindow) {
+        self.reset(window);
+        let sides = TileSides::new(job.lens, window);
+        let mut queue = std::mem::take(&mut self.queue);
+        let skipped = job.geometry.visit_near_to_far(
+            &mut queue,
+            |bounds| sides.nearest_depth(bounds),
+            |cluster| {
+                self.dice_cluster(job, cluster);
+                self.farthest_visible(job.lens)
+            },
+        );
+        self.counts.clusters_skipped += skipped;
+        self.queue = queue;
+    }
+
+    fn reset(&mut self, window: CellWindow) {
+        let (columns, rows) = ((window.x1 - window.x0) as usize, (window.y1 - window.y0) as usize);
+        self.window = Some(window);
+        self.block_columns = columns.div_ceil(BLOCK);
+        self.cells.clear();
+        self.cells.resize(columns * rows, Cell::OPEN);
+        self.blocks.clear();
+        self.blocks.resize(self.block_columns * rows.div_ceil(BLOCK), f64::NEG_INFINITY);
+        self.tile_closed = f64::NEG_INFINITY;
+        self.parts.clear();
+        self.vertices.clear();
+        self.faces.clear();
+        self.counts = TileCounts::default();
+    }
+
+    pub(crate) fn window(&self) -> CellWindow {
+        self.window.unwrap_or(CellWindow { x0: 0, y0: 0, x1: 0, y1: 0 })
+    }
+
+    /// Depth beyond which nothing in this tile can be seen.
+    fn farthest_visible(&self, lens: &Lens) -> f64 {
+        let q = self.tile_closed - lens.tie(self.tile_closed, DVec2::ZERO);
+        let unlimited = match lens.kind {
+            LensKind::Perspective => q.is_nan() || q <= 0.0,
+            LensKind::Orthographic => q.is_nan() || q == f64::NEG_INFINITY,
+        };
+        if unlimited { f64::INFINITY } else { lens.depth(q) }
+    }
+
+    fn dice_cluster(&mut self, job: &DiceJob<'_>, cluster: u32) {
+        let (_, vertices, triangles) = job.geometry.cluster(cluster);
+        self.counts.clusters += 1;
+        let mut projected = std::mem::take(&mut self.projected);
+        projected.clear();
+        projected.extend(vertices.iter().map(|&v| ProjectedVertex::new(job.lens, v)));
+        for (i, t) in triangles.iter().enumerate() {
+            let v = t.corners.map(|c| &projected[usize::from(c)]);
+            let surface = &job.geometry.surfaces()[t.surface as usize];
+            let source = (cluster, i as u32);
+            if self.outside_window(v) {
+                self.counts.triangles_culled += 1;
+                continue;
+            }
+            match set_up_face(job.lens, job.rect, t, source, v, surface, job.hidden, false) {
+                None => self.counts.triangles_culled += 1,
+                Some((face, outline)) => {
+                    let opacity = if surface.textured_opacity { None } else { Some(surface.opacity) };
+                    self.dice_face(job, face, outline.vertices(), opacity);
+                }
+            }
+        }
+        self.projected = projected;
+    }
+
+    /// Whether a triangle that needs no clipping misses the window: the cheapest and commonest test.
+    #[inline]
+    fn outside_window(&self, v: [&ProjectedVertex; 3]) -> bool {
+        if !(v[0].in_front && v[1].in_front && v[2].in_front) {
+            return false;
+        }
+        let w = self.window();
+        let low = v[0].grid.min(v[1].grid).min(v[2].grid);
+        let high = v[0].grid.max(v[1].grid).max(v[2].grid);
+        low.x >= f64::from(w.x1) || low.y >= f64::from(w.y1) || high.x <= f64::from(w.x0) || high.y <= f64::from(w.y0)
+    }
+
+    fn dice_face(&mut self, job: &DiceJob<'_>, face: Face, outline: &[DVec2], opacity: Option<f32>) {
+        self.counts.triangles += 1;
+        if opacity == Some(0.0) {
+            return;
+        }
+        if self.is_hidden(job.lens, &face, outline) {
+            self.counts.triangles_hidden += 1;
+            return;
+        }
+        let parts_before = self.parts.len();
+        let index = self.faces.len() as u32;
+        cut(outline, self.window(), |c| match c {
+            Cut::Span { row, first, end } => {
+                for column in first..end {
+                    self.add_whole_cell(job, &face, index, IVec2::new(column, row), opacity);
+                }
+            }
+            Cut::Piece { cell, polygon } => self.add_piece(job, &face, index, cell, polygon, opacity),
+        });
+        if self.parts.len() > parts_before {
+            self.faces.push(face);
+        }
+    }
+
+    /// Whether every block that the outline touches is closed in front of the face.
+    fn is_hidden(&self, lens: &Lens, face: &Face, outline: &[DVec2]) -> bool {
+        let q = face.nearness.1 + lens.tie(face.nearness.1, face.plane.slope);
+        if q < self.tile_closed {
+            return true;
+        }
+        let w = self.window();
+        let (low, high) = convex::bounds(outline);
+        let block = |v: f64, first: i32, end: i32| {
+            (v.clamp(f64::from(first), f64::from(end - 1)) as i32 - first) as usize / BLOCK
+        };
+        let columns = block(low.x, w.x0, w.x1)..=block(high.x, w.x0, w.x1);
+        (block(low.y, w.y0, w.y1)..=block(high.y, w.y0, w.y1))
+            .all(|y| columns.clone().all(|x| q < self.blocks[y * self.block_columns + x]))
+    }
+
+    fn cell_index(&self, cell: IVec2) -> usize {
+        let w = self.window();
+        (cell.y - w.y0) as usize * (w.x1 - w.x0) as usize + (cell.x - w.x0) as usize
+    }
+
+    fn add_whole_cell(&mut self, job: &DiceJob<'_>, face: &Face, index: u32, cell: IVec2, opacity: Option<f32>) {
+        self.counts.span_cells += 1;
+        let corner = cell.as_dvec2();
+        let middle = face.plane.at(corner + 0.5);
+        let reach = 0.5 * (face.plane.slope.x.abs() + face.plane.slope.y.abs());
+        let clamp = |q: f64| q.max(face.nearness.0).min(face.nearness.1);
+        let nearness = (clamp(middle - reach), clamp(middle + reach));
+        let i = self.cell_index(cell);
+        if self.refuses(job.lens, i, face, nearness.1) {
+            return;
+        }
+        let opacity = opacity.unwrap_or_else(|| {
+            let square = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
+            mean_opacity(job, face, corner, square.vertices())
+        });
+        let part = Part {
+            next: NONE,
+            face: index,
+            first_vertex: 0,
+            vertex_count: 0,
+            area: 1.0,
+            centroid: DVec2::splat(0.5),
+            nearness,
+            opacity,
+        };
+        self.link(i, part);
+        if opacity >= 1.0 && nearness.0 > self.cells[i].closed {
+            self.close(i, nearness.0);
+        }
+    }
+
+    fn add_piece(
+        &mut self,
+        job: &DiceJob<'_>,
+        face: &Face,
+        index: u32,
+        cell: IVec2,
+        polygon: &ConvexPolygon,
+        opacity: Option<f32>,
+    ) {
+        self.counts.pieces += 1;
+        let corner = cell.as_dvec2();
+        let mut local = [DVec2::ZERO; convex::MAX_VERTICES];
+        let mut nearness = (f64::INFINITY, f64::NEG_INFINITY);
+        for (to, &v) in local.iter_mut().zip(polygon.vertices()) {
+            *to = v - corner;
+            let q = face.nearness_at(v);
+            nearness = (nearness.0.min(q), nearness.1.max(q));
+        }
+        let local = &local[..polygon.vertices().len()];
+        let (area, centroid) = convex::area_and_centroid(local);
+        let i = self.cell_index(cell);
+        if area <= 0.0 || area.is_nan() || self.refuses(job.lens, i, face, nearness.1) {
+            return;
+        }
+        let opacity = opacity.unwrap_or_else(|| mean_opacity(job, face, corner, local));
+        let part = Part {
+            next: NONE,
+            face: index,
+            first_vertex: self.vertices.len() as u32,
+            vertex_count: local.len() as u32,
+            area,
+            centroid,
+            nearness,
+            opacity,
+        };
+        self.vertices.extend_from_slice(local);
+        self.link(i, part);
+        if opacity >= 1.0 {
+            self.cells[i].opaque_area += area;
+            if self.cells[i].opaque_area >= self.cells[i].next_try {
+                // The face is needed to order the parts, but only stored once it is diced.
+                self.faces.push(*face);
+                self.try_to_close(i, job.lens);
+                self.faces.pop();
+            }
+        }
+    }
+
+    #[inline]
+    fn refuses(&mut self, lens: &Lens, cell: usize, face: &Face, nearest: f64) -> bool {
+        let closed = self.cells[cell].closed;
+        let refused = nearest + lens.tie(nearest, face.plane.slope) < closed;
+        self.counts.parts_hidden += u64::from(refused);
+        refused
+    }
+
+    #[inline]
+    fn link(&mut self, cell: usize, mut part: Part) {
+        if part.opacity <= 0.0 {
+            return;
+        }
+        part.next = self.cells[cell].head;
+        self.cells[cell].head = self.parts.len() as u32;
+        self.cells[cell].count += 1;
+        self.parts.push(part);
+    }
+
+    /// Finds out whether the nearest opaque parts of a cell tile it, and closes it if so.
+    ///
+    /// Only disjoint parts are considered: the common case of a mesh whose triangles are about as
+    /// large as cells. Whatever else there is gets sorted out when the tile is resolved.
+    fn try_to_close(&mut self, cell: usize, lens: &Lens) {
+        self.cells[cell].next_try = self.cells[cell].opaque_area + 0.5;
+        const MOST: usize = 24;
+        if self.cells[cell].count as usize > MOST {
+            return;
+        }
+        let order = self.sorted_parts(cell);
+        let mut area = 0.0;
+        let mut nearness = f64::INFINITY;
+        let mut tiling = 0;
+        for (i, &p) in order.iter().enumerate() {
+            let part = &self.parts[p as usize];
+            if part.opacity < 1.0 {
+                break;
+            }
+            let polygon = self.polygon(part);
+            let disjoint = |&o: &u32| are_disjoint(&polygon, &self.polygon(&self.parts[o as usize]));
+            if !order[..i].iter().all(disjoint) {
+                break;
+            }
+            area += part.area;
+            nearness = nearness.min(part.nearness.0);
+            if area >= 1.0 - COVERED {
+                tiling = i + 1;
+                break;
+            }
+        }
+        let hidden = |&p: &u32| {
+            let part = &self.parts[p as usize];
+            let slope = self.faces[part.face as usize].plane.slope;
+            part.nearness.1 + lens.tie(part.nearness.1, slope) < nearness
+        };
+        if tiling > 0 && order[tiling..].iter().all(hidden) {
+            self.cells[cell].tiling = tiling as u32;
+            self.cells[cell].tiling_count = self.cells[cell].count;
+            if nearness > self.cells[cell].closed {
+                self.close(cell, nearness);
+            }
+        }
+        self.order = order;
+    }
+
+    /// Closes a cell at a nearness and updates the pyramid above it.
+    fn close(&mut self, cell: usize, nearness: f64) {
+        let before = std::mem::replace(&mut self.cells[cell].closed, nearness);
+        let w = self.window();
+        let (columns, rows) = ((w.x1 - w.x0) as usize, (w.y1 - w.y0) as usize);
+        let (bx, by) = (cell % columns / BLOCK, cell / columns / BLOCK);
+        let block = by * self.block_columns + bx;
+        // Only the least closed cell of a block decides.
+        if before > self.blocks[block] {
+            return;
+        }
+        let mut least = f64::INFINITY;
+        for y in by * BLOCK..((by + 1) * BLOCK).min(rows) {
+            for x in bx * BLOCK..((bx + 1) * BLOCK).min(columns) {
+                least = least.min(self.cells[y * columns + x].closed);
+            }
+        }
+        let block_before = std::mem::replace(&mut self.blocks[block], least);
+        if block_before <= self.tile_closed {
+            self.tile_closed = self.blocks.iter().copied().fold(f64::INFINITY, f64::min);
+        }
+    }
+
+    /// The parts of a cell, nearest first, in an order that does not depend on the order of triangles.
+    pub(crate) fn sorted_parts(&mut self, cell: usize) -> Vec<u32> {
+        let mut order = std::mem::take(&mut self.order);
+        order.clear();
+        let mut next = self.cells[cell].head;
+        while next != NONE {
+            order.push(next);
+            next = self.parts[next as usize].next;
+        }
+        if order.len() > 1 {
+            order.sort_unstable_by(|&a, &b| self.compare(a, b));
+        }
+        order
+    }
+
+    /// Gives the list of [`Dicer::sorted_parts`] back for reuse.
+    pub(crate) fn recycle(&mut self, order: Vec<u32>) {
+        self.order = order;
+    }
+
+    /// Nearest first; then by position and surface; the triangle's number decides only between
+    /// parts that are equal in all else.
+    pub(crate) fn compare(&self, a: u32, b: u32) -> Ordering {
+        let (a, b) = (&self.parts[a as usize], &self.parts[b as usize]);
+        let key = |p: &Part| (-p.nearness.1, -p.nearness.0, p.centroid.x, p.centroid.y);
+        let (ka, kb) = (key(a), key(b));
+        ka.0.total_cmp(&kb.0)
+            .then(ka.1.total_cmp(&kb.1))
+            .then(ka.2.total_cmp(&kb.2))
+            .then(ka.3.total_cmp(&kb.3))
+            .then_with(|| {
+                let (fa, fb) = (&self.faces[a.face as usize], &self.faces[b.face as usize]);
+                (fa.surface, fa.id).cmp(&(fb.surface, fb.id))
+            })
+    }
+
+    pub(crate) fn part(&self, index: u32) -> &Part {
+        &self.parts[index as usize]
+    }
+
+    /// A part's outline relative to its cell.
+    pub(crate) fn polygon(&self, part: &Part) -> ConvexPolygon {
+        if part.vertex_count == 0 {
+            return ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
+        }
+        let first = part.first_vertex as usize;
+        ConvexPolygon::from_vertices(&self.vertices[first..first + part.vertex_count as usize])
+    }
+
+    /// Whether a part fills its cell.
+    pub(crate) fn is_whole(part: &Part) -> bool {
+        part.vertex_count == 0
+    }
+
+    /// How many of a cell's parts, nearest first, are known to tile it and to hide the others.
+    pub(crate) fn tiling(&self, cell: usize) -> Option<usize> {
+        let c = &self.cells[cell];
+        (c.tiling > 0 && c.tiling_count == c.count).then_some(c.tiling as usize)
+    }
+
+    pub(crate) fn cell_count(&self) -> usize {
+        self.cells.len()
+    }
+}
+
+/// Whether two convex polygons have no common interior, within rounding.
+pub(crate) fn are_disjoint(a: &ConvexPolygon, b: &ConvexPolygon) -> bool {
+    a.has_separating_edge(b.vertices()) || b.has_separating_edge(a.vertices())
+}
+
+fn mean_opacity(job: &DiceJob<'_>, face: &Face, corner: DVec2, local: &[DVec2]) -> f32 {
+    let mut points = [SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, barycentric: DVec3::ZERO }; convex::MAX_VERTICES];
+    for (to, &v) in points.iter_mut().zip(local) {
+        *to = surface_point(job.lens, face, v + corner);
+    }
+    let mean = job.opacity.mean_opacity(face.id, &points[..local.len()]);
+    let surface = job.geometry.surfaces()[face.surface as usize];
+    (mean * surface.opacity).clamp(0.0, 1.0)
+}
+
+/// A grid position on a face.
+pub(crate) fn surface_point(lens: &Lens, face: &Face, grid: DVec2) -> SurfacePoint {
+    let nearness = face.nearness_at(grid);
+    SurfacePoint { grid, nearness, barycentric: face.barycentric(lens.unproject(grid, nearness)) }
+}
+
+/// The sides of a tile's view volume as planes through the world.
+struct TileSides {
+    origin: DVec3,
+    forward: DVec3,
+    planes: [(DVec3, f64); 4],
+}
+
+impl TileSides {
+    fn new(lens: &Lens, w: CellWindow) -> Self {
+        let side = |axis: DVec3, line: f64, sign: f64| match lens.kind {
+            LensKind::Perspective => (sign * (axis - lens.forward * line), 0.0),
+            LensKind::Orthographic => (sign * axis, -sign * line),
+        };
+        let (x, y) = (lens.right * lens.scale.x, lens.down * lens.scale.y);
+        Self {
+            origin: lens.origin,
+            forward: lens.forward,
+            planes: [
+                side(x, f64::from(w.x0) - lens.centre.x, 1.0),
+                side(x, f64::from(w.x1) - lens.centre.x, -1.0),
+                side(y, f64::from(w.y0) - lens.centre.y, 1.0),
+                side(y, f64::from(w.y1) - lens.centre.y, -1.0),
+            ],
+        }
+    }
+
+    /// Least depth of a box, or `None` if it is outside.
+    #[inline]
+    fn nearest_depth(&self, bounds: &Bounds) -> Option<f64> {
+        for (normal, offset) in &self.planes {
+            if bounds.extent_along(self.origin, *normal).1 + offset < 0.0 {
+                return None;
+            }
+        }
+        let (near, far) = bounds.extent_along(self.origin, self.forward);
+        (far >= 0.0).then_some(near.max(0.0))
+    }
+}
