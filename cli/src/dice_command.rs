@@ -1,0 +1,312 @@
+//! `pointillist dice`: polygons in as JSON lines, pieces or cell areas out as JSON lines.
+
+use std::io::{BufRead, Write};
+
+use glam::{DVec2, dvec2};
+use pointillist_dice::{Accumulator, DiceError, Grid, accumulate, split};
+use serde::{Deserialize, Serialize};
+
+/// Why [`run`] stopped.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DiceCommandError {
+    /// A line of the input cannot be used.
+    #[error("{source_name}, line {line}: {message}\n  {text}\n  {way_out}")]
+    Input {
+        /// Name of the file, or `-`.
+        source_name: String,
+        /// From 1.
+        line: usize,
+        /// What is wrong, with the field and its value.
+        message: String,
+        /// The line, shortened.
+        text: String,
+        /// What to do about it.
+        way_out: String,
+    },
+    /// The input could not be read.
+    #[error("{source_name}, line {line}: {error}")]
+    Read {
+        /// Name of the file, or `-`.
+        source_name: String,
+        /// From 1.
+        line: usize,
+        /// What the system says.
+        #[source]
+        error: std::io::Error,
+    },
+    /// The output could not be written.
+    #[error("writing the result: {0}")]
+    Write(#[source] std::io::Error),
+}
+
+/// One line of the input.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Request {
+    polygon: Vec<[f64; 2]>,
+    #[serde(default)]
+    grid: GridFields,
+}
+
+/// Unit cells at the origin unless said otherwise.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct GridFields {
+    origin: [f64; 2],
+    cell: [f64; 2],
+}
+
+impl Default for GridFields {
+    fn default() -> Self {
+        Self { origin: [0.0, 0.0], cell: [1.0, 1.0] }
+    }
+}
+
+#[derive(Serialize)]
+struct PieceFields {
+    cell: [i32; 2],
+    area: f64,
+    vertices: Vec<[f64; 2]>,
+}
+
+#[derive(Serialize)]
+struct CellFields {
+    cell: [i32; 2],
+    area: f64,
+    centroid: [f64; 2],
+}
+
+/// The expected shape of a line, for messages.
+const EXAMPLE: &str =
+    r#"a line looks like {"polygon":[[0,0],[1,0],[0,1]],"grid":{"origin":[0,0],"cell":[1,1]}}"#;
+
+/// Cuts every polygon of `input` by its grid. Blank lines are skipped; every other line gives one line of output:
+/// its pieces, or with `areas` (which accepts concave polygons) its cells. Numbers read back to the same value.
+///
+/// # Errors
+/// Stops at the first line that cannot be used. The lines before it have been written.
+pub fn run(
+    input: &mut dyn BufRead,
+    output: &mut dyn Write,
+    areas: bool,
+    source: &str,
+) -> Result<(), DiceCommandError> {
+    let mut scratch = Accumulator::new();
+    let (mut text, mut line) = (String::new(), 0);
+    loop {
+        line += 1;
+        text.clear();
+        let read = input.read_line(&mut text);
+        let count = read.map_err(|error| DiceCommandError::Read { source_name: source.to_owned(), line, error })?;
+        if count == 0 {
+            return output.flush().map_err(DiceCommandError::Write);
+        }
+        if text.trim().is_empty() {
+            continue;
+        }
+        let result = answer(&text, output, areas, &mut scratch);
+        result.map_err(|refusal| refusal.into_error(source, line, &text))?;
+    }
+}
+
+/// Why one line was refused.
+enum Refusal {
+    Json(serde_json::Error),
+    Dice(DiceError, String),
+    Write(std::io::Error),
+}
+
+fn answer(text: &str, output: &mut dyn Write, areas: bool, scratch: &mut Accumulator) -> Result<(), Refusal> {
+    let request: Request = serde_json::from_str(text).map_err(Refusal::Json)?;
+    let polygon: Vec<DVec2> = request.polygon.iter().map(|&v| DVec2::from_array(v)).collect();
+    let of_dice = |error: DiceError| Refusal::Dice(error, value_at_fault(error, &request));
+    let [[x0, y0], [dx, dy]] = [request.grid.origin, request.grid.cell];
+    let grid = Grid::new(dvec2(x0, y0), dvec2(dx, dy)).map_err(of_dice)?;
+    if areas {
+        write_cells(&polygon, &grid, scratch, output, of_dice)
+    } else {
+        write_pieces(&polygon, &grid, output, of_dice)
+    }
+}
+
+fn write_pieces(
+    polygon: &[DVec2],
+    grid: &Grid,
+    output: &mut dyn Write,
+    of_dice: impl Fn(DiceError) -> Refusal,
+) -> Result<(), Refusal> {
+    let mut list = List::new("pieces", output);
+    split(polygon, grid, |piece| {
+        let vertices = piece.vertices.iter().map(DVec2::to_array).collect();
+        list.push(&PieceFields { cell: piece.cell.to_array(), area: piece.area, vertices });
+    })
+    .map_err(of_dice)?;
+    list.finish()
+}
+
+fn write_cells(
+    polygon: &[DVec2],
+    grid: &Grid,
+    scratch: &mut Accumulator,
+    output: &mut dyn Write,
+    of_dice: impl Fn(DiceError) -> Refusal,
+) -> Result<(), Refusal> {
+    let mut list = List::new("cells", output);
+    accumulate(polygon, grid, scratch, |run| {
+        for (cell, centroid) in run.cells(grid) {
+            list.push(&CellFields { cell: cell.to_array(), area: run.area, centroid: centroid.to_array() });
+        }
+    })
+    .map_err(of_dice)?;
+    list.finish()
+}
+
+/// Writes `{"name":[…]}` item by item, so that an answer of millions of cells needs no memory.
+struct List<'a> {
+    output: &'a mut dyn Write,
+    name: &'static str,
+    count: usize,
+    result: std::io::Result<()>,
+}
+
+impl<'a> List<'a> {
+    fn new(name: &'static str, output: &'a mut dyn Write) -> Self {
+        Self { output, name, count: 0, result: Ok(()) }
+    }
+
+    /// After the first failure nothing more is written; [`finish`](Self::finish) tells.
+    fn push(&mut self, item: &impl Serialize) {
+        if self.result.is_ok() {
+            self.result = self.try_push(item);
+            self.count += 1;
+        }
+    }
+
+    fn try_push(&mut self, item: &impl Serialize) -> std::io::Result<()> {
+        if self.count == 0 {
+            write!(self.output, "{{\"{}\":[", self.name)?;
+        } else {
+            self.output.write_all(b",")?;
+        }
+        serde_json::to_writer(&mut *self.output, item).map_err(std::io::Error::from)
+    }
+
+    fn finish(self) -> Result<(), Refusal> {
+        self.result.map_err(Refusal::Write)?;
+        let end = if self.count == 0 { format!("{{\"{}\":[]}}\n", self.name) } else { "]}\n".to_owned() };
+        self.output.write_all(end.as_bytes()).map_err(Refusal::Write)
+    }
+}
+
+/// The field that an error is about, as the user wrote it.
+fn value_at_fault(error: DiceError, request: &Request) -> String {
+    let vertex = |index: usize| format!("polygon[{index}] = {}", json(&request.polygon.get(index)));
+    match error {
+        DiceError::NotFinite { index } | DiceError::OutOfRange { index } | DiceError::NotConvex { index } => vertex(index),
+        DiceError::BadGrid { .. } => {
+            format!("grid.origin = {}, grid.cell = {}", json(&request.grid.origin), json(&request.grid.cell))
+        }
+        _ => format!("polygon with {} vertices", request.polygon.len()),
+    }
+}
+
+fn json(value: &impl Serialize) -> String {
+    serde_json::to_string(value).unwrap_or_default()
+}
+
+impl Refusal {
+    fn into_error(self, source: &str, line: usize, text: &str) -> DiceCommandError {
+        let (message, way_out) = match self {
+            Self::Write(error) => return DiceCommandError::Write(error),
+            Self::Json(error) => (strip_place(&error), EXAMPLE.to_owned()),
+            Self::Dice(error @ DiceError::NotConvex { .. }, value) => (
+                format!("{value}: the polygon is not convex there ({error})"),
+                "use --areas, which accepts concave polygons, or triangulate the polygon".to_owned(),
+            ),
+            Self::Dice(error, value) => (format!("{value}: {error}"), way_out(error).to_owned()),
+        };
+        DiceCommandError::Input { source_name: source.to_owned(), line, message, text: shorten(text.trim()), way_out }
+    }
+}
+
+fn way_out(error: DiceError) -> &'static str {
+    match error {
+        DiceError::BadGrid { .. } => "give grid.cell two positive numbers and grid.origin two finite ones",
+        DiceError::TooManyCells { .. } => "use a larger grid.cell, or clip the polygon first",
+        DiceError::OutOfRange { .. } => "move grid.origin to the polygon, or use a larger grid.cell",
+        _ => "coordinates must be finite numbers",
+    }
+}
+
+/// The message with the column; every request is on line 1 as far as the parser knows, so its line would mislead.
+fn strip_place(error: &serde_json::Error) -> String {
+    let message = error.to_string();
+    let end = message.rfind(" at line ").unwrap_or(message.len());
+    format!("{}, column {}", &message[..end], error.column())
+}
+
+/// Lines of any length make a message of one line.
+fn shorten(text: &str) -> String {
+    const LENGTH: usize = 100;
+    match text.char_indices().nth(LENGTH) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::run;
+
+    fn answer(input: &str, areas: bool) -> Result<String, String> {
+        let mut output = Vec::new();
+        run(&mut input.as_bytes(), &mut output, areas, "shapes.jsonl").map_err(|e| e.to_string())?;
+        String::from_utf8(output).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn a_square_off_the_grid_has_its_quarters() {
+        let line = r#"{"polygon":[[0.5,0.5],[1.5,0.5],[1.5,1.5],[0.5,1.5]]}"#;
+        let cells = answer(&format!("\n{line}\n  \n"), true).unwrap();
+        assert!(cells.starts_with(r#"{"cells":[{"cell":[0,0],"area":0.25,"centroid":[0.75,0.75]},"#), "{cells}");
+        assert_eq!(cells.lines().count(), 1);
+        let pieces = answer(line, false).unwrap();
+        assert!(pieces.starts_with(r#"{"pieces":[{"cell":[0,0],"area":0.25,"vertices":[[0.5,0.5],[1.0,0.5],"#), "{pieces}");
+    }
+
+    #[test]
+    fn numbers_are_read_and_written_exactly() {
+        // Read one unit in the last place off unless serde_json has its feature `float_roundtrip`.
+        let x = "0.24440681899480325";
+        let pieces = answer(&format!(r#"{{"polygon":[[{x},0],[1,0],[1,1]]}}"#), false).unwrap();
+        assert!(pieces.contains(x), "{pieces}");
+    }
+
+    #[test]
+    fn a_polygon_without_area_has_an_empty_list() {
+        assert_eq!(answer(r#"{"polygon":[]}"#, true).unwrap(), "{\"cells\":[]}\n");
+        assert_eq!(answer(r#"{"polygon":[[0,0],[1,1],[2,2]]}"#, false).unwrap(), "{\"pieces\":[]}\n");
+    }
+
+    #[test]
+    fn errors_name_source_line_field_value_and_way_out() {
+        let concave = "\n{\"polygon\":[[0,0],[4,0],[1,1],[0,4]]}";
+        let message = answer(concave, false).unwrap_err();
+        for part in ["shapes.jsonl, line 2", "polygon[2] = [1.0,1.0]", "--areas"] {
+            assert!(message.contains(part), "{part} is not in {message}");
+        }
+        assert!(answer(concave, true).is_ok());
+        for (line, part) in [
+            (r#"{"polygon":[[0,0],[1e30,0],[0,1]]}"#, "polygon[1] = [1e30,0.0]"),
+            (r#"{"polygon":[],"grid":{"cell":[0,1]}}"#, "grid.cell = [0.0,1.0]"),
+            (r#"{"polygon":[[0,0],[1e999,0]]}"#, "number out of range"),
+            (r#"{"polgyon":[]}"#, "unknown field `polgyon`"),
+            (r#"{"polygon":[[0,0],[1e7,0],[1e7,1e7]]}"#, "larger grid.cell"),
+            ("nonsense", "a line looks like"),
+        ] {
+            let message = answer(line, false).unwrap_err();
+            assert!(message.contains(part), "{part} is not in {message}");
+        }
+    }
+}
