@@ -2,34 +2,32 @@
 
 use glam::DVec2;
 
-/// A half-plane `{p : normal · p + offset ≥ 0}`.
+/// A half-plane `{p : normal · (p − anchor) + offset ≥ 0}`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfPlane {
+    /// A point near which values are most accurate; on the border if `offset` is 0.
+    pub anchor: DVec2,
     /// Points into the half-plane; need not be a unit vector.
     pub normal: DVec2,
-    /// Value at the origin.
+    /// Value at the anchor.
     pub offset: f64,
 }
 
 impl HalfPlane {
     /// The half-plane to the left of the directed line `a → b` (the inner side of an edge of a
     /// polygon with positive signed area).
-    ///
-    /// The line is described from `a`, so for points near `a` the value suffers no cancellation
-    /// that the coordinates themselves do not carry.
     #[must_use]
     #[inline]
     pub fn left_of(a: DVec2, b: DVec2) -> Self {
         let d = b - a;
-        let normal = DVec2::new(-d.y, d.x);
-        Self { normal, offset: -normal.dot(a) }
+        Self { anchor: a, normal: DVec2::new(-d.y, d.x), offset: 0.0 }
     }
 
     /// Signed distance of `p`, scaled by the length of the normal.
     #[must_use]
     #[inline]
     pub fn value(&self, p: DVec2) -> f64 {
-        self.normal.dot(p) + self.offset
+        self.normal.dot(p - self.anchor) + self.offset
     }
 }
 
@@ -236,9 +234,9 @@ pub fn bounds(points: &[DVec2]) -> (DVec2, DVec2) {
 /// Relative slack of [`has_separating_edge`], in units of edge length times distance.
 ///
 /// Neighbours share the end points of their cuts bit for bit, so that their common edge separates
-/// them up to the rounding of one cross product of cell-sized numbers; a thousand ulp are generous
-/// and still far below any area that can be seen.
-const SEPARATION_SLACK: f64 = 1e-13;
+/// them up to the rounding of coordinates in the thousands; an overlap this thin is far below any
+/// area that can be seen.
+const SEPARATION_SLACK: f64 = 2e-12;
 
 /// Whether some edge of the convex ring `a` (positive order) has every point of `b` on or beyond it.
 #[must_use]
@@ -301,7 +299,7 @@ mod tests {
         for i in 0..64 {
             let angle = f64::from(i) * 0.1;
             let (n, c) = (DVec2::from_angle(angle), dvec2(0.5, 0.5));
-            polygon = polygon.clipped(&HalfPlane { normal: -n, offset: n.dot(c) + 0.48 });
+            polygon = polygon.clipped(&HalfPlane { anchor: c, normal: -n, offset: 0.48 });
         }
         assert!(polygon.vertices().len() <= MAX_VERTICES);
         let disc = std::f64::consts::PI * 0.48 * 0.48;

@@ -32,6 +32,13 @@ impl Face {
         self.plane.at(p).max(self.nearness.0).min(self.nearness.1)
     }
 
+    /// The point of the face at a grid position.
+    #[must_use]
+    pub fn point(&self, lens: &Lens, grid: DVec2) -> SurfacePoint {
+        let nearness = self.nearness_at(grid);
+        SurfacePoint { grid, nearness, barycentric: self.barycentric(lens.unproject(grid, nearness)) }
+    }
+
     /// Barycentric coordinates of a point of the plane (lens frame), kept within the triangle.
     #[must_use]
     pub fn barycentric(&self, p: DVec3) -> DVec3 {

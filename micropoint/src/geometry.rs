@@ -97,6 +97,17 @@ const FAN_OUT: usize = 4;
 #[derive(Clone, Debug, Default)]
 pub struct HiddenSides(pub(crate) Vec<i8>);
 
+impl HiddenSides {
+    /// The other sides: those that the viewer can see. Skipping these instead leaves the same
+    /// silhouettes, which is what a light needs; and what then casts shadow faces away from the light,
+    /// so that a lit surface never meets itself.
+    #[must_use]
+    pub fn opposite(mut self) -> Self {
+        self.0.iter_mut().for_each(|s| *s = -*s);
+        self
+    }
+}
+
 /// A scene's triangles in clusters, with a hierarchy of bounds and knowledge of closed components.
 #[derive(Clone, Debug)]
 pub struct Geometry {

@@ -48,6 +48,7 @@ mod render;
 mod resolve;
 mod tile;
 mod view;
+mod volume;
 
 pub use error::MicropointError;
 pub use face::{
@@ -55,8 +56,9 @@ pub use face::{
 };
 pub use geometry::{Bounds, Cluster, ClusterQueue, Geometry, HiddenSides, Surface, Triangle};
 pub use lens::{Lens, LensKind, Plane, TIE};
-pub use occlude::{Region, Regions};
+pub use occlude::{Front, Layer, Region, Regions, are_disjoint, in_front};
 pub use render::{Fragment, Micropoint, MicropointOptions, Renderer, Tile};
 pub use resolve::Occlusion;
 pub use tile::TileCounts;
+pub use volume::ViewVolume;
 pub use view::{PixelRect, Projection, View};

@@ -1,5 +1,7 @@
 //! What is left of a polygon behind other polygons, exactly: the kernel of hiding and of shadow.
 
+use crate::face::Face;
+use crate::lens::Lens;
 use glam::DVec2;
 use pointillist_dice::{ConvexPolygon, HalfPlane};
 
@@ -105,6 +107,78 @@ impl Regions {
     }
 }
 
+/// Whether two convex polygons have no common interior, within rounding.
+#[must_use]
+#[inline]
+pub fn are_disjoint(a: &ConvexPolygon, b: &ConvexPolygon) -> bool {
+    a.has_separating_edge(b.vertices()) || b.has_separating_edge(a.vertices())
+}
+
+/// A polygon on a face, with its range of nearness.
+#[derive(Clone, Copy)]
+pub struct Layer<'a> {
+    /// The face it lies on.
+    pub face: &'a Face,
+    /// Its outline; [`in_front`] says in which frame.
+    pub outline: &'a ConvexPolygon,
+    /// Smallest and largest nearness over the outline.
+    pub nearness: (f64, f64),
+}
+
+/// Where one layer is nearer than another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Front {
+    /// Nowhere on their common area.
+    Nowhere,
+    /// On all of their common area.
+    Everywhere,
+    /// On this side of the line in which they cross.
+    Within(HalfPlane),
+}
+
+/// Where `upper` is in front of `lower`, over their common area; outlines are relative to `corner`.
+///
+/// Coincident layers (see [`Lens::tie`]) are in front of each other if `if_coincident` says so. Nearness
+/// is affine on either, so its extremes are at corners of the common area and the line of equal
+/// nearness is straight.
+#[must_use]
+pub fn in_front(
+    lens: &Lens,
+    corner: DVec2,
+    upper: Layer<'_>,
+    lower: Layer<'_>,
+    if_coincident: bool,
+) -> Front {
+    let (fu, fl) = (&upper.face.plane, &lower.face.plane);
+    let tie = lens.tie(lower.nearness.1, fu.slope.abs() + fl.slope.abs());
+    if upper.nearness.0 >= lower.nearness.1 + tie {
+        return Front::Everywhere;
+    }
+    let mut common = *lower.outline;
+    let Some(&(mut previous)) = upper.outline.vertices().last() else { return Front::Nowhere };
+    for &v in upper.outline.vertices() {
+        common = common.clipped(&HalfPlane::left_of(previous, v));
+        previous = v;
+    }
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for &v in common.vertices() {
+        let difference = upper.face.nearness_at(v + corner) - lower.face.nearness_at(v + corner);
+        least = least.min(difference);
+        most = most.max(difference);
+    }
+    if common.is_empty() {
+        Front::Nowhere
+    } else if most <= tie {
+        if least >= -tie && if_coincident { Front::Everywhere } else { Front::Nowhere }
+    } else if least >= -tie {
+        Front::Everywhere
+    } else {
+        let anchor = lower.outline.vertices()[0];
+        let offset = fu.at(anchor + corner) - fl.at(anchor + corner);
+        Front::Within(HalfPlane { anchor, normal: fu.slope - fl.slope, offset })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,7 +211,7 @@ mod tests {
     #[test]
     fn the_front_half_plane_limits_an_occluder() {
         let cell = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
-        let front = HalfPlane { normal: dvec2(1.0, 0.0), offset: -0.25 };
+        let front = HalfPlane { anchor: dvec2(0.25, 0.0), normal: dvec2(1.0, 0.0), offset: 0.0 };
         let mut regions = Regions::default();
         regions.start(cell, 1e-12);
         regions.attenuate(cell.vertices(), Some(front), |_| 1.0);

@@ -6,7 +6,7 @@ use crate::geometry::{Geometry, HiddenSides};
 use crate::lens::Lens;
 use crate::occlude::Regions;
 use crate::resolve::{Occlusion, Visible, resolve_by_layers, resolve_exactly};
-use crate::tile::{DiceJob, Dicer, TileCounts, surface_point};
+use crate::tile::{DiceJob, Dicer, TileCounts};
 use crate::view::{PixelRect, View};
 use glam::{DVec2, DVec3};
 use pointillist_dice::{CellWindow, ConvexPolygon};
@@ -148,7 +148,7 @@ impl Tile {
     /// If no tile has been rendered yet.
     #[must_use]
     pub fn surface_point(&self, face: u32, grid: DVec2) -> SurfacePoint {
-        surface_point(self.lens(), &self.faces()[face as usize], grid)
+        self.faces()[face as usize].point(self.lens(), grid)
     }
 
     /// Position of a point of a face relative to the eye, in world axes.

@@ -1,10 +1,9 @@
 //! From the parts in a cell to what is seen of them.
 
 use crate::lens::Lens;
-use crate::occlude::Regions;
-use crate::tile::{Dicer, Part, are_disjoint};
+use crate::occlude::{Front, Layer, Regions, are_disjoint, in_front};
+use crate::tile::Dicer;
 use glam::DVec2;
-use pointillist_dice::{ConvexPolygon, HalfPlane};
 
 /// How parts in one cell hide one another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -109,7 +108,11 @@ fn hide(dicer: &Dicer, regions: &mut Regions, lens: &Lens, corner: DVec2, order:
         if are_disjoint(&polygon, &outline) {
             continue;
         }
-        let front = match in_front(dicer, lens, corner, (other, &outline), (part, &polygon), j < i) {
+        let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
+        let upper = Layer { face: fo, outline: &outline, nearness: other.nearness };
+        let lower = Layer { face: fp, outline: &polygon, nearness: part.nearness };
+        // Coincident parts hide one another in their sorting order.
+        let front = match in_front(lens, corner, upper, lower, j < i) {
             Front::Nowhere => continue,
             Front::Everywhere => None,
             Front::Within(half) => Some(half),
@@ -125,55 +128,6 @@ fn hide(dicer: &Dicer, regions: &mut Regions, lens: &Lens, corner: DVec2, order:
         }
     }
     touched
-}
-
-/// Where one part is nearer than another.
-enum Front {
-    Nowhere,
-    Everywhere,
-    Within(HalfPlane),
-}
-
-/// Where `other` is in front of `part`, over their common area. Coincident parts hide one another in
-/// their sorting order (`first`: `other` comes before `part`).
-fn in_front(
-    dicer: &Dicer,
-    lens: &Lens,
-    corner: DVec2,
-    (other, outline): (&Part, &ConvexPolygon),
-    (part, polygon): (&Part, &ConvexPolygon),
-    first: bool,
-) -> Front {
-    let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
-    let tie = lens.tie(part.nearness.1, fo.plane.slope.abs() + fp.plane.slope.abs());
-    if other.nearness.0 >= part.nearness.1 + tie {
-        return Front::Everywhere;
-    }
-    let mut common = *polygon;
-    let mut previous = outline.vertices()[outline.vertices().len() - 1];
-    for &v in outline.vertices() {
-        common = common.clipped(&HalfPlane::left_of(previous, v));
-        previous = v;
-    }
-    let mut least = f64::INFINITY;
-    let mut most = f64::NEG_INFINITY;
-    for &v in common.vertices() {
-        let difference = fo.nearness_at(v + corner) - fp.nearness_at(v + corner);
-        least = least.min(difference);
-        most = most.max(difference);
-    }
-    if common.is_empty() {
-        Front::Nowhere
-    } else if most <= tie {
-        if least >= -tie && first { Front::Everywhere } else { Front::Nowhere }
-    } else if least >= -tie {
-        Front::Everywhere
-    } else {
-        // They cross: nearness is affine on both, so the line of equal depth is straight.
-        let normal = fo.plane.slope - fp.plane.slope;
-        let offset = fo.plane.at(corner) - fp.plane.at(corner);
-        Front::Within(HalfPlane { normal, offset })
-    }
 }
 
 /// Resolves one cell under the paper's rule.

@@ -1,8 +1,10 @@
 //! The bucket of cells that one thread finishes: faces diced into parts, nearest first.
 
 use crate::face::{Face, GridRect, ProjectedVertex, SurfacePoint, TexturedOpacity, set_up_face};
-use crate::geometry::{Bounds, ClusterQueue, Geometry, HiddenSides};
+use crate::geometry::{ClusterQueue, Geometry, HiddenSides};
 use crate::lens::{Lens, LensKind};
+use crate::occlude::are_disjoint;
+use crate::volume::ViewVolume;
 use glam::{DVec2, DVec3, IVec2};
 use pointillist_dice::{CellWindow, ConvexPolygon, Cut, convex, cut};
 use std::cmp::Ordering;
@@ -147,11 +149,13 @@ impl Dicer {
     /// Dices everything that may be visible in the window.
     pub(crate) fn dice(&mut self, job: &DiceJob<'_>, window: CellWindow) {
         self.reset(window);
-        let sides = TileSides::new(job.lens, window);
+        let low = DVec2::new(f64::from(window.x0), f64::from(window.y0));
+        let high = DVec2::new(f64::from(window.x1), f64::from(window.y1));
+        let volume = ViewVolume::new(job.lens, &GridRect { low, high });
         let mut queue = std::mem::take(&mut self.queue);
         let skipped = job.geometry.visit_near_to_far(
             &mut queue,
-            |bounds| sides.nearest_depth(bounds),
+            |bounds| volume.nearest_depth(bounds),
             |cluster| {
                 self.dice_cluster(job, cluster);
                 self.farthest_visible(job.lens)
@@ -488,11 +492,6 @@ impl Dicer {
         ConvexPolygon::from_vertices(&self.vertices[first..first + part.vertex_count as usize])
     }
 
-    /// Whether a part fills its cell.
-    pub(crate) fn is_whole(part: &Part) -> bool {
-        part.vertex_count == 0
-    }
-
     /// How many of a cell's parts, nearest first, are known to tile it and to hide the others.
     pub(crate) fn tiling(&self, cell: usize) -> Option<usize> {
         let c = &self.cells[cell];
@@ -504,62 +503,12 @@ impl Dicer {
     }
 }
 
-/// Whether two convex polygons have no common interior, within rounding.
-pub(crate) fn are_disjoint(a: &ConvexPolygon, b: &ConvexPolygon) -> bool {
-    a.has_separating_edge(b.vertices()) || b.has_separating_edge(a.vertices())
-}
-
 fn mean_opacity(job: &DiceJob<'_>, face: &Face, corner: DVec2, local: &[DVec2]) -> f32 {
     let mut points = [SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, barycentric: DVec3::ZERO }; convex::MAX_VERTICES];
     for (to, &v) in points.iter_mut().zip(local) {
-        *to = surface_point(job.lens, face, v + corner);
+        *to = face.point(job.lens, v + corner);
     }
     let mean = job.opacity.mean_opacity(face.id, &points[..local.len()]);
     let surface = job.geometry.surfaces()[face.surface as usize];
     (mean * surface.opacity).clamp(0.0, 1.0)
-}
-
-/// A grid position on a face.
-pub(crate) fn surface_point(lens: &Lens, face: &Face, grid: DVec2) -> SurfacePoint {
-    let nearness = face.nearness_at(grid);
-    SurfacePoint { grid, nearness, barycentric: face.barycentric(lens.unproject(grid, nearness)) }
-}
-
-/// The sides of a tile's view volume as planes through the world.
-struct TileSides {
-    origin: DVec3,
-    forward: DVec3,
-    planes: [(DVec3, f64); 4],
-}
-
-impl TileSides {
-    fn new(lens: &Lens, w: CellWindow) -> Self {
-        let side = |axis: DVec3, line: f64, sign: f64| match lens.kind {
-            LensKind::Perspective => (sign * (axis - lens.forward * line), 0.0),
-            LensKind::Orthographic => (sign * axis, -sign * line),
-        };
-        let (x, y) = (lens.right * lens.scale.x, lens.down * lens.scale.y);
-        Self {
-            origin: lens.origin,
-            forward: lens.forward,
-            planes: [
-                side(x, f64::from(w.x0) - lens.centre.x, 1.0),
-                side(x, f64::from(w.x1) - lens.centre.x, -1.0),
-                side(y, f64::from(w.y0) - lens.centre.y, 1.0),
-                side(y, f64::from(w.y1) - lens.centre.y, -1.0),
-            ],
-        }
-    }
-
-    /// Least depth of a box, or `None` if it is outside.
-    #[inline]
-    fn nearest_depth(&self, bounds: &Bounds) -> Option<f64> {
-        for (normal, offset) in &self.planes {
-            if bounds.extent_along(self.origin, *normal).1 + offset < 0.0 {
-                return None;
-            }
-        }
-        let (near, far) = bounds.extent_along(self.origin, self.forward);
-        (far >= 0.0).then_some(near.max(0.0))
-    }
 }

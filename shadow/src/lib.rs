@@ -1,1 +1,34 @@
-//! TBD
+//! How much of a light reaches each visible piece of a surface, without shadow maps, bias or rays.
+//!
+//! The *shape* of each visible piece is carried to the light ([1], §4): projected onto a light screen
+//! and compared there with the triangles between it and the light. What is left of its area is the
+//! lit fraction.
+//!
+//! # Accuracy and cost
+//! Under the correlated rule the fraction is exact up to rounding: receivers are clipped by their
+//! casters, and two surfaces are compared by their planes, so that no bias is needed and neighbours
+//! never darken each other. Cost: one projection per receiver, and a cut per receiver on a shadow edge;
+//! groups of receivers without casters, and groups behind one large caster, are settled as a whole.
+//!
+//! # Features
+//! `rayon` (default) is passed on to `pointillist-micropoint`. `invariants`: facts for property tests
+//! and fuzzing.
+//!
+//! # References
+//! 1. M. Takakuwa, K. Iigura: *MicroPoint Based Shadow*, §4.
+//! 2. P. Atherton, K. Weiler, D. Greenberg: *Polygon shadow generation*, SIGGRAPH 1978.
+#![forbid(unsafe_code)]
+
+mod error;
+mod exact;
+mod layers;
+mod light;
+mod receiver;
+mod scratch;
+mod screen;
+
+pub use error::ShadowError;
+pub use light::{Resolution, ShadowLight, ShadowOptions};
+pub use receiver::{Receivers, Viewer};
+pub use scratch::{ShadowCounts, ShadowScratch};
+pub use screen::Emitter;

@@ -1,0 +1,75 @@
+//! The correlated rule: a receiver minus everything that stands in its light.
+
+use crate::light::{Measure, Query};
+use crate::scratch::{Caster, Target, Work, limit};
+use pointillist_micropoint::{Face, Layer, are_disjoint, in_front};
+use std::cmp::Ordering;
+
+/// Overlaps below this share of a receiver are rounding.
+const NEGLIGIBLE: f64 = 1e-9;
+
+/// The lit fraction of a target, 0..=1.
+pub(crate) fn lit_fraction(
+    query: &Query<'_>,
+    target: &Target,
+    face: &Face,
+    nearby: &[u32],
+    measure: &Measure<'_>,
+    work: &mut Work,
+) -> f64 {
+    find_blockers(query, target, face, nearby, work);
+    if work.blockers.is_empty() {
+        return 1.0;
+    }
+    // The result must not depend on the order in which casters were found.
+    work.blockers.sort_unstable_by(|a, b| compare(&query.casters[a.0 as usize], &query.casters[b.0 as usize]));
+    work.partial += 1;
+    work.regions.start(target.polygon, NEGLIGIBLE * target.area);
+    for &(c, limit) in &work.blockers {
+        let caster = &query.casters[c as usize];
+        work.regions.attenuate(caster.polygon.vertices(), limit, |p| query.opacity(caster, p));
+        if work.regions.is_hidden() {
+            return 0.0;
+        }
+    }
+    let whole = target.area * measure.at(target.polygon.area_and_centroid().1);
+    let mut lit = 0.0;
+    for region in work.regions.list() {
+        let (area, centroid) = region.polygon.area_and_centroid();
+        lit += area * region.transmittance * measure.at(centroid);
+    }
+    if whole > 0.0 { (lit / whole).min(1.0) } else { 0.0 }
+}
+
+/// Collects the casters that overlap the target and stand before it.
+fn find_blockers(query: &Query<'_>, target: &Target, face: &Face, nearby: &[u32], work: &mut Work) {
+    work.blockers.clear();
+    let (low, high) = target.bounds;
+    for &c in nearby {
+        let caster = &query.casters[c as usize];
+        let overlaps = caster.bounds.0.cmplt(high).all() && caster.bounds.1.cmpgt(low).all();
+        if !overlaps || caster.face.nearness.1 < target.nearness.0 || caster.face.id == face.id {
+            continue;
+        }
+        if are_disjoint(&caster.polygon, &target.polygon) {
+            continue;
+        }
+        let upper = Layer { face: &caster.face, outline: &caster.polygon, nearness: caster.face.nearness };
+        let lower = Layer { face, outline: &target.polygon, nearness: target.nearness };
+        if let Some(half) = limit(in_front(query.lens, glam::DVec2::ZERO, upper, lower, false)) {
+            work.blockers.push((c, half));
+        }
+    }
+}
+
+/// Nearest to the light first, then by place; the triangle's number only between equals.
+pub(crate) fn compare(a: &Caster, b: &Caster) -> Ordering {
+    let key = |c: &Caster| {
+        let (low, high) = c.bounds;
+        [-c.face.nearness.1, -c.face.nearness.0, low.x, low.y, high.x, high.y]
+    };
+    let (ka, kb) = (key(a), key(b));
+    let places = ka.iter().zip(&kb).map(|(x, y)| x.total_cmp(y));
+    let by_place = places.fold(Ordering::Equal, Ordering::then);
+    by_place.then((a.face.surface, a.face.id).cmp(&(b.face.surface, b.face.id)))
+}

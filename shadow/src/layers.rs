@@ -1,0 +1,138 @@
+//! The paper's rule (§4.2.5): in each light cell, opacity adds up from the light outward.
+
+use crate::light::Query;
+use crate::scratch::{Target, Work};
+use glam::{DVec2, IVec2};
+use pointillist_dice::{CellWindow, ConvexPolygon, Cut, HalfPlane, cut};
+use pointillist_micropoint::Face;
+
+/// What a caster does to one light cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cast {
+    nearness: (f64, f64),
+    opacity: f64,
+}
+
+/// Depth ranges closer than this, relative to their nearness, touch.
+const TOUCH: f64 = 1e-7;
+
+/// Shadow micropoints per receiver beyond which the cells are made larger: a fixed grid may be finer
+/// than any receiver, and the cost would be without bound.
+const MOST_CELLS: f64 = 256.0;
+
+/// The lit fraction of a target: cut by the light grid into shadow micropoints, each of which gets
+/// what the layers nearer to the light let through in its cell.
+///
+/// Without a fixed cell size, a cell is the smallest power of two that is no smaller than the target.
+pub(crate) fn lit_fraction(
+    query: &Query<'_>,
+    target: &Target,
+    face: &Face,
+    nearby: &[u32],
+    cell: Option<f64>,
+    work: &mut Work,
+) -> f64 {
+    let extent = (target.bounds.1 - target.bounds.0).max_element();
+    let size = match cell {
+        Some(size) => size.max(extent / MOST_CELLS.sqrt()),
+        None => extent.max(f64::MIN_POSITIVE).log2().ceil().exp2(),
+    };
+    work.partial += 1;
+    let mut cells = Vec::new();
+    cut_by_cells(&target.polygon, size, |cell, piece| cells.push((cell, *piece)));
+    let (mut lit, mut total) = (0.0, 0.0);
+    for (cell, piece) in &cells {
+        let area = piece.area();
+        total += area;
+        lit += area * transmittance(query, face, piece, *cell, size, nearby, work);
+    }
+    if total > 0.0 { (lit / total).min(1.0) } else { 1.0 }
+}
+
+/// Cuts a polygon of the light grid by cells of the given size; pieces come back in grid units.
+fn cut_by_cells(polygon: &ConvexPolygon, size: f64, mut visit: impl FnMut(IVec2, &ConvexPolygon)) {
+    let scaled: Vec<DVec2> = polygon.vertices().iter().map(|&v| v / size).collect();
+    let window = CellWindow { x0: -(1 << 30), y0: -(1 << 30), x1: 1 << 30, y1: 1 << 30 };
+    let limit = pointillist_dice::MAX_CUT_VERTICES;
+    cut(&scaled[..scaled.len().min(limit)], window, |part| match part {
+        Cut::Span { row, first, end } => {
+            for column in first..end {
+                let cell = IVec2::new(column, row);
+                let low = cell.as_dvec2() * size;
+                visit(cell, &ConvexPolygon::rectangle(low, low + size));
+            }
+        }
+        Cut::Piece { cell, polygon } => {
+            let mut piece = ConvexPolygon::EMPTY;
+            polygon.vertices().iter().for_each(|&v| piece.push(v * size));
+            visit(cell, &piece);
+        }
+    });
+}
+
+/// What reaches a shadow micropoint through the layers before it in its cell.
+fn transmittance(
+    query: &Query<'_>,
+    face: &Face,
+    piece: &ConvexPolygon,
+    cell: IVec2,
+    size: f64,
+    nearby: &[u32],
+    work: &mut Work,
+) -> f64 {
+    let low = cell.as_dvec2() * size;
+    let square = ConvexPolygon::rectangle(low, low + size);
+    work.layers.clear();
+    for &c in nearby {
+        let caster = &query.casters[c as usize];
+        let overlaps = caster.bounds.0.cmplt(low + size).all() && caster.bounds.1.cmpgt(low).all();
+        if !overlaps || caster.face.id == face.id {
+            continue;
+        }
+        let inside = clipped_to(&caster.polygon, &square);
+        let area = inside.area();
+        if inside.is_empty() || area <= 0.0 {
+            continue;
+        }
+        let nearness = range(&caster.face, &inside);
+        let opacity = area / (size * size) * query.opacity(caster, &inside);
+        work.layers.push(Cast { nearness, opacity });
+    }
+    let key = |c: &Cast| (-c.nearness.1, -c.nearness.0, c.opacity);
+    work.layers.sort_unstable_by(|a, b| {
+        let (ka, kb) = (key(a), key(b));
+        ka.0.total_cmp(&kb.0).then(ka.1.total_cmp(&kb.1)).then(ka.2.total_cmp(&kb.2))
+    });
+    let receiver = range(face, piece);
+    let mut passed = 1.0;
+    let mut i = 0;
+    while i < work.layers.len() {
+        let (mut bottom, mut opacity) = (work.layers[i].nearness.0, work.layers[i].opacity);
+        i += 1;
+        while i < work.layers.len() && work.layers[i].nearness.1 >= bottom - TOUCH * bottom.abs() {
+            bottom = bottom.min(work.layers[i].nearness.0);
+            opacity += work.layers[i].opacity;
+            i += 1;
+        }
+        // The receiver's own layer, and all that lie behind, do not shade it.
+        if bottom <= receiver.1 + TOUCH * receiver.1.abs() {
+            break;
+        }
+        passed *= 1.0 - opacity.min(1.0);
+    }
+    passed
+}
+
+fn clipped_to(polygon: &ConvexPolygon, square: &ConvexPolygon) -> ConvexPolygon {
+    let corners = square.vertices();
+    let mut inside = *polygon;
+    for i in 0..corners.len() {
+        inside = inside.clipped(&HalfPlane::left_of(corners[i], corners[(i + 1) % corners.len()]));
+    }
+    inside
+}
+
+fn range(face: &Face, polygon: &ConvexPolygon) -> (f64, f64) {
+    let start = (f64::INFINITY, f64::NEG_INFINITY);
+    polygon.vertices().iter().map(|&v| face.nearness_at(v)).fold(start, |(l, h), q| (l.min(q), h.max(q)))
+}

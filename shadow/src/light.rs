@@ -1,0 +1,367 @@
+//! One light and the fractions of it that reach receivers.
+
+use crate::error::ShadowError;
+use crate::exact;
+use crate::layers;
+use crate::receiver::{Receivers, Viewer};
+use crate::scratch::{Caster, LitFace, ShadowScratch, Side, Target};
+use crate::screen::{Emitter, Screens};
+use glam::{DVec2, DVec3};
+use pointillist_dice::{ConvexPolygon, convex};
+use pointillist_micropoint::{
+    Face, Geometry, GridRect, Lens, LensKind, Occlusion, ProjectedVertex, TexturedOpacity, ViewVolume, set_up_face,
+};
+
+/// How fine the light grid is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Resolution {
+    /// As the receivers need it: a light cell is about as large as a receiver.
+    #[default]
+    Auto,
+    /// This many cells per side of a light screen.
+    Cells(u32),
+}
+
+/// How shadows are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct ShadowOptions {
+    /// How casters in one light cell hide a receiver. Default: correlated, that is, exactly.
+    pub occlusion: Occlusion,
+    /// Light cells. Default: chosen from the receivers. Changes the result under the paper's rule
+    /// only; under the correlated rule the grid merely sorts casters.
+    pub resolution: Resolution,
+}
+
+impl ShadowOptions {
+    /// Sets the occlusion rule.
+    #[must_use]
+    pub const fn with_occlusion(mut self, occlusion: Occlusion) -> Self {
+        self.occlusion = occlusion;
+        self
+    }
+
+    /// Sets the resolution of the light grid.
+    #[must_use]
+    pub const fn with_resolution(mut self, resolution: Resolution) -> Self {
+        self.resolution = resolution;
+        self
+    }
+}
+
+/// A light with its screens, ready to be asked from any thread.
+pub struct ShadowLight<'a> {
+    geometry: &'a Geometry,
+    opacity: &'a dyn TexturedOpacity,
+    emitter: Emitter,
+    screens: Screens,
+    options: ShadowOptions,
+}
+
+impl<'a> ShadowLight<'a> {
+    /// Sets up the screens of a light.
+    ///
+    /// # Errors
+    /// [`ShadowError`] if the light has no usable position or direction, or the resolution is 0 or
+    /// above 2²⁰.
+    pub fn new(
+        geometry: &'a Geometry,
+        opacity: &'a dyn TexturedOpacity,
+        emitter: Emitter,
+        options: ShadowOptions,
+    ) -> Result<Self, ShadowError> {
+        if let Resolution::Cells(n) = options.resolution
+            && !(1..=1 << 20).contains(&n)
+        {
+            return Err(ShadowError::BadResolution(n));
+        }
+        let screens = Screens::new(emitter, geometry)?;
+        Ok(Self { geometry, opacity, emitter, screens, options })
+    }
+
+    /// The fraction of this light, 0..=1, that reaches each receiver, in their order.
+    ///
+    /// A receiver that shows the viewer a side turned away from the light gets 0. What a receiver gets
+    /// depends on the receiver, the viewer and the scene only, not on its companions.
+    pub fn lit(&self, viewer: Viewer<'_>, receivers: &Receivers, scratch: &mut ShadowScratch, lit: &mut Vec<f64>) {
+        scratch.begin(receivers.len(), viewer.faces.len());
+        self.collect_targets(viewer, receivers, scratch);
+        for screen in 0..self.screens.lenses.len() {
+            if scratch.sort_targets_into_groups(screen, self.options.resolution, self.screens.size) {
+                scratch.counts.screens += 1;
+                self.collect_casters(screen, scratch);
+                self.resolve_groups(screen, viewer, scratch);
+            }
+        }
+        lit.clear();
+        lit.extend(scratch.sums.iter().map(|s| if s.total > 0.0 { (s.lit / s.total).clamp(0.0, 1.0) } else { 0.0 }));
+    }
+
+    /// Receivers on lit sides, on the screens that see them.
+    fn collect_targets(&self, viewer: Viewer<'_>, receivers: &Receivers, scratch: &mut ShadowScratch) {
+        scratch.counts.receivers += receivers.list.len() as u64;
+        for (index, r) in receivers.list.iter().enumerate() {
+            let face = &viewer.faces[r.face as usize];
+            let side = match scratch.sides[r.face as usize] {
+                Side::Unknown => self.lit_side(face),
+                known => known,
+            };
+            scratch.sides[r.face as usize] = side;
+            if side == Side::Dark {
+                scratch.counts.facing_away += 1;
+                continue;
+            }
+            let corners = receivers.corners(r);
+            let offset = viewer.lens.origin - self.screens.lenses[0].origin;
+            let sees_all = |s: &usize| corners.iter().all(|&c| self.screens.sees(*s, c + offset));
+            let count = self.screens.lenses.len();
+            let known = usize::from(scratch.last_screen).min(count - 1);
+            if let Some(screen) = std::iter::once(known).chain(0..count).find(sees_all) {
+                scratch.last_screen = screen as u8;
+                let lens = &self.screens.lenses[screen];
+                let outline = corners.iter().map(|&c| lens.project(lens.local_vector(c + offset)));
+                self.push_target(index, r.face, face, screen, outline, scratch);
+            } else {
+                for screen in 0..count {
+                    self.push_clipped(index, r.face, face, screen, corners, offset, scratch);
+                }
+            }
+        }
+    }
+
+    fn lit_side(&self, face: &Face) -> Side {
+        let [a, b, c] = self.geometry.corners(face.source.0, face.source.1);
+        let normal = (b - a).cross(c - a);
+        let towards = match self.emitter {
+            Emitter::Point { position, .. } => normal.dot(position - a),
+            Emitter::Directional { direction } => -normal.dot(direction),
+        };
+        if (face.front && towards > 0.0) || (!face.front && towards < 0.0) { Side::Lit } else { Side::Dark }
+    }
+
+    /// A receiver across the edge of a screen: the part that this screen sees.
+    #[cold]
+    fn push_clipped(
+        &self,
+        receiver: usize,
+        face_index: u32,
+        face: &Face,
+        screen: usize,
+        corners: &[DVec3],
+        offset: DVec3,
+        scratch: &mut ShadowScratch,
+    ) {
+        let lens = &self.screens.lenses[screen];
+        let mut ring: Vec<DVec3> = corners.iter().map(|&c| lens.local_vector(c + offset)).collect();
+        let sides = [DVec3::new(1.0, 0.0, 1.0), DVec3::new(-1.0, 0.0, 1.0), DVec3::new(0.0, 1.0, 1.0), DVec3::new(0.0, -1.0, 1.0)];
+        for normal in sides {
+            let mut clipped = Vec::with_capacity(ring.len() + 1);
+            for (i, &a) in ring.iter().enumerate() {
+                let b = ring[(i + 1) % ring.len()];
+                let (va, vb) = (normal.dot(a), normal.dot(b));
+                if va >= 0.0 {
+                    clipped.push(a);
+                }
+                if (va >= 0.0) != (vb >= 0.0) {
+                    clipped.push(a + (b - a) * (va / (va - vb)));
+                }
+            }
+            ring = clipped;
+        }
+        if ring.len() >= 3 && ring.iter().all(|p| p.z > 0.0) {
+            self.push_target(receiver, face_index, face, screen, ring.iter().map(|&p| lens.project(p)), scratch);
+        }
+    }
+
+    fn push_target(
+        &self,
+        receiver: usize,
+        face_index: u32,
+        face: &Face,
+        screen: usize,
+        outline: impl Iterator<Item = DVec2>,
+        scratch: &mut ShadowScratch,
+    ) {
+        let mut polygon = ConvexPolygon::EMPTY;
+        outline.for_each(|p| polygon.push(p));
+        let area = polygon.area();
+        if area < 0.0 {
+            let mut reversed = ConvexPolygon::EMPTY;
+            polygon.vertices().iter().rev().for_each(|&p| reversed.push(p));
+            polygon = reversed;
+        }
+        let lit_face = scratch.lit_face(face_index, screen, || self.face_on_screen(face, screen));
+        let plane_face = &scratch.lit_faces[lit_face as usize].face;
+        let mut nearness = (f64::INFINITY, f64::NEG_INFINITY);
+        for &v in polygon.vertices() {
+            let q = plane_face.nearness_at(v);
+            nearness = (nearness.0.min(q), nearness.1.max(q));
+        }
+        let bounds = polygon.bounds();
+        scratch.targets.push(Target {
+            receiver: receiver as u32,
+            screen: screen as u8,
+            lit_face,
+            bounds,
+            nearness,
+            area: area.abs(),
+            polygon,
+        });
+    }
+
+    /// The receiver's own triangle as the light sees it: casters are compared with its plane.
+    fn face_on_screen(&self, face: &Face, screen: usize) -> Face {
+        let lens = &self.screens.lenses[screen];
+        let corners = self.geometry.corners(face.source.0, face.source.1).map(|p| lens.local(p));
+        let least = corners.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+        let nearness = if lens.kind == LensKind::Perspective && least <= 0.0 {
+            (0.0, f64::INFINITY)
+        } else {
+            let q = corners.map(|p| lens.nearness(p.z));
+            (q[0].min(q[1]).min(q[2]), q[0].max(q[1]).max(q[2]))
+        };
+        Face { corners, nearness, plane: lens.plane(corners), ..*face }
+    }
+
+    /// Finds the triangles between the light and the targets, and links them to the groups that they
+    /// may darken.
+    fn collect_casters(&self, screen: usize, scratch: &mut ShadowScratch) {
+        let lens = &self.screens.lenses[screen];
+        let rect = GridRect { low: scratch.low, high: scratch.high };
+        let volume = ViewVolume::new(lens, &rect);
+        let farthest = lens.depth(scratch.least_nearness);
+        let mut queue = std::mem::take(&mut scratch.queue);
+        let skipped = self.geometry.visit_near_to_far(
+            &mut queue,
+            |bounds| volume.nearest_depth(bounds).filter(|&d| d <= farthest),
+            |cluster| {
+                self.link_cluster(lens, cluster, scratch);
+                if scratch.open_groups == 0 { f64::NEG_INFINITY } else { farthest }
+            },
+        );
+        scratch.counts.clusters_skipped += skipped;
+        scratch.queue = queue;
+    }
+
+    fn link_cluster(&self, lens: &Lens, cluster: u32, scratch: &mut ShadowScratch) {
+        let (_, vertices, triangles) = self.geometry.cluster(cluster);
+        scratch.counts.clusters += 1;
+        let mut projected = std::mem::take(&mut scratch.projected);
+        projected.clear();
+        projected.extend(vertices.iter().map(|&v| ProjectedVertex::new(lens, v)));
+        if scratch.concerns_any_group(lens, &projected) {
+            for (i, t) in triangles.iter().enumerate() {
+                let v = t.corners.map(|c| &projected[usize::from(c)]);
+                let surface = &self.geometry.surfaces()[t.surface as usize];
+                if surface.opacity <= 0.0 || scratch.misses_targets(v) {
+                    scratch.counts.casters_culled += 1;
+                    continue;
+                }
+                let (rect, hidden) = (&self.screens.rect, &self.screens.hidden);
+                match set_up_face(lens, rect, t, (cluster, i as u32), v, surface, hidden, true) {
+                    None => scratch.counts.casters_culled += 1,
+                    Some((face, outline)) => {
+                        let polygon = ConvexPolygon::from_vertices(outline.vertices());
+                        let opacity = if surface.textured_opacity { None } else { Some(f64::from(surface.opacity)) };
+                        scratch.link(Caster { face, bounds: polygon.bounds(), polygon, opacity });
+                    }
+                }
+            }
+        } else {
+            scratch.counts.casters_culled += triangles.len() as u64;
+        }
+        scratch.projected = projected;
+    }
+
+    fn resolve_groups(&self, screen: usize, viewer: Viewer<'_>, scratch: &mut ShadowScratch) {
+        let lens = &self.screens.lenses[screen];
+        let mut work = std::mem::take(&mut scratch.work);
+        let mut nearby = std::mem::take(&mut scratch.nearby);
+        for g in 0..scratch.groups.len() {
+            let group = scratch.groups[g];
+            scratch.casters_of(&group, &mut nearby);
+            for t in group.first_target..group.end_target {
+                let target = &scratch.targets[scratch.target_order[t as usize] as usize];
+                let lit_face = &scratch.lit_faces[target.lit_face as usize];
+                let measure = Measure { lens, viewer: viewer.lens, face: &lit_face.face };
+                let total = target.area * measure.at(convex::area_and_centroid(target.polygon.vertices()).1);
+                let fraction = if group.dark {
+                    scratch.counts.dark_by_group += 1;
+                    0.0
+                } else if nearby.is_empty() {
+                    scratch.counts.lit_by_group += 1;
+                    1.0
+                } else {
+                    let query = Query { lens, geometry: self.geometry, opacity: self.opacity, casters: &scratch.casters };
+                    match self.options.occlusion {
+                        Occlusion::Correlated => {
+                            exact::lit_fraction(&query, target, &lit_face.face, &nearby, &measure, &mut work)
+                        }
+                        Occlusion::Paper => {
+                            let cell = match self.options.resolution {
+                                Resolution::Auto => None,
+                                Resolution::Cells(n) => Some(self.screens.size / f64::from(n)),
+                            };
+                            layers::lit_fraction(&query, target, &lit_face.face, &nearby, cell, &mut work)
+                        }
+                    }
+                };
+                let sum = &mut scratch.sums[target.receiver as usize];
+                // A receiver on one screen keeps a fraction of 0 or 1 to the last bit.
+                let total = if total > 0.0 && total.is_finite() { total } else { f64::MIN_POSITIVE };
+                sum.total += total;
+                sum.lit += total * fraction;
+            }
+        }
+        scratch.work = work;
+        scratch.nearby = nearby;
+    }
+}
+
+/// What casters are looked up with.
+pub(crate) struct Query<'a> {
+    pub(crate) lens: &'a Lens,
+    pub(crate) geometry: &'a Geometry,
+    pub(crate) opacity: &'a dyn TexturedOpacity,
+    pub(crate) casters: &'a [Caster],
+}
+
+impl Query<'_> {
+    /// Opacity of a caster over a polygon of the light grid.
+    pub(crate) fn opacity(&self, caster: &Caster, polygon: &ConvexPolygon) -> f64 {
+        caster.opacity.unwrap_or_else(|| {
+            let points: Vec<_> = polygon.vertices().iter().map(|&v| caster.face.point(self.lens, v)).collect();
+            let mean = self.opacity.mean_opacity(caster.face.id, &points);
+            let surface = self.geometry.surfaces()[caster.face.surface as usize];
+            f64::from((mean * surface.opacity).clamp(0.0, 1.0))
+        })
+    }
+}
+
+/// Area in the viewer's picture per area of the light grid, up to a factor that is constant on a face.
+///
+/// On a plane n·p = k an area element shrinks by |k|/depth³ when it is projected, for the viewer and
+/// for the light alike; the k are constants of the face and cancel in a fraction.
+pub(crate) struct Measure<'a> {
+    lens: &'a Lens,
+    viewer: &'a Lens,
+    face: &'a Face,
+}
+
+impl Measure<'_> {
+    pub(crate) fn at(&self, p: DVec2) -> f64 {
+        let nearness = self.face.nearness_at(p);
+        let local = self.lens.unproject(p, nearness);
+        let world = self.lens.to_world_axes(local) + (self.lens.origin - self.viewer.origin);
+        let light_depth = if self.lens.kind == LensKind::Perspective { local.z } else { 1.0 };
+        let viewer_depth =
+            if self.viewer.kind == LensKind::Perspective { self.viewer.forward.dot(world) } else { 1.0 };
+        (light_depth / viewer_depth).abs().powi(3)
+    }
+}
+
+impl LitFace {
+    pub(crate) fn new(screen: usize, face: Face) -> Self {
+        Self { screen: screen as u8, face }
+    }
+}

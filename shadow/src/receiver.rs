@@ -1,0 +1,70 @@
+//! What light falls on: convex pieces of surfaces, as a viewer sees them.
+
+use glam::DVec3;
+use pointillist_micropoint::{Face, Lens, Tile};
+
+/// Convex planar pieces that may be lit. Corners are relative to the viewer's lens, in world axes.
+#[derive(Debug, Default)]
+pub struct Receivers {
+    pub(crate) list: Vec<Receiver>,
+    pub(crate) vertices: Vec<DVec3>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Receiver {
+    pub(crate) face: u32,
+    pub(crate) first_vertex: u32,
+    pub(crate) vertex_count: u32,
+}
+
+impl Receivers {
+    /// Removes all pieces and keeps the memory.
+    pub fn clear(&mut self) {
+        self.list.clear();
+        self.vertices.clear();
+    }
+
+    /// Number of pieces.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Adds a piece of face `face` with these corners: convex, in any order of winding, at most eleven.
+    pub fn push(&mut self, face: u32, corners: impl IntoIterator<Item = DVec3>) {
+        let first_vertex = self.vertices.len() as u32;
+        self.vertices.extend(corners);
+        let vertex_count = self.vertices.len() as u32 - first_vertex;
+        self.list.push(Receiver { face, first_vertex, vertex_count });
+    }
+
+    /// Adds every fragment of a tile's micropoints, in order.
+    pub fn push_tile(&mut self, tile: &Tile) {
+        for point in tile.points() {
+            let face: &Face = &tile.faces()[point.face as usize];
+            for fragment in tile.fragments(point) {
+                let corners = tile.outline(fragment).iter();
+                self.push(point.face, corners.map(|&v| tile.position(v, face.nearness_at(v))));
+            }
+        }
+    }
+
+    pub(crate) fn corners(&self, r: &Receiver) -> &[DVec3] {
+        &self.vertices[r.first_vertex as usize..][..r.vertex_count as usize]
+    }
+}
+
+/// The viewer of the receivers: its lens and the faces that it sees.
+#[derive(Clone, Copy, Debug)]
+pub struct Viewer<'a> {
+    /// The lens relative to which receivers are given.
+    pub lens: &'a Lens,
+    /// The faces that receivers refer to.
+    pub faces: &'a [Face],
+}

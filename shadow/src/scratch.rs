@@ -1,0 +1,366 @@
+//! Memory for one batch of receivers on the screens of one light: the local light grid.
+
+use crate::light::Resolution;
+use glam::DVec2;
+use pointillist_dice::ConvexPolygon;
+use pointillist_micropoint::{ClusterQueue, Face, Front, Lens, ProjectedVertex, Regions};
+
+/// Which side of a face the viewer sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Unknown,
+    Lit,
+    Dark,
+}
+
+/// A receiver on a light screen.
+#[derive(Clone, Debug)]
+pub(crate) struct Target {
+    pub(crate) receiver: u32,
+    pub(crate) screen: u8,
+    pub(crate) lit_face: u32,
+    pub(crate) bounds: (DVec2, DVec2),
+    pub(crate) nearness: (f64, f64),
+    pub(crate) area: f64,
+    pub(crate) polygon: ConvexPolygon,
+}
+
+/// A receiver's face in the frame of one screen.
+#[derive(Clone, Debug)]
+pub(crate) struct LitFace {
+    pub(crate) screen: u8,
+    pub(crate) face: Face,
+}
+
+/// A triangle that may stand in the light.
+#[derive(Clone, Debug)]
+pub(crate) struct Caster {
+    pub(crate) face: Face,
+    pub(crate) bounds: (DVec2, DVec2),
+    pub(crate) polygon: ConvexPolygon,
+    /// `None`: textured.
+    pub(crate) opacity: Option<f64>,
+}
+
+/// A cell of the local light grid: targets that lie close together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Group {
+    pub(crate) first_target: u32,
+    pub(crate) end_target: u32,
+    low: DVec2,
+    high: DVec2,
+    nearness: (f64, f64),
+    first_link: u32,
+    /// One opaque caster covers all of it, in front of all of it.
+    pub(crate) dark: bool,
+}
+
+impl Group {
+    const EMPTY: Self = Self {
+        first_target: 0,
+        end_target: 0,
+        low: DVec2::INFINITY,
+        high: DVec2::NEG_INFINITY,
+        nearness: (f64::INFINITY, f64::NEG_INFINITY),
+        first_link: NO_LINK,
+        dark: false,
+    };
+
+    fn overlaps(&self, low: DVec2, high: DVec2) -> bool {
+        self.low.cmple(high).all() && self.high.cmpge(low).all()
+    }
+}
+
+const NO_LINK: u32 = u32::MAX;
+
+/// Lit and whole share of a receiver.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sum {
+    pub(crate) lit: f64,
+    pub(crate) total: f64,
+}
+
+/// Memory of the resolve rules.
+#[derive(Debug, Default)]
+pub(crate) struct Work {
+    pub(crate) regions: Regions,
+    pub(crate) blockers: Vec<(u32, Option<pointillist_dice::HalfPlane>)>,
+    pub(crate) layers: Vec<crate::layers::Cast>,
+    pub(crate) partial: u64,
+}
+
+/// What was done and what was not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ShadowCounts {
+    /// Receivers asked about.
+    pub receivers: u64,
+    /// Receivers that show a side turned away from the light.
+    pub facing_away: u64,
+    /// Light screens used, summed over batches.
+    pub screens: u64,
+    /// Clusters looked into.
+    pub clusters: u64,
+    /// Clusters refused: outside the receivers' light, or behind them.
+    pub clusters_skipped: u64,
+    /// Triangles that may stand in the light of some group.
+    pub casters: u64,
+    /// Triangles refused: away from receivers, behind them, or the lit side of a solid.
+    pub casters_culled: u64,
+    /// Receivers without a caster near: lit without a test.
+    pub lit_by_group: u64,
+    /// Receivers behind one caster that covers their whole group: dark without a test.
+    pub dark_by_group: u64,
+    /// Receivers that had to be cut.
+    pub partial: u64,
+}
+
+impl std::ops::AddAssign for ShadowCounts {
+    fn add_assign(&mut self, o: Self) {
+        self.receivers += o.receivers;
+        self.facing_away += o.facing_away;
+        self.screens += o.screens;
+        self.clusters += o.clusters;
+        self.clusters_skipped += o.clusters_skipped;
+        self.casters += o.casters;
+        self.casters_culled += o.casters_culled;
+        self.lit_by_group += o.lit_by_group;
+        self.dark_by_group += o.dark_by_group;
+        self.partial += o.partial;
+    }
+}
+
+/// Reusable memory of [`ShadowLight::lit`](crate::ShadowLight::lit), one per thread.
+#[derive(Debug, Default)]
+pub struct ShadowScratch {
+    pub(crate) counts: ShadowCounts,
+    pub(crate) sides: Vec<Side>,
+    pub(crate) targets: Vec<Target>,
+    pub(crate) lit_faces: Vec<LitFace>,
+    lit_face_of: Vec<u32>,
+    pub(crate) last_screen: u8,
+    pub(crate) sums: Vec<Sum>,
+    pub(crate) target_order: Vec<u32>,
+    pub(crate) groups: Vec<Group>,
+    columns: usize,
+    rows: usize,
+    cell: f64,
+    /// Half the largest target: how far a target reaches beyond the cell of its centre.
+    reach: f64,
+    pub(crate) low: DVec2,
+    pub(crate) high: DVec2,
+    pub(crate) least_nearness: f64,
+    pub(crate) open_groups: usize,
+    pub(crate) casters: Vec<Caster>,
+    links: Vec<(u32, u32)>,
+    pub(crate) queue: ClusterQueue,
+    pub(crate) projected: Vec<ProjectedVertex>,
+    pub(crate) nearby: Vec<u32>,
+    pub(crate) work: Work,
+}
+
+/// Most cells on a side of the local grid; a batch is a tile's receivers, so more would stay empty.
+const MOST_CELLS: f64 = 64.0;
+
+impl ShadowScratch {
+    /// What has been done since the last call.
+    pub fn take_counts(&mut self) -> ShadowCounts {
+        self.counts.partial += std::mem::take(&mut self.work.partial);
+        std::mem::take(&mut self.counts)
+    }
+
+    pub(crate) fn begin(&mut self, receivers: usize, faces: usize) {
+        self.sides.clear();
+        self.sides.resize(faces, Side::Unknown);
+        self.lit_face_of.clear();
+        self.lit_face_of.resize(faces, NO_LINK);
+        self.lit_faces.clear();
+        self.targets.clear();
+        self.sums.clear();
+        self.sums.resize(receivers, Sum::default());
+    }
+
+    /// The index of a face in the frame of a screen, made when first needed.
+    pub(crate) fn lit_face(&mut self, face: u32, screen: usize, make: impl FnOnce() -> Face) -> u32 {
+        let known = self.lit_face_of[face as usize];
+        if known != NO_LINK && usize::from(self.lit_faces[known as usize].screen) == screen {
+            return known;
+        }
+        let index = self.lit_faces.len() as u32;
+        self.lit_faces.push(LitFace::new(screen, make()));
+        self.lit_face_of[face as usize] = index;
+        index
+    }
+
+    /// Sorts the targets of one screen into the cells of a local grid. Returns false if there are none.
+    pub(crate) fn sort_targets_into_groups(&mut self, screen: usize, resolution: Resolution, size: f64) -> bool {
+        self.casters.clear();
+        self.links.clear();
+        self.target_order.clear();
+        let on_screen = |(i, t): (usize, &Target)| (usize::from(t.screen) == screen).then_some(i as u32);
+        self.target_order.extend(self.targets.iter().enumerate().filter_map(on_screen));
+        if self.target_order.is_empty() {
+            return false;
+        }
+        self.lay_out_grid(resolution, size);
+        let cell_of = |t: &Target| {
+            let centre = (0.5 * (t.bounds.0 + t.bounds.1) - self.low) / self.cell;
+            let column = (centre.x as usize).min(self.columns - 1);
+            (centre.y as usize).min(self.rows - 1) * self.columns + column
+        };
+        let targets = &self.targets;
+        self.target_order.sort_unstable_by_key(|&i| (cell_of(&targets[i as usize]), i));
+        self.groups.clear();
+        self.groups.resize(self.columns * self.rows, Group::EMPTY);
+        for (position, &i) in self.target_order.iter().enumerate() {
+            let t = &targets[i as usize];
+            let centre = (0.5 * (t.bounds.0 + t.bounds.1) - self.low) / self.cell;
+            let column = (centre.x as usize).min(self.columns - 1);
+            let group = &mut self.groups[(centre.y as usize).min(self.rows - 1) * self.columns + column];
+            if group.end_target == 0 {
+                group.first_target = position as u32;
+                self.open_groups += 1;
+            }
+            group.end_target = position as u32 + 1;
+            group.low = group.low.min(t.bounds.0);
+            group.high = group.high.max(t.bounds.1);
+            group.nearness = (group.nearness.0.min(t.nearness.0), group.nearness.1.max(t.nearness.1));
+        }
+        true
+    }
+
+    fn lay_out_grid(&mut self, resolution: Resolution, size: f64) {
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (mut extents, mut reach) = (0.0, 0.0_f64);
+        self.least_nearness = f64::INFINITY;
+        for &i in &self.target_order {
+            let t = &self.targets[i as usize];
+            low = low.min(t.bounds.0);
+            high = high.max(t.bounds.1);
+            let extent = (t.bounds.1 - t.bounds.0).max_element();
+            extents += extent;
+            reach = reach.max(0.5 * extent);
+            self.least_nearness = self.least_nearness.min(t.nearness.0);
+        }
+        let mean = extents / self.target_order.len() as f64;
+        let cell = match resolution {
+            Resolution::Auto => 2.0 * mean,
+            Resolution::Cells(n) => size / f64::from(n),
+        };
+        let longest = (high - low).max_element();
+        self.cell = cell.max(longest / MOST_CELLS).max(f64::MIN_POSITIVE);
+        let cells = |length: f64| ((length / self.cell).ceil() as usize).clamp(1, MOST_CELLS as usize);
+        (self.columns, self.rows) = (cells(high.x - low.x), cells(high.y - low.y));
+        (self.low, self.high, self.reach) = (low, high, reach);
+        self.open_groups = 0;
+    }
+
+    /// The cells whose targets may overlap a rectangle.
+    fn cells_near(&self, low: DVec2, high: DVec2) -> Option<(std::ops::RangeInclusive<usize>, std::ops::RangeInclusive<usize>)> {
+        if !(low.cmple(self.high).all() && high.cmpge(self.low).all()) {
+            return None;
+        }
+        let index = |v: f64, first: f64, count: usize| (((v - first) / self.cell).max(0.0) as usize).min(count - 1);
+        let (low, high) = (low - self.reach, high + self.reach);
+        let columns = index(low.x, self.low.x, self.columns)..=index(high.x, self.low.x, self.columns);
+        let rows = index(low.y, self.low.y, self.rows)..=index(high.y, self.low.y, self.rows);
+        Some((columns, rows))
+    }
+
+    /// Whether a triangle that needs no clipping misses all targets.
+    #[inline]
+    pub(crate) fn misses_targets(&self, v: [&ProjectedVertex; 3]) -> bool {
+        if !(v[0].in_front && v[1].in_front && v[2].in_front) {
+            return false;
+        }
+        let low = v[0].grid.min(v[1].grid).min(v[2].grid);
+        let high = v[0].grid.max(v[1].grid).max(v[2].grid);
+        !(low.cmplt(self.high).all() && high.cmpgt(self.low).all())
+    }
+
+    /// Whether some open group lies behind a cluster.
+    pub(crate) fn concerns_any_group(&self, lens: &Lens, vertices: &[ProjectedVertex]) -> bool {
+        if vertices.iter().any(|v| !v.in_front) {
+            return true;
+        }
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let mut nearness = f64::NEG_INFINITY;
+        for v in vertices {
+            low = low.min(v.grid);
+            high = high.max(v.grid);
+            nearness = nearness.max(lens.nearness(v.local.z));
+        }
+        let Some((columns, rows)) = self.cells_near(low, high) else { return false };
+        let concerned = |g: &Group| g.end_target > 0 && !g.dark && g.nearness.0 <= nearness && g.overlaps(low, high);
+        rows.into_iter().any(|y| columns.clone().any(|x| concerned(&self.groups[y * self.columns + x])))
+    }
+
+    /// Links a caster to the groups that it may darken.
+    pub(crate) fn link(&mut self, caster: Caster) {
+        let (low, high) = caster.bounds;
+        let Some((columns, rows)) = self.cells_near(low, high) else { return };
+        let index = self.casters.len() as u32;
+        let mut used = false;
+        for y in rows {
+            for x in columns.clone() {
+                let g = &mut self.groups[y * self.columns + x];
+                let behind = g.nearness.0 <= caster.face.nearness.1;
+                if g.end_target == 0 || g.dark || !behind || !g.overlaps(low, high) {
+                    continue;
+                }
+                let corners = ConvexPolygon::rectangle(g.low, g.high);
+                if caster.polygon.has_separating_edge(corners.vertices()) {
+                    continue;
+                }
+                if caster.opacity == Some(1.0) && darkens(&caster, &corners, g.nearness.1) {
+                    g.dark = true;
+                    self.open_groups -= 1;
+                    continue;
+                }
+                self.links.push((index, g.first_link));
+                g.first_link = self.links.len() as u32 - 1;
+                used = true;
+            }
+        }
+        if used {
+            self.counts.casters += 1;
+            self.casters.push(caster);
+        } else {
+            self.counts.casters_culled += 1;
+        }
+    }
+
+    /// The casters of a group, in the order in which they were linked.
+    pub(crate) fn casters_of(&self, group: &Group, nearby: &mut Vec<u32>) {
+        nearby.clear();
+        let mut link = group.first_link;
+        while link != NO_LINK {
+            let (caster, next) = self.links[link as usize];
+            nearby.push(caster);
+            link = next;
+        }
+        nearby.reverse();
+    }
+}
+
+/// Whether an opaque caster covers a rectangle in front of everything at most `nearest` near. Then it
+/// also covers each target alone, and cutting would leave exactly nothing.
+fn darkens(caster: &Caster, corners: &ConvexPolygon, nearest: f64) -> bool {
+    let clearly_before = caster.face.nearness.0 > nearest + 1e-6 * nearest.abs();
+    let vertices = caster.polygon.vertices();
+    let mut previous = vertices[vertices.len() - 1];
+    clearly_before
+        && vertices.iter().all(|&v| {
+            let half = pointillist_dice::HalfPlane::left_of(previous, v);
+            previous = v;
+            corners.vertices().iter().all(|&c| half.value(c) >= 0.0)
+        })
+}
+
+/// Where a caster stands before a receiver, as the half-plane that limits it.
+pub(crate) fn limit(front: Front) -> Option<Option<pointillist_dice::HalfPlane>> {
+    match front {
+        Front::Nowhere => None,
+        Front::Everywhere => Some(None),
+        Front::Within(half) => Some(Some(half)),
+    }
+}
