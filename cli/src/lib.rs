@@ -4,6 +4,10 @@
 #![forbid(unsafe_code)]
 
 pub mod image_io;
+mod input_error;
+pub mod mesh_io;
 pub mod job;
 pub mod memory;
 pub mod scene;
+
+pub use input_error::{InputError, Place};

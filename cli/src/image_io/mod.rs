@@ -1,5 +1,15 @@
 //! Pictures in and out: EXR with layers, PNG, and what is read for comparison.
 
+mod atomic;
+mod exr_file;
 mod frame;
+mod picture;
+mod png;
+mod stamp;
 
+pub use atomic::{remove_temporaries, write_atomically};
+pub use exr_file::{Channel, ExrError, ExrFile, Precision};
 pub use frame::{Frame, Layer, LayerKind, Window};
+pub use picture::{Picture, read_exr_picture, read_picture};
+pub use png::{PngOptions, encode_png, encode_rgb_png};
+pub use stamp::Stamp;

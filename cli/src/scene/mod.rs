@@ -3,8 +3,20 @@
 //! A [`Scene`] holds every mesh in world space, every texture decoded and every default filled in, so that whoever
 //! draws it needs neither files nor rules.
 
+pub mod description;
+mod fingerprint;
+mod framing;
+mod load;
+mod materials;
+mod resolve;
+mod smooth;
+pub mod text;
 mod texture_lookup;
+mod textures;
 
+pub use description::{Description, parse_str};
+pub use load::{Overrides, load};
+pub use text::Format;
 pub use texture_lookup::{linear_from_srgb, srgb_from_linear};
 
 use glam::{DVec2, DVec3, Vec3};

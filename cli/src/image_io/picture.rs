@@ -1,0 +1,61 @@
+//! Reading any picture for its colours.
+
+use super::{ExrError, ExrFile, Window};
+use crate::input_error::InputError;
+use crate::scene::linear_from_srgb;
+use image::{DynamicImage, ImageReader};
+use std::io::Cursor;
+use std::path::Path;
+
+/// Linear colours of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Width and height of what is here.
+    pub size: [u32; 2],
+    /// Where it lies in the whole picture.
+    pub window: Window,
+    /// Linear R G B A, row-major; premultiplied if it came from an EXR or [`read_picture`].
+    pub color: Vec<[f32; 4]>,
+}
+
+/// The colours of an EXR: R G B, or Y for all three; alpha 1 if there is none.
+///
+/// # Errors
+///
+/// Not an EXR, or one without colours.
+pub fn read_exr_picture(bytes: &[u8]) -> Result<Picture, ExrError> {
+    let file = ExrFile::read(bytes)?;
+    let grey = file.plane("Y");
+    let plane = |name: &str| file.plane(name).or_else(|| grey.clone());
+    let (Some(r), Some(g), Some(b)) = (plane("R"), plane("G"), plane("B")) else {
+        return Err(ExrError::NoColor);
+    };
+    let alpha = file.plane("A").unwrap_or_else(|| vec![1.0; r.len()]);
+    let color = r.into_iter().zip(g).zip(b).zip(alpha).map(|(((r, g), b), a)| [r, g, b, a]).collect();
+    Ok(Picture { size: [file.window.width(), file.window.height()], window: file.window, color })
+}
+
+/// Reads an EXR, PNG, JPEG or HDR file as linear, premultiplied colours; 8- and 16-bit values are decoded from sRGB.
+///
+/// # Errors
+///
+/// The file cannot be read or decoded.
+pub fn read_picture(path: &Path) -> Result<Picture, InputError> {
+    let name = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")))?;
+    let fault = |message: String| {
+        let error = InputError::of_file(&name, format!("cannot be decoded: {message}"));
+        error.with_help("EXR, PNG, JPEG and HDR pictures can be read")
+    };
+    if bytes.starts_with(&exr::meta::magic_number::BYTES) {
+        return read_exr_picture(&bytes).map_err(|error| fault(error.to_string()));
+    }
+    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| fault(e.to_string()))?;
+    let image = reader.decode().map_err(|error| fault(error.to_string()))?;
+    let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+    let decode = |c: f32| if is_float { c } else { linear_from_srgb(c) };
+    let pixel = |[r, g, b, a]: [f32; 4]| [decode(r) * a, decode(g) * a, decode(b) * a, a];
+    let (width, height) = (image.width(), image.height());
+    let color = image.into_rgba32f().pixels().map(|p| pixel(p.0)).collect();
+    Ok(Picture { size: [width, height], window: Window::whole(width, height), color })
+}

@@ -1,0 +1,305 @@
+//! OBJ lines, checked and made plain, on their way to the parser.
+//!
+//! `tobj` stops without saying where, takes no comments after a face, no continued lines and no tabs, makes up
+//! coordinates that a face lacks, and forgets the name of a material that it has no definition of. So it reads
+//! through [`ObjLines`], which passes on vertices and faces, puts a group in front of every run of faces with the
+//! same material and the same kinds of index, and remembers the line.
+
+use std::io::{self, BufRead, Read};
+
+/// The kinds of index that all corners of a run of faces have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Kinds {
+    pub(super) uv: bool,
+    pub(super) normal: bool,
+}
+
+/// What is wrong with a line, numbered from 1.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LineFault {
+    pub(super) line: usize,
+    pub(super) message: String,
+    pub(super) help: &'static str,
+}
+
+/// The largest index of one kind that was asked for, and how many there are.
+#[derive(Clone, Copy, Debug, Default)]
+struct Range {
+    count: i64,
+    largest: i64,
+    line_of_largest: usize,
+}
+
+/// Reads like a file with only `v`, `vt`, `vn`, `f` and `g` lines.
+pub(super) struct ObjLines<'a> {
+    rest: &'a [u8],
+    line: usize,
+    next_line: usize,
+    out: Vec<u8>,
+    given: usize,
+    group: Option<(Kinds, u32)>,
+    material: u32,
+    ranges: [Range; 3],
+    pub(super) fault: Option<LineFault>,
+    pub(super) material_names: Vec<String>,
+    pub(super) material_files: Vec<String>,
+}
+
+const NO_NAME: &str = "";
+
+impl<'a> ObjLines<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        Self {
+            rest: bytes,
+            line: 0,
+            next_line: 1,
+            out: Vec::new(),
+            given: 0,
+            group: None,
+            material: 0,
+            ranges: [Range::default(); 3],
+            fault: None,
+            material_names: vec![NO_NAME.to_owned()],
+            material_files: Vec::new(),
+        }
+    }
+
+    /// The line that was passed on last.
+    pub(super) fn line(&self) -> usize {
+        self.line
+    }
+
+    /// What a group's name says: kinds of index and material.
+    pub(super) fn decode(group: &str) -> Option<(Kinds, u32)> {
+        let (kinds, material) = group.split_once(' ')?;
+        let kinds = Kinds { uv: kinds.contains('t'), normal: kinds.contains('n') };
+        Some((kinds, material.parse().ok()?))
+    }
+
+    /// The line, with those it continues on, without comment; `None` at the end.
+    fn logical_line(&mut self) -> Option<String> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        self.line = self.next_line;
+        let mut line = String::new();
+        loop {
+            let end = self.rest.iter().position(|&b| b == b'\n');
+            let (physical, rest) = match end {
+                Some(end) => (&self.rest[..end], &self.rest[end + 1..]),
+                None => (self.rest, &self.rest[self.rest.len()..]),
+            };
+            self.rest = rest;
+            self.next_line += 1;
+            // Lossy, because a comment in Latin-1 is no reason to refuse the mesh.
+            let text = String::from_utf8_lossy(physical);
+            let text = text.split('#').next().unwrap_or_default().trim_end();
+            match text.strip_suffix('\\') {
+                Some(start) if !rest.is_empty() => line.extend([start, " "]),
+                _ => {
+                    line.push_str(text);
+                    return Some(line);
+                }
+            }
+        }
+    }
+
+    /// Fills `out` with what the next line comes to, perhaps nothing.
+    fn convert(&mut self, line: &str) -> Result<(), LineFault> {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => self.numbers("v", words, 3, 8),
+            Some("vt") => self.numbers("vt", words, 1, 3),
+            Some("vn") => self.numbers("vn", words, 3, 3),
+            Some("f" | "fo") => self.face(words),
+            Some("usemtl") => {
+                self.material = self.material_number(line.trim_start()["usemtl".len()..].trim());
+                Ok(())
+            }
+            Some("mtllib") => {
+                let name = line.trim_start()["mtllib".len()..].trim();
+                self.material_files.push(name.to_owned());
+                Ok(())
+            }
+            // Groups, smoothing, curves, points, lines: not part of the surface.
+            Some(
+                "o" | "g" | "s" | "l" | "p" | "vp" | "mg" | "lod" | "bevel" | "c_interp" | "d_interp" | "usemap"
+                | "maplib" | "shadow_obj" | "trace_obj" | "ctech" | "stech" | "cstype" | "deg" | "bmat" | "step"
+                | "curv" | "curv2" | "surf" | "parm" | "trim" | "hole" | "scrv" | "sp" | "end" | "con" | "call"
+                | "csh",
+            )
+            | None => Ok(()),
+            Some(other) => Err(self.fault(
+                format!("`{}` is not an OBJ keyword", other.chars().take(30).collect::<String>()),
+                "lines start with v, vt, vn, f, usemtl, mtllib, o, g, s or #",
+            )),
+        }
+    }
+
+    fn fault(&self, message: String, help: &'static str) -> LineFault {
+        LineFault { line: self.line, message, help }
+    }
+
+    /// Passes on the numbers of a vertex, the texture coordinate always as two.
+    fn numbers<'w>(
+        &mut self,
+        keyword: &str,
+        words: impl Iterator<Item = &'w str>,
+        least: usize,
+        most: usize,
+    ) -> Result<(), LineFault> {
+        let kept = if keyword == "vt" { 2 } else { 3 };
+        self.out.extend_from_slice(keyword.as_bytes());
+        let mut found = 0;
+        for word in words {
+            // The parser reads those we keep; one that we drop is looked at here.
+            let bad = found >= kept && word.parse::<f64>().is_err();
+            if bad || found == most {
+                return Err(self.fault(format!("`{keyword}` cannot end in `{word}`"), number_help(keyword)));
+            }
+            if found < kept {
+                self.out.push(b' ');
+                self.out.extend_from_slice(word.as_bytes());
+            }
+            found += 1;
+        }
+        if found < least {
+            return Err(self.fault(format!("`{keyword}` with {found} numbers"), number_help(keyword)));
+        }
+        // `vt u` alone is allowed; v is then 0.
+        (found..kept).for_each(|_| self.out.extend_from_slice(b" 0"));
+        self.out.push(b'\n');
+        let kind = usize::from(keyword == "vt") + 2 * usize::from(keyword == "vn");
+        self.ranges[kind].count += 1;
+        Ok(())
+    }
+
+    fn face<'w>(&mut self, words: impl Iterator<Item = &'w str>) -> Result<(), LineFault> {
+        let start = self.out.len();
+        let mut kinds = Kinds { uv: true, normal: true };
+        let mut corners = 0;
+        self.out.push(b'f');
+        for word in words {
+            let found = self.corner(word)?;
+            kinds = Kinds { uv: kinds.uv && found.uv, normal: kinds.normal && found.normal };
+            corners += 1;
+        }
+        self.out.push(b'\n');
+        if corners < 3 {
+            return Err(self.fault(format!("a face with {corners} corners"), "a face needs 3 or more, as in f 1 2 3"));
+        }
+        if self.group != Some((kinds, self.material)) {
+            self.group = Some((kinds, self.material));
+            let uv = if kinds.uv { "t" } else { "" };
+            let normal = if kinds.normal { "n" } else { "" };
+            let group = format!("g -{uv}{normal} {}\n", self.material);
+            self.out.splice(start..start, group.into_bytes());
+        }
+        Ok(())
+    }
+
+    /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn` and passes it on with indices from 1.
+    fn corner(&mut self, word: &str) -> Result<Kinds, LineFault> {
+        const HELP: &str = "corners are v, v/vt, v//vn or v/vt/vn, counted from 1, or from the end with a minus";
+        let mut present = [false; 3];
+        self.out.push(b' ');
+        for (kind, part) in word.split('/').enumerate() {
+            if kind == 3 || (kind == 0 && part.is_empty()) {
+                return Err(self.fault(format!("`{word}` is no corner of a face"), HELP));
+            }
+            if kind > 0 {
+                self.out.push(b'/');
+            }
+            if part.is_empty() {
+                continue;
+            }
+            let Ok(number) = part.parse::<i32>() else {
+                return Err(self.fault(format!("`{word}` is no corner of a face"), HELP));
+            };
+            let range = &mut self.ranges[kind];
+            let index = if number < 0 { range.count + 1 + i64::from(number) } else { i64::from(number) };
+            if index < 1 {
+                let name = ["vertex", "texture coordinate", "normal"][kind];
+                let message = format!("{name} {number} in `{word}`, but {} are defined so far", range.count);
+                return Err(self.fault(message, HELP));
+            }
+            if index > range.largest {
+                (range.largest, range.line_of_largest) = (index, self.line);
+            }
+            self.out.extend_from_slice(index.to_string().as_bytes());
+            present[kind] = true;
+        }
+        Ok(Kinds { uv: present[1], normal: present[2] })
+    }
+
+    fn material_number(&mut self, name: &str) -> u32 {
+        // From the back: files return to recent names.
+        let known = self.material_names.iter().rposition(|known| known == name);
+        let index = known.unwrap_or_else(|| {
+            self.material_names.push(name.to_owned());
+            self.material_names.len() - 1
+        });
+        index as u32
+    }
+
+    /// Once all lines are read: an index beyond what the whole file defines.
+    fn check_ranges(&self) -> Result<(), LineFault> {
+        for (range, name) in self.ranges.iter().zip(["vertices", "texture coordinates", "normals"]) {
+            if range.largest > range.count {
+                return Err(LineFault {
+                    line: range.line_of_largest,
+                    message: format!("index {} of {name}, but the file has {}", range.largest, range.count),
+                    help: "indices count from 1",
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn number_help(keyword: &str) -> &'static str {
+    match keyword {
+        "v" => "a vertex is v x y z, perhaps with a weight or a colour",
+        "vt" => "a texture coordinate is vt u v",
+        _ => "a normal is vn x y z",
+    }
+}
+
+impl BufRead for ObjLines<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        while self.given == self.out.len() {
+            self.out.clear();
+            self.given = 0;
+            let result = match self.logical_line() {
+                Some(line) => self.convert(&line),
+                None => {
+                    self.check_ranges().map_err(|fault| self.stop(fault))?;
+                    break;
+                }
+            };
+            result.map_err(|fault| self.stop(fault))?;
+        }
+        Ok(&self.out[self.given..])
+    }
+
+    fn consume(&mut self, amount: usize) {
+        self.given += amount;
+    }
+}
+
+impl ObjLines<'_> {
+    fn stop(&mut self, fault: LineFault) -> io::Error {
+        self.fault = Some(fault);
+        io::Error::from(io::ErrorKind::InvalidData)
+    }
+}
+
+impl Read for ObjLines<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let available = self.fill_buf()?;
+        let count = available.len().min(buffer.len());
+        buffer[..count].copy_from_slice(&available[..count]);
+        self.consume(count);
+        Ok(count)
+    }
+}

@@ -1,0 +1,166 @@
+//! What a scene file says, checked as far as that goes without opening another file.
+
+mod camera;
+mod lights;
+mod materials;
+mod objects;
+
+pub(super) use camera::view_fault;
+pub use camera::{CameraDescription, DEFAULT_FOV_DEG};
+pub use lights::LightDescription;
+pub use materials::{DEFAULT_ALBEDO, MaterialDescription, TextureReference};
+pub use objects::ObjectDescription;
+
+use super::text::{Document, Format, Span, Table};
+use super::Occlusion;
+use crate::input_error::InputError;
+use glam::Vec3;
+use pointillist_shade::Interpolation;
+
+/// Width and height of a picture whose scene does not say.
+pub const DEFAULT_SIZE: [u32; 2] = [960, 540];
+
+/// Longest side of a picture: what EXR and PNG viewers take, and far below what their headers could hold.
+pub const LARGEST_SIDE: u32 = 1_000_000;
+
+/// A file named by a key, and where it is named.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileReference {
+    /// As written, relative to the scene file.
+    pub path: String,
+    /// The place of the path in the scene file.
+    pub span: Span,
+}
+
+/// A scene file, read.
+#[derive(Clone, Debug)]
+pub struct Description {
+    /// The text, for messages about it.
+    pub document: Document,
+    /// Eye and target may be missing: then the scene is framed.
+    pub camera: CameraDescription,
+    /// Width and height.
+    pub size: [u32; 2],
+    /// Linear colour behind everything.
+    pub background: Vec3,
+    /// Picture behind everything.
+    pub environment: Option<FileReference>,
+    /// Cells per pixel side.
+    pub subpixel: Option<u32>,
+    /// How pieces hide one another.
+    pub occlusion: Option<Occlusion>,
+    /// What is interpolated; `None`: the file's normals where there are any, else flat.
+    pub shading: Option<Interpolation>,
+    /// The objects.
+    pub objects: Vec<ObjectDescription>,
+    /// The lights.
+    pub lights: Vec<LightDescription>,
+    /// The materials by name.
+    pub materials: Vec<(String, MaterialDescription)>,
+    /// Constant ambient light.
+    pub ambient: Vec3,
+}
+
+/// Reads a scene from its text, with the `--set` assignments on top; `name` is how messages call the text.
+///
+/// # Errors
+///
+/// Anything that the schema does not allow, with its place.
+pub fn parse_str(name: &str, text: &str, format: Format, set: &[String]) -> Result<Description, InputError> {
+    let mut document = Document::parse(name, text, format)?;
+    for assignment in set {
+        document.set("--set", assignment)?;
+    }
+    Description::new(document)
+}
+
+impl Description {
+    /// Reads a tree.
+    ///
+    /// # Errors
+    ///
+    /// As [`parse_str`].
+    pub fn new(document: Document) -> Result<Self, InputError> {
+        let mut root = Table::new(&document, document.root(), "")?;
+        let camera = CameraDescription::read(&mut root)?;
+        let (size, background, environment) = read_image(&mut root)?;
+        let (subpixel, occlusion, shading) = read_render(&mut root)?;
+        let objects = objects::read_all(&mut root)?;
+        let lights = lights::read_all(&mut root)?;
+        let materials = materials::read_all(&mut root)?;
+        let ambient = read_ambient(&mut root)?;
+        root.finish()?;
+        Ok(Self {
+            camera,
+            size,
+            background,
+            environment,
+            subpixel,
+            occlusion,
+            shading,
+            objects,
+            lights,
+            materials,
+            ambient,
+            document,
+        })
+    }
+}
+
+type Image = ([u32; 2], Vec3, Option<FileReference>);
+
+fn read_image(root: &mut Table<'_>) -> Result<Image, InputError> {
+    let Some(mut table) = root.table("image")? else { return Ok((DEFAULT_SIZE, Vec3::ZERO, None)) };
+    let size = match table.numbers::<2>("size")? {
+        None => DEFAULT_SIZE,
+        Some(size) => {
+            let fits = |n: f64| n.fract() == 0.0 && (1.0..=f64::from(LARGEST_SIDE)).contains(&n);
+            if !size.iter().all(|&n| fits(n)) {
+                let [w, h] = size;
+                let message = format!(
+                    "`image.size` is [{w}, {h}]; width and height must be whole numbers from 1 to {LARGEST_SIDE}"
+                );
+                return Err(table.error("size", message));
+            }
+            size.map(|n| n as u32)
+        }
+    };
+    let background = table.color("background")?.unwrap_or(Vec3::ZERO);
+    let environment = file(&mut table, "environment")?;
+    table.finish()?;
+    Ok((size, background, environment))
+}
+
+type Render = (Option<u32>, Option<Occlusion>, Option<Interpolation>);
+
+fn read_render(root: &mut Table<'_>) -> Result<Render, InputError> {
+    let Some(mut table) = root.table("render")? else { return Ok((None, None, None)) };
+    let allowed = |n: f64| [1.0, 2.0, 4.0].contains(&n);
+    let subpixel = table.number_where("subpixel", "1, 2 or 4", allowed)?.map(|n| n as u32);
+    let occlusion = table
+        .choice("occlusion", &[("correlated", Occlusion::Correlated), ("paper", Occlusion::Paper)])?;
+    let shading = table.choice(
+        "shading",
+        &[("flat", Interpolation::Flat), ("gouraud", Interpolation::Gouraud), ("phong", Interpolation::Phong)],
+    )?;
+    table.finish()?;
+    Ok((subpixel, occlusion, shading))
+}
+
+fn read_ambient(root: &mut Table<'_>) -> Result<Vec3, InputError> {
+    let Some(mut table) = root.table("ambient")? else { return Ok(Vec3::ZERO) };
+    table.not_yet(&["probes", "radiosity"])?;
+    let color = table.color("color")?.unwrap_or(Vec3::ZERO);
+    table.finish()?;
+    Ok(color)
+}
+
+/// A key whose value names a file.
+fn file(table: &mut Table<'_>, key: &'static str) -> Result<Option<FileReference>, InputError> {
+    let Some(path) = table.text(key)? else { return Ok(None) };
+    if path.is_empty() {
+        return Err(table.error(key, format!("`{}` is empty; it must name a file", table.name_of(key))));
+    }
+    let span = table.span_of(key);
+    Ok(Some(FileReference { path: path.to_owned(), span }))
+}

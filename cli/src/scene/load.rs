@@ -1,0 +1,109 @@
+//! From a path and options to a [`Scene`].
+
+use super::text::{Document, Format};
+use super::{Description, Scene, resolve};
+use crate::input_error::InputError;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Changes to a scene that come from the command line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Overrides {
+    /// The option's name for messages, and `key=value` as for `--set`; later ones win.
+    pub assignments: Vec<(String, String)>,
+}
+
+/// What kind of file a scene comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Text(Format),
+    Mesh,
+}
+
+/// Reads a scene file or a mesh and everything it refers to; `-` is standard input.
+///
+/// A mesh alone is framed, and gets a light and some ambient light unless the overrides bring lights.
+///
+/// # Errors
+///
+/// Whatever is wrong with the file, or with one that it names.
+pub fn load(path: &Path, overrides: &Overrides) -> Result<Scene, InputError> {
+    let (document, kind, folder) = read_document(path)?;
+    let mut document = document;
+    apply(&mut document, overrides)?;
+    let description = Description::new(document)?;
+    resolve::resolve(&description, &folder, kind == Kind::Mesh)
+}
+
+/// Changes a document by the overrides. A field of view takes the place of a height, and the other way round.
+pub(super) fn apply(document: &mut Document, overrides: &Overrides) -> Result<(), InputError> {
+    for (option, assignment) in &overrides.assignments {
+        document.set(option, assignment)?;
+        match assignment.split('=').next().map(str::trim) {
+            Some("camera.fov") => document.remove("camera", "height"),
+            Some("camera.height") => document.remove("camera", "fov"),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn read_document(path: &Path) -> Result<(Document, Kind, PathBuf), InputError> {
+    let name = path.display().to_string();
+    if name == "-" {
+        let mut text = String::new();
+        std::io::stdin()
+            .read_to_string(&mut text)
+            .map_err(|error| InputError::of_file("standard input", error.to_string()))?;
+        let format = if text.trim_start().starts_with('{') { Format::Json } else { Format::Toml };
+        return Ok((Document::parse("standard input", &text, format)?, Kind::Text(format), PathBuf::new()));
+    }
+    let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+    match kind_of(path)? {
+        Kind::Text(format) => {
+            let text = String::from_utf8(read_file(path)?)
+                .map_err(|error| {
+                    let at = error.utf8_error().valid_up_to();
+                    let line = error.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count() + 1;
+                    InputError::in_line(&name, error.as_bytes(), line, "not UTF-8 text")
+                })?;
+            Ok((Document::parse(&name, &text, format)?, Kind::Text(format), folder))
+        }
+        Kind::Mesh => {
+            // Opened here, so that a missing file is an error about the file and not about a text nobody wrote.
+            std::fs::File::open(path).map_err(|error| cannot_read(&name, &error))?;
+            let file = path.file_name().unwrap_or_default().to_string_lossy();
+            // A JSON string is a TOML string, too, whatever characters the name holds.
+            let text = format!("[[object]]\nmesh = {}\n", serde_json::Value::from(file.as_ref()));
+            Ok((Document::parse(&name, &text, Format::Toml)?, Kind::Mesh, folder))
+        }
+    }
+}
+
+fn kind_of(path: &Path) -> Result<Kind, InputError> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    match extension.as_str() {
+        "toml" => Ok(Kind::Text(Format::Toml)),
+        "json" => Ok(Kind::Text(Format::Json)),
+        "obj" | "ply" => Ok(Kind::Mesh),
+        "glb" | "gltf" => {
+            let name = path.display().to_string();
+            Err(InputError::of_file(name, "glTF is not in this version yet").with_help("convert the model to OBJ"))
+        }
+        _ => {
+            let name = path.display().to_string();
+            let message = "the name does not say what kind of scene this is";
+            Err(InputError::of_file(name, message).with_help("scenes end in .toml, .json, .obj or .ply"))
+        }
+    }
+}
+
+/// The bytes of a file.
+pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
+    std::fs::read(path).map_err(|error| cannot_read(&path.display().to_string(), &error))
+}
+
+fn cannot_read(name: &str, error: &std::io::Error) -> InputError {
+    let error = InputError::of_file(name, format!("cannot be read: {error}"));
+    error.with_help("check the path; it is taken from the folder you are in")
+}

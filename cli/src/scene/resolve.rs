@@ -1,0 +1,206 @@
+//! A description to a [`Scene`]: opens what it names and puts everything together.
+
+use super::description::{Description, FileReference, ObjectDescription, TextureReference};
+use super::materials::MaterialTable;
+use super::textures::{Purpose, TextureTable};
+use super::{ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene};
+use super::{fingerprint, framing, load, smooth};
+use crate::input_error::InputError;
+use crate::mesh_io::{FileMesh, read_obj, read_ply};
+use glam::{DMat3, Vec3};
+use pointillist_shade::Interpolation;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// Builds the scene of a description whose paths are relative to `folder`. `add_light` gives it a light if it has none.
+///
+/// # Errors
+///
+/// A file that is missing or wrong, a material that is not defined, a camera without a direction.
+pub(super) fn resolve(description: &Description, folder: &Path, add_light: bool) -> Result<Scene, InputError> {
+    let mut builder = Builder::new(description, folder);
+    for object in &description.objects {
+        builder.add(object)?;
+    }
+    let environment = builder.environment()?;
+    let [width, height] = description.size;
+    let aspect = f64::from(width) / f64::from(height);
+    let camera = framing::place(description, &builder.mesh, aspect)?;
+    let shading = description.shading.unwrap_or(if builder.mesh.normals.is_empty() {
+        Interpolation::Flat
+    } else {
+        Interpolation::Phong
+    });
+    let mut scene = Scene {
+        camera,
+        image: ImageSettings { width, height, background: description.background, environment },
+        render: RenderSettings {
+            cells_per_pixel: description.subpixel,
+            occlusion: description.occlusion,
+            shading,
+        },
+        mesh: builder.mesh,
+        materials: builder.materials.into_materials(),
+        textures: builder.textures.into_textures(),
+        lights: lights(description),
+        ambient: description.ambient,
+        warnings: builder.warnings,
+        fingerprint: 0,
+    };
+    if add_light && scene.lights.is_empty() {
+        framing::add_light(&mut scene);
+    }
+    scene.fingerprint = fingerprint::of(&scene);
+    Ok(scene)
+}
+
+fn lights(description: &Description) -> Vec<LightSource> {
+    let source = |light: &super::description::LightDescription| LightSource {
+        name: light.name.clone(),
+        light: light.light,
+        shadow: light.shadow,
+        resolution: light.resolution,
+    };
+    description.lights.iter().map(source).collect()
+}
+
+struct Builder<'a> {
+    description: &'a Description,
+    folder: &'a Path,
+    meshes: HashMap<PathBuf, Rc<FileMesh>>,
+    mesh: Mesh,
+    materials: MaterialTable<'a>,
+    textures: TextureTable,
+    warnings: Vec<String>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(description: &'a Description, folder: &'a Path) -> Self {
+        Self {
+            description,
+            folder,
+            meshes: HashMap::new(),
+            mesh: Mesh::default(),
+            materials: MaterialTable::new(description, folder),
+            textures: TextureTable::default(),
+            warnings: Vec::new(),
+        }
+    }
+
+    fn environment(&mut self) -> Result<Option<usize>, InputError> {
+        let Some(file) = &self.description.environment else { return Ok(None) };
+        let reference = TextureReference { file: file.clone(), srgb: true };
+        load_texture(&mut self.textures, self.description, self.folder, &reference, Purpose::Color { srgb: true })
+            .map(Some)
+    }
+
+    fn add(&mut self, object: &ObjectDescription) -> Result<(), InputError> {
+        let path = self.folder.join(&object.mesh.path);
+        let file = self.file_mesh(&path, &object.mesh)?;
+        let materials = self.materials.resolve(object, &file, &path, &mut self.textures, &mut self.warnings)?;
+        self.append(object, &file, &materials)
+    }
+
+    fn file_mesh(&mut self, path: &Path, reference: &FileReference) -> Result<Rc<FileMesh>, InputError> {
+        if let Some(mesh) = self.meshes.get(path) {
+            return Ok(Rc::clone(mesh));
+        }
+        let document = &self.description.document;
+        let name = path.display().to_string();
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let read: fn(&str, &[u8]) -> Result<FileMesh, InputError> = match extension.as_str() {
+            "obj" => read_obj,
+            "ply" => read_ply,
+            _ => {
+                let message = format!("`{}` is not a kind of mesh that can be read", reference.path);
+                return Err(document.error(reference.span, message).with_help("meshes end in .obj or .ply"));
+            }
+        };
+        let bytes = std::fs::read(path).map_err(|error| {
+            let message = format!("mesh `{name}` cannot be read: {error}");
+            document.error(reference.span, message).with_help("paths are relative to the scene file")
+        })?;
+        let mesh = read(&name, &bytes)?;
+        if mesh.triangles.is_empty() {
+            let message = format!("the mesh has {} vertices but no faces", mesh.positions.len());
+            return Err(InputError::of_file(name, message).with_help("a mesh needs at least one triangle"));
+        }
+        let mesh = Rc::new(mesh);
+        self.meshes.insert(path.to_path_buf(), Rc::clone(&mesh));
+        Ok(mesh)
+    }
+
+    fn append(&mut self, object: &ObjectDescription, file: &FileMesh, materials: &[u32]) -> Result<(), InputError> {
+        let mesh = &mut self.mesh;
+        let total = mesh.positions.len().max(mesh.uvs.len()).max(mesh.normals.len()) + 3 * file.triangles.len();
+        if total >= NONE as usize {
+            let message = "the scene has more vertices than can be numbered in 32 bits";
+            return Err(self.description.document.error(object.mesh.span, message));
+        }
+        let world = object.world_from_mesh;
+        let first_position = mesh.positions.len();
+        mesh.positions.extend(file.positions.iter().map(|&p| world.transform_point3(p)));
+        if let Some(index) = mesh.positions[first_position..].iter().position(|p| !p.is_finite()) {
+            let message = format!("the object's transform takes vertex {index} out of the range of numbers");
+            return Err(self.description.document.error(object.mesh.span, message));
+        }
+        // A mirrored object keeps its front in front.
+        let order = if world.matrix3.determinant() < 0.0 { [0, 2, 1] } else { [0, 1, 2] };
+        let first_triangle = mesh.triangles.len();
+        append_indices(&mut mesh.triangles, &file.triangles, first_position, order);
+        append_indices(&mut mesh.uv_of, &file.uv_of, mesh.uvs.len(), order);
+        mesh.uvs.extend_from_slice(&file.uvs);
+        let shading = self.description.shading;
+        if shading == Some(Interpolation::Flat) {
+            mesh.normal_of.resize(mesh.triangles.len(), [NONE; 3]);
+        } else {
+            append_indices(&mut mesh.normal_of, &file.normal_of, mesh.normals.len(), order);
+            let to_world = normal_matrix(world.matrix3);
+            mesh.normals.extend(file.unit_normals().map(|n| turned(to_world, n)));
+            if shading.is_some() {
+                smooth::fill(mesh, first_triangle, first_position);
+            }
+        }
+        let index = mesh.objects.len() as u32;
+        mesh.object_of.resize(mesh.triangles.len(), index);
+        mesh.material_of.extend(file.material_of.iter().map(|&m| materials[m as usize]));
+        let name = object.name.clone().unwrap_or_else(|| object.mesh.path.clone());
+        mesh.objects.push(Object { name, two_sided: object.two_sided });
+        Ok(())
+    }
+}
+
+fn append_indices(list: &mut Vec<[u32; 3]>, more: &[[u32; 3]], base: usize, order: [usize; 3]) {
+    let moved = |index: u32| if index == NONE { NONE } else { index + base as u32 };
+    list.extend(more.iter().map(|corners| order.map(|i| moved(corners[i]))));
+}
+
+/// The matrix that takes normals along: the inverse transposed, up to a factor.
+fn normal_matrix(linear: DMat3) -> DMat3 {
+    let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+    // Cofactors instead of the inverse: no division, and the sign is put right for mirrored objects.
+    DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * linear.determinant().signum()
+}
+
+fn turned(matrix: DMat3, normal: Vec3) -> Vec3 {
+    (matrix * normal.as_dvec3()).normalize_or_zero().as_vec3()
+}
+
+/// Loads a texture that the scene file names.
+pub(super) fn load_texture(
+    textures: &mut TextureTable,
+    description: &Description,
+    folder: &Path,
+    reference: &TextureReference,
+    purpose: Purpose,
+) -> Result<usize, InputError> {
+    let path = folder.join(&reference.file.path);
+    textures.load(&path, purpose).map_err(|fault| {
+        let message = format!("texture `{}` {fault}", path.display());
+        let error = description.document.error(reference.file.span, message);
+        error.with_help("paths are relative to the scene file; PNG, JPEG, HDR and EXR can be read")
+    })
+}
+
+pub(super) use load::read_file;

@@ -1,0 +1,40 @@
+//! Vertex normals for triangles whose file has none.
+
+use super::{Mesh, NONE};
+use pointillist_shade::{Weighting, vertex_normals};
+use std::collections::HashMap;
+
+/// Gives the triangles from `first_triangle` on that have no normals the area-weighted means at their corners.
+///
+/// Corners at the same position are one vertex: files repeat positions where the material changes, and there the
+/// surface goes on. (A file that repeats them to mark a crease has normals, or should.)
+pub(super) fn fill(mesh: &mut Mesh, first_triangle: usize, first_position: usize) {
+    if !mesh.normal_of[first_triangle..].contains(&[NONE; 3]) {
+        return;
+    }
+    let positions = &mesh.positions[first_position..];
+    let mut vertex_at: HashMap<[u64; 3], u32> = HashMap::with_capacity(positions.len());
+    let mut places = Vec::new();
+    let vertex_of: Vec<u32> = positions
+        .iter()
+        .map(|&p| {
+            // Adding zero makes −0 and 0 the same bits.
+            let bits = (p + 0.0).to_array().map(f64::to_bits);
+            *vertex_at.entry(bits).or_insert_with(|| {
+                places.push(p);
+                places.len() as u32 - 1
+            })
+        })
+        .collect();
+    let vertex = |position: u32| vertex_of[position as usize - first_position];
+    let bare: Vec<usize> =
+        (first_triangle..mesh.triangles.len()).filter(|&t| mesh.normal_of[t] == [NONE; 3]).collect();
+    let triangles: Vec<[u32; 3]> = bare.iter().map(|&t| mesh.triangles[t].map(vertex)).collect();
+    let normals = vertex_normals(&places, &triangles, Weighting::Area)
+        .expect("positions and indices were checked when the mesh was read");
+    let base = mesh.normals.len() as u32;
+    mesh.normals.extend(normals);
+    for (&t, corners) in bare.iter().zip(&triangles) {
+        mesh.normal_of[t] = corners.map(|corner| base + corner);
+    }
+}

@@ -1,0 +1,97 @@
+//! Pictures from files as textures, each decoded once.
+
+use super::{Texels, Texture, linear_from_srgb};
+use crate::image_io;
+use image::{DynamicImage, ImageReader};
+use std::collections::HashMap;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+/// What a texture is for, which says how it is decoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Purpose {
+    /// Colour; 8- and 16-bit values are sRGB-encoded or linear.
+    Color {
+        /// Whether they are encoded.
+        srgb: bool,
+    },
+    /// Opacity: the picture's alpha if it has one that says something, else its brightness.
+    Opacity,
+}
+
+/// The textures of a scene.
+#[derive(Default)]
+pub(super) struct TextureTable {
+    list: Vec<Texture>,
+    known: HashMap<(PathBuf, Purpose), usize>,
+}
+
+impl TextureTable {
+    /// The number of the texture in this file, decoded if it is new.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, as the end of a sentence that begins with the path.
+    pub(super) fn load(&mut self, path: &Path, purpose: Purpose) -> Result<usize, String> {
+        let key = (path.to_path_buf(), purpose);
+        if let Some(&number) = self.known.get(&key) {
+            return Ok(number);
+        }
+        let texture = read(path, purpose)?;
+        self.list.push(texture);
+        self.known.insert(key, self.list.len() - 1);
+        Ok(self.list.len() - 1)
+    }
+
+    pub(super) fn into_textures(self) -> Vec<Texture> {
+        self.list
+    }
+}
+
+fn read(path: &Path, purpose: Purpose) -> Result<Texture, String> {
+    let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+    let image = if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
+        let picture = image_io::read_exr_picture(&bytes).map_err(|error| format!("cannot be decoded: {error}"))?;
+        let [width, height] = picture.size;
+        let flat = picture.color.into_iter().flatten().collect();
+        let buffer = image::ImageBuffer::from_raw(width, height, flat);
+        DynamicImage::ImageRgba32F(buffer.ok_or("has an impossible size")?)
+    } else {
+        let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
+        let reader = reader.map_err(|error| format!("cannot be decoded: {error}"))?;
+        reader.decode().map_err(|error| format!("cannot be decoded: {error}"))?
+    };
+    let (width, height) = (image.width(), image.height());
+    if width == 0 || height == 0 {
+        return Err("has no pixels".to_owned());
+    }
+    Ok(Texture { width, height, texels: texels(image, purpose), path: path.to_path_buf() })
+}
+
+fn texels(image: DynamicImage, purpose: Purpose) -> Texels {
+    let is_byte = image.color().bytes_per_pixel() == image.color().channel_count();
+    let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+    match purpose {
+        Purpose::Opacity => opacity(&image),
+        Purpose::Color { srgb } if is_byte => {
+            let texels = image.into_rgba8().pixels().map(|p| p.0).collect();
+            if srgb { Texels::Srgb8(texels) } else { Texels::Linear8(texels) }
+        }
+        Purpose::Color { srgb } => {
+            let decode = |c: f32| if srgb && !is_float { linear_from_srgb(c) } else { c };
+            let finite = |c: f32| if c.is_finite() { c } else { 0.0 };
+            let texel = |[r, g, b, a]: [f32; 4]| [decode(r), decode(g), decode(b), a].map(finite);
+            Texels::Float(image.into_rgba32f().pixels().map(|p| texel(p.0)).collect())
+        }
+    }
+}
+
+fn opacity(image: &DynamicImage) -> Texels {
+    if image.color().has_alpha() {
+        let alpha: Vec<u8> = image.to_rgba8().pixels().map(|p| p.0[3]).collect();
+        if alpha.iter().any(|&a| a != u8::MAX) {
+            return Texels::Opacity8(alpha);
+        }
+    }
+    Texels::Opacity8(image.to_luma8().into_raw())
+}
