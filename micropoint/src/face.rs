@@ -36,7 +36,8 @@ impl Face {
     #[must_use]
     pub fn point(&self, lens: &Lens, grid: DVec2) -> SurfacePoint {
         let nearness = self.nearness_at(grid);
-        SurfacePoint { grid, nearness, barycentric: self.barycentric(lens.unproject(grid, nearness)) }
+        let rational = if lens.kind == LensKind::Perspective { nearness } else { 1.0 };
+        SurfacePoint { grid, nearness, rational, barycentric: self.barycentric(lens.unproject(grid, nearness)) }
     }
 
     /// Barycentric coordinates of a point of the plane (lens frame), kept within the triangle.
@@ -62,6 +63,8 @@ pub struct SurfacePoint {
     pub grid: DVec2,
     /// Nearness (see [`Lens`]).
     pub nearness: f64,
+    /// The denominator of perspective interpolation: 1/depth, or 1 where there is no perspective.
+    pub rational: f64,
     /// Barycentric coordinates in its triangle.
     pub barycentric: DVec3,
 }

@@ -504,7 +504,7 @@ impl Dicer {
 }
 
 fn mean_opacity(job: &DiceJob<'_>, face: &Face, corner: DVec2, local: &[DVec2]) -> f32 {
-    let mut points = [SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, barycentric: DVec3::ZERO }; convex::MAX_VERTICES];
+    let mut points = [SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO }; convex::MAX_VERTICES];
     for (to, &v) in points.iter_mut().zip(local) {
         *to = face.point(job.lens, v + corner);
     }

@@ -1,0 +1,532 @@
+//! Textures without filters: the exact mean of nearest texels over a polygon.
+//!
+//! The paper dices a surface by its texel grid, so that every piece sees one texel (\[1\], §3.3). Shading
+//! is linear in the albedo, so the mean over all those pieces is all that is needed of them; and
+//! that is an integral over a polygon of texels, ∬ f = ∮ F dy with F the sums along rows. It
+//! costs the texels on the outline, not those inside.
+
+use crate::error::MicropointError;
+use glam::{DVec2, DVec3};
+use pointillist_dice::{CellWindow, ConvexPolygon, Cut, convex, cut};
+
+/// What a texture is outside the unit square.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum TexelWrap {
+    /// Repeated.
+    #[default]
+    Repeat,
+    /// The border texels go on for ever.
+    Clamp,
+    /// Repeated, every other time mirrored.
+    Mirror,
+}
+
+/// A corner of a polygon on a textured surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TexelCorner {
+    /// Position in the grid in which the mean is taken.
+    pub grid: DVec2,
+    /// The denominator of perspective interpolation: 1/depth, or 1 where there is no perspective.
+    pub rational: f64,
+    /// Position in texels: (u · width, (1 − v) · height).
+    pub texel: DVec2,
+}
+
+/// Sums along the rows of a texture with `N` channels, in 32-bit fixed point: differences are exact.
+#[derive(Clone, Debug)]
+pub struct TexelSums<const N: usize> {
+    width: usize,
+    height: usize,
+    wrap: TexelWrap,
+    /// Value of one unit of the fixed point.
+    unit: f64,
+    /// `levels[k]`: rows of sums, each the mean of 4ᵏ rows of texels (fewer in the last).
+    levels: Vec<Vec<[u32; N]>>,
+}
+
+/// Rows that an outline may cross before rows are taken together: then an outline texel is wrong by
+/// at most its difference from its three neighbours, and there are hundreds of rows.
+const MOST_ROWS: f64 = 128.0;
+
+/// Texels up to which perspective is followed texel by texel.
+const FEW_TEXELS: f64 = 48.0;
+
+/// Ratio of depths over a polygon up to which perspective does not matter: weights then vary by less
+/// than 0.2 % from their mean.
+const NO_PERSPECTIVE: f64 = 1.0005;
+
+/// Ratio of depths up to which many texels are weighted alike.
+const LITTLE_PERSPECTIVE: f64 = 1.05;
+
+impl<const N: usize> TexelSums<N> {
+    /// Sums up a texture; `texel(x, y)` gives values of at least 0, row 0 on top.
+    ///
+    /// # Errors
+    /// [`MicropointError::BadTexture`] if there are no texels; [`MicropointError::BadTexel`] for a
+    /// value that is NaN, infinite or negative.
+    pub fn new(
+        width: u32,
+        height: u32,
+        wrap: TexelWrap,
+        texel: impl Fn(u32, u32) -> [f32; N],
+    ) -> Result<Self, MicropointError> {
+        if width == 0 || height == 0 || width > 1 << 20 || height > 1 << 20 {
+            return Err(MicropointError::BadTexture { width, height, texels: 0 });
+        }
+        let mut most = 0.0_f32;
+        for y in 0..height {
+            for x in 0..width {
+                for v in texel(x, y) {
+                    if !(v.is_finite() && v >= 0.0) {
+                        let index = y as usize * width as usize + x as usize;
+                        return Err(MicropointError::BadTexel { index });
+                    }
+                    most = most.max(v);
+                }
+            }
+        }
+        // The sum of a whole row must fit, with half a unit of rounding for each texel.
+        let steps = (f64::from(u32::MAX) - f64::from(width)) / f64::from(width);
+        let unit = if most > 0.0 { f64::from(most) / steps } else { 1.0 };
+        let mut rows = Vec::with_capacity((width as usize + 1) * height as usize);
+        for y in 0..height {
+            let mut sum = [0u32; N];
+            rows.push(sum);
+            for x in 0..width {
+                for (s, v) in sum.iter_mut().zip(texel(x, y)) {
+                    *s += (f64::from(v) / unit).round() as u32;
+                }
+                rows.push(sum);
+            }
+        }
+        let mut sums = Self { width: width as usize, height: height as usize, wrap, unit, levels: vec![rows] };
+        sums.add_coarse_levels();
+        Ok(sums)
+    }
+
+    fn add_coarse_levels(&mut self) {
+        let stride = self.width + 1;
+        let mut rows_of_band = 4;
+        while self.height > 16 && rows_of_band < self.height {
+            let bands = self.height.div_ceil(rows_of_band);
+            let mut level = Vec::with_capacity(bands * stride);
+            for band in 0..bands {
+                let rows = band * rows_of_band..((band + 1) * rows_of_band).min(self.height);
+                for x in 0..stride {
+                    let column = rows.clone().map(|y| &self.levels[0][y * stride + x]);
+                    let mut sum = [0u64; N];
+                    column.for_each(|v| sum.iter_mut().zip(v).for_each(|(s, &v)| *s += u64::from(v)));
+                    level.push(sum.map(|s| (s / rows.len() as u64) as u32));
+                }
+            }
+            self.levels.push(level);
+            rows_of_band *= 4;
+        }
+    }
+
+    /// Texels in a row.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width as u32
+    }
+
+    /// Rows of texels.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height as u32
+    }
+
+    /// The texel at integer coordinates, wrapped.
+    #[must_use]
+    pub fn texel(&self, x: f64, y: f64) -> [f64; N] {
+        let band = self.band(0, y.floor() + 0.5);
+        let (lo, hi) = (self.row_sum(0, band.row, x.floor()), self.row_sum(0, band.row, x.floor() + 1.0));
+        std::array::from_fn(|c| (hi[c] - lo[c]) * self.unit)
+    }
+
+    /// The mean over a convex polygon, weighted by area in the grid.
+    ///
+    /// Exact up to rounding where the polygon sees few texels or little perspective; elsewhere it is cut
+    /// into strips of nearly equal depth. Corners that are not finite give the texel at the origin.
+    #[must_use]
+    pub fn mean(&self, corners: &[TexelCorner]) -> [f64; N] {
+        let (low, high) = corners.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), c| {
+            (l.min(c.texel), h.max(c.texel))
+        });
+        // Beyond this, neighbouring texels can hardly be told apart in f64.
+        const LARGEST: f64 = 1e12;
+        if !(low.is_finite() && high.is_finite() && low.abs().max(high.abs()).max_element() < LARGEST) {
+            return self.texel(0.0, 0.0);
+        }
+        if low.floor() == high.floor() {
+            return self.texel(low.x, low.y);
+        }
+        let texels = (high.ceil() - low.floor()).max(DVec2::ONE);
+        let few = texels.x * texels.y <= FEW_TEXELS;
+        let rationals = corners.iter().map(|c| c.rational);
+        let (least, most) = rationals.fold((f64::INFINITY, 0.0_f64), |(l, h), q| (l.min(q), h.max(q)));
+        let ratio = if least > 0.0 { most / least } else { f64::INFINITY };
+        if ratio > NO_PERSPECTIVE && few && least > 0.0 {
+            if let Some(mean) = self.mean_by_texels(corners) {
+                return mean;
+            }
+        }
+        if ratio > LITTLE_PERSPECTIVE && !few {
+            return self.mean_by_strips(corners, least.max(most * 1e-6), most);
+        }
+        self.mean_in_texels(corners)
+    }
+
+    /// The mean weighted by area in the texture: right where there is no perspective.
+    fn mean_in_texels(&self, corners: &[TexelCorner]) -> [f64; N] {
+        let mut ring = [DVec2::ZERO; convex::MAX_VERTICES];
+        let len = corners.len().min(ring.len());
+        // Whole periods are taken away so that sums stay small.
+        let period = DVec2::new(self.width as f64, self.height as f64) * 2.0;
+        let shift = match self.wrap {
+            TexelWrap::Clamp => DVec2::ZERO,
+            _ => (corners[0].texel / period).floor() * period,
+        };
+        for (to, c) in ring.iter_mut().zip(corners) {
+            *to = c.texel - shift;
+        }
+        let ring = &ring[..len];
+        let area = convex::area(ring);
+        let (low, high) = convex::bounds(ring);
+        let size = high - low;
+        // A surface seen edge-on: what it shows is a line of texels, of which the middle will do.
+        if area.abs() <= 1e-9 * size.x.max(size.y).powi(2) {
+            let middle = ring.iter().sum::<DVec2>() / len as f64;
+            return self.texel(middle.x, middle.y);
+        }
+        let mut level = 0;
+        while level + 1 < self.levels.len() && size.y > MOST_ROWS * 4.0_f64.powi(level as i32) {
+            level += 1;
+        }
+        let mut sum = [0.0; N];
+        for i in 0..len {
+            self.add_edge(level, ring[i], ring[(i + 1) % len], &mut sum);
+        }
+        sum.map(|s| s * self.unit / area)
+    }
+
+    /// Adds ∫ F dy along an edge.
+    fn add_edge(&self, level: usize, a: DVec2, b: DVec2, sum: &mut [f64; N]) {
+        if a.y == b.y {
+            return;
+        }
+        let (from, to, sign) = if a.y < b.y { (a, b, 1.0) } else { (b, a, -1.0) };
+        let run = (to.x - from.x) / (to.y - from.y);
+        let mut p = from;
+        while p.y < to.y {
+            let band = self.band(level, p.y);
+            let y = if band.end > p.y { band.end.min(to.y) } else { to.y };
+            let x = if y == to.y { to.x } else { from.x + (y - from.y) * run };
+            self.add_row(level, band.row, p.x, x, sign * (y - p.y), sum);
+            p = DVec2::new(x, y);
+        }
+    }
+
+    /// Adds height × mean of F between two places of one row.
+    #[inline]
+    fn add_row(&self, level: usize, row: usize, xa: f64, xb: f64, height: f64, sum: &mut [f64; N]) {
+        let (lo, hi) = (xa.min(xb), xa.max(xb));
+        if lo.floor() == hi.floor() {
+            self.add_value(level, row, lo.floor(), 0.5 * (lo + hi), height, sum);
+            return;
+        }
+        let per_length = height / (hi - lo);
+        let mut x = lo;
+        while x < hi {
+            let column = x.floor();
+            let end = (column + 1.0).min(hi);
+            self.add_value(level, row, column, 0.5 * (x + end), per_length * (end - x), sum);
+            x = end;
+        }
+    }
+
+    /// Adds weight × F(x), x within the given column.
+    #[inline]
+    fn add_value(&self, level: usize, row: usize, column: f64, x: f64, weight: f64, sum: &mut [f64; N]) {
+        let before = self.row_sum(level, row, column);
+        let after = self.row_sum(level, row, column + 1.0);
+        let t = x - column;
+        for c in 0..N {
+            sum[c] += weight * (before[c] + t * (after[c] - before[c]));
+        }
+    }
+
+    /// Sum of a row from 0 to an integer column, wrapped.
+    #[inline]
+    fn row_sum(&self, level: usize, row: usize, column: f64) -> [f64; N] {
+        let stride = self.width + 1;
+        let sums = &self.levels[level][row * stride..(row + 1) * stride];
+        let at = |i: usize| sums[i].map(f64::from);
+        let width = self.width as f64;
+        if (0.0..=width).contains(&column) {
+            return at(column as usize);
+        }
+        let total = at(self.width);
+        let combine = |periods: f64, rest: [f64; N]| std::array::from_fn(|c| periods * total[c] + rest[c]);
+        match self.wrap {
+            TexelWrap::Repeat => {
+                let periods = (column / width).floor();
+                combine(periods, at(((column - periods * width) as usize).min(self.width)))
+            }
+            TexelWrap::Clamp => {
+                let (edge, beyond) = if column < 0.0 { (0, column) } else { (self.width - 1, column - width) };
+                let (lo, hi) = (at(edge), at(edge + 1));
+                let base = if column < 0.0 { [0.0; N] } else { total };
+                std::array::from_fn(|c| base[c] + beyond * (hi[c] - lo[c]))
+            }
+            TexelWrap::Mirror => {
+                let periods = (column / width).floor();
+                let rest = ((column - periods * width) as usize).min(self.width);
+                if periods.rem_euclid(2.0) == 0.0 {
+                    combine(periods, at(rest))
+                } else {
+                    let mirrored = at(self.width - rest);
+                    combine(periods, std::array::from_fn(|c| total[c] - mirrored[c]))
+                }
+            }
+        }
+    }
+
+    /// The band of rows that holds `y` (its lower border included), and where it ends.
+    #[inline]
+    fn band(&self, level: usize, y: f64) -> Band {
+        let height = self.height as f64;
+        let rows = 4_usize.pow(level as u32);
+        let last = self.height.div_ceil(rows) - 1;
+        let inside = |r: f64| ((r as usize) / rows).min(last);
+        let upper = |band: usize| ((band + 1) * rows).min(self.height) as f64;
+        if (0.0..height).contains(&y) {
+            let row = inside(y);
+            return Band { row, end: upper(row) };
+        }
+        match self.wrap {
+            TexelWrap::Clamp if y < 0.0 => Band { row: 0, end: 0.0 },
+            TexelWrap::Clamp => Band { row: last, end: f64::INFINITY },
+            TexelWrap::Mirror if (y / height).floor().rem_euclid(2.0) != 0.0 => {
+                let next = ((y / height).floor() + 1.0) * height;
+                // Distance from the next mirror line, upward: rows run backward.
+                let back = (next - y).min(height);
+                let row = ((back.ceil() as usize).max(1) - 1) / rows;
+                Band { row: row.min(last), end: next - (row.min(last) * rows) as f64 }
+            }
+            _ => {
+                let base = (y / height).floor() * height;
+                let row = inside(y - base);
+                Band { row, end: base + upper(row) }
+            }
+        }
+    }
+
+    /// Perspective, few texels: each texel's share is its area in the grid.
+    fn mean_by_texels(&self, corners: &[TexelCorner]) -> Option<[f64; N]> {
+        let map = GridFromTexels::new(corners)?;
+        let mut ring: Vec<DVec2> = corners.iter().map(|c| c.texel).collect();
+        let origin = ring.iter().fold(DVec2::INFINITY, |l, &p| l.min(p)).floor();
+        ring.iter_mut().for_each(|p| *p -= origin);
+        if convex::area(&ring) < 0.0 {
+            ring.reverse();
+        }
+        let window = CellWindow { x0: 0, y0: 0, x1: 64, y1: 64 };
+        let (mut sum, mut total) = ([0.0; N], 0.0);
+        let mut add = |column: i32, row: i32, outline: &[DVec2]| {
+            let mut in_grid = ConvexPolygon::EMPTY;
+            outline.iter().for_each(|&p| in_grid.push(map.apply(p + origin)));
+            let area = in_grid.area().abs();
+            let texel = self.texel(origin.x + f64::from(column), origin.y + f64::from(row));
+            total += area;
+            sum.iter_mut().zip(texel).for_each(|(s, t)| *s += area * t);
+        };
+        cut(&ring[..ring.len().min(pointillist_dice::MAX_CUT_VERTICES)], window, |part| match part {
+            Cut::Span { row, first, end } => {
+                for column in first..end {
+                    let low = DVec2::new(f64::from(column), f64::from(row));
+                    add(column, row, ConvexPolygon::rectangle(low, low + 1.0).vertices());
+                }
+            }
+            Cut::Piece { cell, polygon } => add(cell.x, cell.y, polygon.vertices()),
+        });
+        (total > 0.0).then(|| sum.map(|s| s / total))
+    }
+
+    /// Perspective, many texels: strips between which depth grows by a constant factor.
+    fn mean_by_strips(&self, corners: &[TexelCorner], least: f64, most: f64) -> [f64; N] {
+        let (mut sum, mut total) = ([0.0; N], 0.0);
+        let count = ((most / least).ln() / LITTLE_PERSPECTIVE.ln()).ceil().clamp(1.0, 256.0);
+        let border = |i: f64| most * (least / most).powf(i / count);
+        let mut rest = corners.to_vec();
+        for i in 0..count as usize {
+            let last = i + 1 == count as usize;
+            let below = border(i as f64 + 1.0);
+            let (strip, further) =
+                if last { (std::mem::take(&mut rest), Vec::new()) } else { divide(&rest, below) };
+            rest = further;
+            if strip.len() >= 3 {
+                let ring: Vec<DVec2> = strip.iter().map(|c| c.grid).collect();
+                let area = convex::area(&ring).abs();
+                let mean = self.mean_in_texels(&strip);
+                total += area;
+                sum.iter_mut().zip(mean).for_each(|(s, m)| *s += area * m);
+            }
+        }
+        if total > 0.0 { sum.map(|s| s / total) } else { self.mean_in_texels(corners) }
+    }
+}
+
+/// Where one row's sums hold.
+struct Band {
+    row: usize,
+    /// One past its last y.
+    end: f64,
+}
+
+/// Divides a polygon where its `rational` equals `border`: the nearer part, then the farther.
+fn divide(corners: &[TexelCorner], border: f64) -> (Vec<TexelCorner>, Vec<TexelCorner>) {
+    let (mut near, mut far) = (Vec::new(), Vec::new());
+    for (i, a) in corners.iter().enumerate() {
+        let b = &corners[(i + 1) % corners.len()];
+        let (va, vb) = (a.rational - border, b.rational - border);
+        if va >= 0.0 {
+            near.push(*a);
+        }
+        if va <= 0.0 {
+            far.push(*a);
+        }
+        if va * vb < 0.0 {
+            let t = va / (va - vb);
+            let rational = a.rational + (b.rational - a.rational) * t;
+            let (ta, tb) = (a.texel * a.rational, b.texel * b.rational);
+            let crossing =
+                TexelCorner { grid: a.grid.lerp(b.grid, t), rational, texel: (ta + (tb - ta) * t) / rational };
+            near.push(crossing);
+            far.push(crossing);
+        }
+    }
+    (near, far)
+}
+
+/// The projective map from texels to the grid, from three corners.
+struct GridFromTexels {
+    anchor: DVec2,
+    /// Grid position × depth, and depth, as affine functions of the texel.
+    at_anchor: DVec3,
+    along_x: DVec3,
+    along_y: DVec3,
+}
+
+impl GridFromTexels {
+    fn new(corners: &[TexelCorner]) -> Option<Self> {
+        let a = corners.first()?;
+        let wide = |i: usize| {
+            (corners[i].texel - a.texel).perp_dot(corners[i + 1].texel - a.texel).abs()
+        };
+        let best = (1..corners.len().checked_sub(1)?).max_by(|&i, &j| wide(i).total_cmp(&wide(j)))?;
+        let (b, c) = (&corners[best], &corners[best + 1]);
+        let lifted = |k: &TexelCorner| (k.grid - a.grid).extend(1.0) / k.rational;
+        let (e, f) = (b.texel - a.texel, c.texel - a.texel);
+        let determinant = e.perp_dot(f);
+        if determinant == 0.0 || !determinant.is_finite() {
+            return None;
+        }
+        let (le, lf) = (lifted(b) - lifted(a), lifted(c) - lifted(a));
+        let along_x = (le * f.y - lf * e.y) / determinant;
+        let along_y = (lf * e.x - le * f.x) / determinant;
+        Some(Self { anchor: a.texel, at_anchor: lifted(a), along_x, along_y })
+    }
+
+    fn apply(&self, texel: DVec2) -> DVec2 {
+        let d = texel - self.anchor;
+        let p = self.at_anchor + self.along_x * d.x + self.along_y * d.y;
+        DVec2::new(p.x, p.y) / p.z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec2;
+
+    fn checker(width: u32, height: u32, wrap: TexelWrap) -> TexelSums<1> {
+        TexelSums::new(width, height, wrap, |x, y| [((x * 7 + y * 13) % 5) as f32]).unwrap()
+    }
+
+    fn corners(points: &[DVec2]) -> Vec<TexelCorner> {
+        points.iter().map(|&p| TexelCorner { grid: p, rational: 1.0, texel: p }).collect()
+    }
+
+    /// The mean by many samples.
+    fn sampled(sums: &TexelSums<1>, points: &[DVec2]) -> f64 {
+        let (low, high) = convex::bounds(points);
+        let (mut sum, mut count) = (0.0, 0.0);
+        let n = 600;
+        for i in 0..n * n {
+            let s = dvec2(f64::from(i % n) + 0.5, f64::from(i / n) + 0.5) / f64::from(n);
+            let p = low + s * (high - low);
+            let inside = (0..points.len()).all(|k| {
+                let (a, b) = (points[k], points[(k + 1) % points.len()]);
+                (b - a).perp_dot(p - a) >= 0.0
+            });
+            if inside {
+                sum += sums.texel(p.x, p.y)[0];
+                count += 1.0;
+            }
+        }
+        sum / count
+    }
+
+    #[test]
+    fn a_polygon_sees_the_mean_of_its_texels_in_every_wrap_mode() {
+        for wrap in [TexelWrap::Repeat, TexelWrap::Clamp, TexelWrap::Mirror] {
+            let sums = checker(6, 5, wrap);
+            for shift in [dvec2(0.0, 0.0), dvec2(-7.3, 3.1), dvec2(11.2, -6.7)] {
+                let triangle = [dvec2(0.3, 0.2) + shift, dvec2(5.1, 1.4) + shift, dvec2(1.7, 6.6) + shift];
+                let got = sums.mean(&corners(&triangle))[0];
+                let expected = sampled(&sums, &triangle);
+                assert!((got - expected).abs() < 0.01, "{wrap:?} {shift}: {got} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn whole_texels_are_exact() {
+        let sums = checker(8, 8, TexelWrap::Repeat);
+        let square = [dvec2(2.0, 3.0), dvec2(4.0, 3.0), dvec2(4.0, 5.0), dvec2(2.0, 5.0)];
+        let texels = [(2, 3), (3, 3), (2, 4), (3, 4)];
+        let expected = texels.iter().map(|&(x, y)| f64::from((x * 7 + y * 13) % 5)).sum::<f64>() / 4.0;
+        assert!((sums.mean(&corners(&square))[0] - expected).abs() < 1e-7);
+    }
+
+    #[test]
+    fn coarse_levels_agree_with_fine_ones() {
+        let sums = TexelSums::<1>::new(64, 300, TexelWrap::Repeat, |x, y| [((x * 31 + y * y) % 17) as f32]).unwrap();
+        let ring = [dvec2(3.2, -500.3), dvec2(9.9, -500.3), dvec2(17.7, 900.4), dvec2(11.0, 900.4)];
+        let mut fine = [0.0];
+        for i in 0..4 {
+            sums.add_edge(0, ring[i], ring[(i + 1) % 4], &mut fine);
+        }
+        let fine = fine[0] * sums.unit / convex::area(&ring);
+        let got = sums.mean(&corners(&ring))[0];
+        assert!((got - fine).abs() < 2e-3 * fine, "{got} {fine}");
+    }
+
+    #[test]
+    fn perspective_weighs_texels_by_their_area_on_screen() {
+        // Two texels, one of which is seen at four times the distance.
+        let sums = TexelSums::<1>::new(2, 1, TexelWrap::Clamp, |x, _| [x as f32]).unwrap();
+        let corner = |x: f64, y: f64, depth: f64| TexelCorner {
+            grid: dvec2(x, y) / depth,
+            rational: 1.0 / depth,
+            texel: dvec2(x, y),
+        };
+        let quad = [corner(0.0, 0.0, 1.0), corner(2.0, 0.0, 4.0), corner(2.0, 1.0, 4.0), corner(0.0, 1.0, 1.0)];
+        let far = {
+            let ring = [corner(1.0, 0.0, 2.5), corner(2.0, 0.0, 4.0), corner(2.0, 1.0, 4.0), corner(1.0, 1.0, 2.5)];
+            convex::area(&ring.map(|c| c.grid)) / convex::area(&quad.map(|c| c.grid))
+        };
+        assert!((sums.mean(&quad)[0] - far).abs() < 1e-9);
+    }
+}
