@@ -3,11 +3,19 @@
 //! The crates below this one are the library to build on; this one may change with every version.
 #![forbid(unsafe_code)]
 
+mod commands;
+pub mod compare;
+pub mod dice_command;
+mod error;
 pub mod image_io;
 mod input_error;
-pub mod mesh_io;
 pub mod job;
 pub mod memory;
+pub mod mesh_io;
+pub mod options;
+pub mod pipeline;
 pub mod scene;
 
+pub use commands::run;
+pub use error::CliError;
 pub use input_error::{InputError, Place};

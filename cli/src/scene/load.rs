@@ -28,11 +28,10 @@ enum Kind {
 ///
 /// Whatever is wrong with the file, or with one that it names.
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Scene, InputError> {
-    let (document, kind, folder) = read_document(path)?;
-    let mut document = document;
+    let (mut document, kind, folder) = read_document(path)?;
     apply(&mut document, overrides)?;
     let description = Description::new(document)?;
-    resolve::resolve(&description, &folder, kind == Kind::Mesh)
+    resolve::resolve(&description, &folder, kind == Kind::Mesh, None)
 }
 
 /// Changes a document by the overrides. A field of view takes the place of a height, and the other way round.

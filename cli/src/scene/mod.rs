@@ -3,6 +3,7 @@
 //! A [`Scene`] holds every mesh in world space, every texture decoded and every default filled in, so that whoever
 //! draws it needs neither files nor rules.
 
+mod builtin;
 pub mod description;
 mod fingerprint;
 mod framing;
@@ -14,6 +15,7 @@ pub mod text;
 mod texture_lookup;
 mod textures;
 
+pub use builtin::builtin;
 pub use description::{Description, parse_str};
 pub use load::{Overrides, load};
 pub use text::Format;

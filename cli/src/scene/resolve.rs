@@ -1,5 +1,6 @@
 //! A description to a [`Scene`]: opens what it names and puts everything together.
 
+use super::builtin::Generated;
 use super::description::{Description, FileReference, ObjectDescription, TextureReference};
 use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
@@ -18,8 +19,19 @@ use std::rc::Rc;
 /// # Errors
 ///
 /// A file that is missing or wrong, a material that is not defined, a camera without a direction.
-pub(super) fn resolve(description: &Description, folder: &Path, add_light: bool) -> Result<Scene, InputError> {
+pub(super) fn resolve(
+    description: &Description,
+    folder: &Path,
+    add_light: bool,
+    generated: Option<Generated>,
+) -> Result<Scene, InputError> {
     let mut builder = Builder::new(description, folder);
+    if let Some(generated) = generated {
+        for (name, purpose, texture) in generated.textures {
+            builder.textures.insert(folder.join(name), purpose, texture);
+        }
+        builder.generated_mesh = generated.mesh;
+    }
     for object in &description.objects {
         builder.add(object)?;
     }
@@ -73,6 +85,7 @@ struct Builder<'a> {
     materials: MaterialTable<'a>,
     textures: TextureTable,
     warnings: Vec<String>,
+    generated_mesh: fn(&str) -> Option<FileMesh>,
 }
 
 impl<'a> Builder<'a> {
@@ -85,6 +98,7 @@ impl<'a> Builder<'a> {
             materials: MaterialTable::new(description, folder),
             textures: TextureTable::default(),
             warnings: Vec::new(),
+            generated_mesh: |_| None,
         }
     }
 
@@ -105,6 +119,9 @@ impl<'a> Builder<'a> {
     fn file_mesh(&mut self, path: &Path, reference: &FileReference) -> Result<Rc<FileMesh>, InputError> {
         if let Some(mesh) = self.meshes.get(path) {
             return Ok(Rc::clone(mesh));
+        }
+        if let Some(mesh) = (self.generated_mesh)(&reference.path) {
+            return Ok(Rc::new(mesh));
         }
         let document = &self.description.document;
         let name = path.display().to_string();

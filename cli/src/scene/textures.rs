@@ -43,6 +43,12 @@ impl TextureTable {
         Ok(self.list.len() - 1)
     }
 
+    /// Adds a texture that is not read from a file, under the path that stands for it.
+    pub(super) fn insert(&mut self, path: PathBuf, purpose: Purpose, texture: Texture) {
+        self.list.push(texture);
+        self.known.insert((path, purpose), self.list.len() - 1);
+    }
+
     pub(super) fn into_textures(self) -> Vec<Texture> {
         self.list
     }

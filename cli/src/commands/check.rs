@@ -1,0 +1,27 @@
+//! `check`.
+
+use super::Report;
+use crate::error::CliError;
+use crate::options::{CameraOptions, CheckOptions};
+use crate::scene;
+
+pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
+    let report = Report::new(&options.common)?;
+    let overrides = CameraOptions::default().overrides(&options.set);
+    let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides))?;
+    scene.warnings.iter().for_each(|warning| report.warn(warning));
+    report.stats.count("triangles", scene.mesh.triangles.len() as u64);
+    report.stats.count("lights", scene.lights.len() as u64);
+    report.note(&format!(
+        "{}: fine; {} triangles in {} objects, {} materials, {} textures, {} lights, {}×{} pixels",
+        options.scene.display(),
+        scene.mesh.triangles.len(),
+        scene.mesh.objects.len(),
+        scene.materials.len(),
+        scene.textures.len(),
+        scene.lights.len(),
+        scene.image.width,
+        scene.image.height
+    ));
+    report.finish()
+}

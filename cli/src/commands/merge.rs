@@ -1,0 +1,132 @@
+//! `merge`.
+
+use super::Report;
+use super::render::{OutputFormat, write_exr, write_png};
+use crate::error::CliError;
+use crate::image_io::{Channel, ExrFile, Frame, PngOptions, Stamp, Window};
+use crate::input_error::InputError;
+use crate::options::MergeOptions;
+use exr::prelude::FlatSamples;
+use std::path::Path;
+
+/// A part and the name of its file.
+struct Part {
+    name: String,
+    file: ExrFile,
+    stamp: Stamp,
+}
+
+pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
+    let report = Report::new(&options.common)?;
+    let format = OutputFormat::of(&options.output)?;
+    let parts = options.parts.iter().map(|path| report.stats.stage("load", || read_part(path)));
+    let mut parts = parts.collect::<Result<Vec<_>, _>>()?;
+    report.stats.count("parts", parts.len() as u64);
+    parts.sort_by_key(|part| (part.file.window.y0, part.file.window.x0));
+    check_same_job(&parts)?;
+    check_cover(&parts)?;
+    let whole = report.stats.stage("merge", || join(&parts));
+    report.stats.stage("write", || match format {
+        OutputFormat::Exr => write_exr(&options.output, whole),
+        OutputFormat::Png => {
+            let background = parts[0].stamp.background;
+            let png = PngOptions { exposure_ev: options.exposure, background };
+            write_png(&options.output, &frame_of(&whole), &png)
+        }
+    })?;
+    report.note(&format!("{} parts joined in {}", parts.len(), options.output.display()));
+    report.finish()
+}
+
+fn read_part(path: &Path) -> Result<Part, CliError> {
+    let name = path.display().to_string();
+    let fault = |message: String| CliError::Input(InputError::of_file(&name, message));
+    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => CliError::Parts(format!("part {name} is missing")),
+        _ => fault(format!("cannot be read: {error}")),
+    })?;
+    let mut file = ExrFile::read(&bytes).map_err(|error| fault(format!("cannot be decoded: {error}")))?;
+    let stamp = file.stamp.take();
+    let stamp = stamp.ok_or_else(|| CliError::Parts(format!("{name} was not written by `pointillist render`")))?;
+    Ok(Part { name, file, stamp })
+}
+
+/// All parts are of one picture, drawn with the same options.
+fn check_same_job(parts: &[Part]) -> Result<(), CliError> {
+    let first = &parts[0];
+    for part in parts {
+        let same = part.stamp.fingerprint == first.stamp.fingerprint
+            && part.stamp.version == first.stamp.version
+            && part.stamp.region == first.stamp.region
+            && part.file.size == first.file.size;
+        let kinds = |part: &Part| -> Vec<_> {
+            part.file.channels.iter().map(|c| (c.name.clone(), std::mem::discriminant(&c.samples))).collect()
+        };
+        if !same || kinds(part) != kinds(first) {
+            return Err(CliError::Parts(format!(
+                "{} and {} are not parts of the same picture: scene, options or version differ",
+                first.name, part.name
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The parts, sorted by row, cover the region without gap or overlap.
+fn check_cover(parts: &[Part]) -> Result<(), CliError> {
+    let region = parts[0].stamp.region;
+    let mut next = region.y0;
+    let mut before: Option<&Part> = None;
+    for part in parts {
+        let window = part.file.window;
+        if (window.x0, window.x1) != (region.x0, region.x1) || window.y1 > region.y1 {
+            return Err(CliError::Parts(format!("{} does not fit into the picture {region}", part.name)));
+        }
+        if window.y0 < next {
+            let other = before.map_or("another part", |part| part.name.as_str());
+            return Err(CliError::Parts(format!("{other} and {} overlap from row {} on", part.name, window.y0)));
+        }
+        if window.y0 > next {
+            return Err(gap(next, window.y0));
+        }
+        next = window.y1;
+        before = Some(part);
+    }
+    if next < region.y1 { Err(gap(next, region.y1)) } else { Ok(()) }
+}
+
+fn gap(from: u32, to: u32) -> CliError {
+    CliError::Parts(format!("a part is missing: nothing covers rows {from} to {}", to - 1))
+}
+
+/// Parts are bands of full rows, so the whole is their samples one after the other.
+fn join(parts: &[Part]) -> ExrFile {
+    let first = &parts[0];
+    let channels = first.file.channels.iter().enumerate().map(|(index, channel)| {
+        let planes = parts.iter().map(|part| &part.file.channels[index].samples);
+        let samples = match channel.samples {
+            FlatSamples::F16(_) => FlatSamples::F16(
+                planes.flat_map(|plane| if let FlatSamples::F16(s) = plane { s.as_slice() } else { &[] }).copied().collect(),
+            ),
+            FlatSamples::F32(_) => FlatSamples::F32(
+                planes.flat_map(|plane| if let FlatSamples::F32(s) = plane { s.as_slice() } else { &[] }).copied().collect(),
+            ),
+            FlatSamples::U32(_) => FlatSamples::U32(
+                planes.flat_map(|plane| if let FlatSamples::U32(s) = plane { s.as_slice() } else { &[] }).copied().collect(),
+            ),
+        };
+        Channel { name: channel.name.clone(), samples }
+    });
+    let stamp = Stamp { tile: None, ..first.stamp.clone() };
+    ExrFile { size: first.file.size, window: first.stamp.region, channels: channels.collect(), stamp: Some(stamp) }
+}
+
+/// Only the colours, for a PNG.
+fn frame_of(file: &ExrFile) -> Frame {
+    let pixels = file.window.pixels() as usize;
+    let plane = |name: &str, other: f32| file.plane(name).unwrap_or_else(|| vec![other; pixels]);
+    let [r, g, b, a] = [("R", 0.0), ("G", 0.0), ("B", 0.0), ("A", 1.0)].map(|(name, other)| plane(name, other));
+    let color = (0..pixels).map(|i| [r[i], g[i], b[i], a[i]]).collect();
+    let window: Window = file.window;
+    Frame { size: file.size, window, color, depth: Vec::new(), layers: Vec::new() }
+}

@@ -1,0 +1,32 @@
+//! The commands.
+
+mod check;
+mod compare;
+mod dice;
+mod generate;
+mod info;
+mod merge;
+mod render;
+mod report;
+
+use crate::error::CliError;
+use crate::options::{Cli, Command};
+use report::Report;
+
+/// Runs a command line.
+///
+/// # Errors
+///
+/// Whatever ends the command early; [`CliError::exit_code`] says with which code.
+pub fn run(cli: &Cli) -> Result<(), CliError> {
+    match &cli.command {
+        Command::Render(options) => render::run(options),
+        Command::Dice(options) => dice::run(options),
+        Command::Compare(options) => compare::run(options),
+        Command::Info(options) => info::run(options),
+        Command::Check(options) => check::run(options),
+        Command::Merge(options) => merge::run(options),
+        Command::Completions { shell } => generate::completions(*shell),
+        Command::Man { output } => generate::man(output.as_deref()),
+    }
+}

@@ -1,0 +1,211 @@
+//! `render`.
+
+use super::Report;
+use crate::error::CliError;
+use crate::image_io::{
+    ExrFile, Frame, LayerKind, PngOptions, Precision, Stamp, Window, encode_png, write_atomically,
+};
+use crate::job::{Progress, RenderJob};
+use crate::options::{LayerRequest, RenderOptions};
+use crate::scene::{self, Scene};
+use crate::{memory, pipeline};
+use std::hash::Hasher as _;
+use std::path::{Path, PathBuf};
+use twox_hash::XxHash3_64;
+
+/// How a picture is written, by the end of its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum OutputFormat {
+    Exr,
+    Png,
+}
+
+impl OutputFormat {
+    /// The format that a path asks for.
+    pub(super) fn of(path: &Path) -> Result<Self, CliError> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        match extension.as_str() {
+            "exr" => Ok(Self::Exr),
+            "png" => Ok(Self::Png),
+            _ => Err(CliError::Usage(format!("`{}`: a picture's name ends in .png or .exr", path.display()))),
+        }
+    }
+}
+
+pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
+    let report = Report::new(&options.common)?;
+    let output = output_path(options);
+    let format = OutputFormat::of(&output)?;
+    check_options(options, format, &report)?;
+    let overrides = options.camera.overrides(&options.set);
+    let scene = report.stats.stage("load", || match &options.scene {
+        Some(path) => scene::load(path, &overrides),
+        None => scene::builtin(&overrides),
+    })?;
+    scene.warnings.iter().for_each(|warning| report.warn(warning));
+    let job = job(&scene, options)?;
+    check_memory(&job)?;
+    let stamp = stamp(&scene, &job, options);
+    if format == OutputFormat::Exr && !options.overwrite && is_there(&output, &stamp, job.window) {
+        report.note(&format!("{} is already there; --overwrite draws it again", output.display()));
+        return report.finish();
+    }
+    let progress = Progress::new(options.common.progress_mode());
+    let result = pipeline::render(&scene, &job, &progress, &report.stats);
+    progress.finish();
+    let frame = result.map_err(|error| CliError::Failed(error.to_string()))?;
+    report.stats.count("pixels", job.window.pixels());
+    report.stats.stage("write", || match format {
+        OutputFormat::Exr => write_exr(&output, ExrFile::from_frame(&frame, stamp, precision(options))),
+        OutputFormat::Png => {
+            let background = scene.image.background.to_array();
+            write_png(&output, &frame, &PngOptions { exposure_ev: options.exposure, background })
+        }
+    })?;
+    tell(&report, options, &output, job.window);
+    report.finish()
+}
+
+fn output_path(options: &RenderOptions) -> PathBuf {
+    match (&options.output, &options.scene) {
+        (Some(output), _) => output.clone(),
+        (None, Some(scene)) if scene != Path::new("-") => {
+            PathBuf::from(scene.with_extension("png").file_name().unwrap_or_default())
+        }
+        _ => PathBuf::from("pointillist.png"),
+    }
+}
+
+fn check_options(options: &RenderOptions, format: OutputFormat, report: &Report<'_>) -> Result<(), CliError> {
+    if format == OutputFormat::Png && (!options.layers.is_empty() || options.float) {
+        return Err(CliError::Usage("--layers and --float need an .exr output; add -o picture.exr".to_owned()));
+    }
+    if format == OutputFormat::Exr && options.exposure != 0.0 {
+        report.warn("--exposure changes PNG only; EXR keeps the light as it is");
+    }
+    if format == OutputFormat::Png && options.camera.tile.is_some() {
+        report.warn("`merge` joins EXR parts only; add -o part.exr");
+    }
+    Ok(())
+}
+
+fn precision(options: &RenderOptions) -> Precision {
+    if options.float { Precision::Float } else { Precision::Half }
+}
+
+/// What is to be drawn.
+fn job(scene: &Scene, options: &RenderOptions) -> Result<RenderJob, CliError> {
+    let (width, height) = (scene.image.width, scene.image.height);
+    let region = options.camera.crop.unwrap_or(Window::whole(width, height));
+    if region.x1 > width || region.y1 > height {
+        return Err(CliError::Usage(format!("--crop {region} is not inside the picture of {width}×{height} pixels")));
+    }
+    let window = match options.camera.tile {
+        None => region,
+        Some(tile) => tile.window(region).ok_or_else(|| {
+            CliError::Usage(format!("--tile {tile}: {} rows cannot be cut into more tiles", region.height()))
+        })?,
+    };
+    Ok(RenderJob { region, window, layers: layers(scene, &options.layers)? })
+}
+
+fn layers(scene: &Scene, requests: &[LayerRequest]) -> Result<Vec<LayerKind>, CliError> {
+    let mut kinds = Vec::new();
+    let lights = 0..scene.lights.len();
+    for request in requests {
+        let more = match request {
+            LayerRequest::All => {
+                use LayerKind::{Albedo, Direct, Id, Indirect, Lit, Normal, Position};
+                let mut all = vec![Normal, Position, Albedo, Direct, Indirect, Id];
+                all.extend(lights.clone().map(Lit));
+                all
+            }
+            LayerRequest::Normal => vec![LayerKind::Normal],
+            LayerRequest::Position => vec![LayerKind::Position],
+            LayerRequest::Albedo => vec![LayerKind::Albedo],
+            LayerRequest::Direct => vec![LayerKind::Direct],
+            LayerRequest::Indirect => vec![LayerKind::Indirect],
+            LayerRequest::Id => vec![LayerKind::Id],
+            LayerRequest::Lit(None) => lights.clone().map(LayerKind::Lit).collect(),
+            LayerRequest::Lit(Some(name)) => {
+                let index = scene.lights.iter().position(|light| light.name == *name);
+                let index = index.ok_or_else(|| {
+                    let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
+                    CliError::Usage(format!("--layers lit.{name}: the lights are {}", names.join(", ")))
+                })?;
+                vec![LayerKind::Lit(index)]
+            }
+        };
+        more.into_iter().for_each(|kind| {
+            if !kinds.contains(&kind) {
+                kinds.push(kind);
+            }
+        });
+    }
+    Ok(kinds)
+}
+
+/// Refuses a picture that memory cannot hold, before anything is computed.
+fn check_memory(job: &RenderJob) -> Result<(), CliError> {
+    let planes: usize = 5 + job.layers.iter().map(|layer| layer.channels(&[]).len()).sum::<usize>();
+    // Once as computed, and once more as it is written.
+    let needed = u128::from(job.window.pixels()) * planes as u128 * 4 * 2;
+    let Some(available) = memory::available_bytes() else { return Ok(()) };
+    if needed <= u128::from(available) {
+        return Ok(());
+    }
+    let (width, height) = (job.window.width(), job.window.height());
+    let message = format!(
+        "{width}×{height} pixels take {} of memory, and {} are available",
+        memory::human(needed),
+        memory::human(u128::from(available))
+    );
+    Err(crate::InputError::of_file("image.size", message).with_help("draw it in parts with --tile, or smaller").into())
+}
+
+fn stamp(scene: &Scene, job: &RenderJob, options: &RenderOptions) -> Stamp {
+    let mut hash = XxHash3_64::default();
+    hash.write(&scene.fingerprint.to_le_bytes());
+    let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
+    for channel in job.layers.iter().flat_map(|layer| layer.channels(&names)) {
+        hash.write(channel.as_bytes());
+        hash.write(b" ");
+    }
+    hash.write(&[u8::from(options.float)]);
+    Stamp {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        fingerprint: hash.finish(),
+        region: job.region,
+        tile: options.camera.tile.map(|tile| tile.to_string()),
+        background: scene.image.background.to_array(),
+    }
+}
+
+/// Whether the output is there already, drawn from the same scene with the same options.
+fn is_there(path: &Path, stamp: &Stamp, window: Window) -> bool {
+    let Ok(bytes) = std::fs::read(path) else { return false };
+    ExrFile::read(&bytes).is_ok_and(|file| file.window == window && file.stamp.as_ref() == Some(stamp))
+}
+
+pub(super) fn write_exr(path: &Path, file: ExrFile) -> Result<(), CliError> {
+    write_atomically(path, |output| file.write(output))
+        .map_err(|error| CliError::writing(&path.display().to_string(), &error))
+}
+
+pub(super) fn write_png(path: &Path, frame: &Frame, options: &PngOptions) -> Result<(), CliError> {
+    let (width, height) = (frame.window.width(), frame.window.height());
+    write_atomically(path, |output| encode_png(output, &frame.color, width, height, options))
+        .map_err(|error| CliError::writing(&path.display().to_string(), &error))
+}
+
+fn tell(report: &Report<'_>, options: &RenderOptions, output: &Path, window: Window) {
+    let seconds = report.stats.elapsed().as_secs_f64();
+    let (width, height) = (window.width(), window.height());
+    report.note(&format!("{}: {width}×{height} pixels in {seconds:.2} s", output.display()));
+    if options.scene.is_none() {
+        report.note(
+            "This is the built-in scene. Next: `pointillist render model.obj`, another view with\n\
+             `pointillist render --eye 4,3,6 --fov 30`, and all options with `pointillist render --help`.",
+        );
+    }
+}

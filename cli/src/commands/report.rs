@@ -1,0 +1,78 @@
+//! What every command does around its work: threads, notes, statistics, text results.
+
+use crate::error::CliError;
+use crate::image_io::write_atomically;
+use crate::job::Stats;
+use crate::options::Common;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+/// The running command's voice and clock.
+pub(super) struct Report<'a> {
+    common: &'a Common,
+    pub(super) stats: Stats,
+}
+
+impl<'a> Report<'a> {
+    /// Starts the clock and sets up the threads.
+    pub(super) fn new(common: &'a Common) -> Result<Self, CliError> {
+        let stats = Stats::new();
+        if let Some(threads) = common.threads {
+            // Fails if threads are already running, that is when a test calls a second command in one process; results do not
+            // depend on their number.
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global();
+        }
+        Ok(Self { common, stats })
+    }
+
+    /// Tells the user something worth knowing.
+    pub(super) fn note(&self, text: &str) {
+        if !self.common.quiet {
+            // Nobody to tell is no reason to stop.
+            let _ = writeln!(io::stderr(), "{text}");
+        }
+    }
+
+    /// Tells the user something that may be wrong.
+    pub(super) fn warn(&self, text: &str) {
+        self.note(&format!("warning: {text}"));
+    }
+
+    /// Tells a user who wants details.
+    pub(super) fn detail(&self, text: &str) {
+        if self.common.verbose {
+            self.note(text);
+        }
+    }
+
+    /// Writes `--stats`, and with `-v` the seconds of every stage.
+    pub(super) fn finish(&self) -> Result<(), CliError> {
+        let json = self.stats.to_json();
+        if let Some(seconds) = json["seconds"].as_object() {
+            for (stage, value) in seconds {
+                self.detail(&format!("{stage:>10} {:.3} s", value.as_f64().unwrap_or_default()));
+            }
+        }
+        match &self.common.stats {
+            Some(path) => write_text(path, |output| {
+                serde_json::to_writer_pretty(&mut *output, &json)?;
+                writeln!(output)
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Writes text to a file as a whole, or to standard output for `-`.
+pub(super) fn write_text(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), CliError> {
+    if path == Path::new("-") {
+        let mut output = BufWriter::new(io::stdout().lock());
+        let result = write(&mut output).and_then(|()| output.flush());
+        return result.map_err(|error| CliError::writing("standard output", &error));
+    }
+    write_atomically(path, |output| write(output))
+        .map_err(|error| CliError::writing(&path.display().to_string(), &error))
+}

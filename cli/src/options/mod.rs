@@ -1,0 +1,164 @@
+//! The options of every command, as clap reads them.
+
+mod common;
+mod render;
+mod values;
+
+pub use common::{Common, Progressive, TextOutput};
+pub use render::{CameraOptions, LayerRequest, RenderOptions};
+pub use values::{Tile, Vector};
+
+use clap::{Parser, Subcommand};
+use clap_complete::Shell;
+use std::path::PathBuf;
+
+/// Draws pictures of meshes with exact coverage: no samples, no noise, no shadow-map steps.
+#[derive(Debug, Parser)]
+#[command(
+    name = "pointillist",
+    version,
+    max_term_width = 100,
+    after_help = "Exit codes: 0 done, 1 failed while running, 2 wrong usage, 3 bad input file,\n\
+    4 pieces missing or not matching, 5 `compare` beyond its limit, 130 interrupted."
+)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Draw a scene
+    ///
+    /// SCENE is a .toml or .json scene file, or an .obj or .ply mesh, which is then framed and lit. Without SCENE the
+    /// built-in scene is drawn to pointillist.png.
+    #[command(after_help = "Examples:\n  \
+        pointillist render\n  \
+        pointillist render house.toml -o house.exr --layers all\n  \
+        pointillist render bunny.obj --eye 0,1,3 --target 0,0.5,0 --fov 30 -o bunny.png\n  \
+        pointillist render house.toml --set render.shading=flat --size 1920x1080\n  \
+        pointillist render house.toml --tile 0/4 -o part0.exr")]
+    Render(RenderOptions),
+    /// Cut polygons by a grid: JSON lines in, JSON lines out
+    #[command(after_help = "Example:\n  \
+        echo '{\"polygon\":[[0.5,0.5],[1.5,0.5],[1.5,1.5],[0.5,1.5]]}' | pointillist dice --areas")]
+    Dice(DiceOptions),
+    /// Measure how far apart two pictures are
+    ///
+    /// Prints RMSE, MAE, bias, the largest difference and its pixel, PSNR (peak 1) and the mean of LDR-FLIP as JSON,
+    /// all over linear red, green and blue.
+    #[command(after_help = "Examples:\n  \
+        pointillist compare a.exr b.exr\n  \
+        pointillist compare a.exr b.exr --diff difference.png --max-rmse 1e-3")]
+    Compare(CompareOptions),
+    /// Say what a scene, mesh or image file holds, as JSON
+    #[command(after_help = "Examples:\n  pointillist info house.toml\n  pointillist info house.exr")]
+    Info(InfoOptions),
+    /// Read and validate a scene and everything it names; draw nothing
+    #[command(after_help = "Examples:\n  \
+        pointillist check house.toml\n  \
+        pointillist check house.toml --set camera.fov=200")]
+    Check(CheckOptions),
+    /// Join the EXR parts that `render --tile` wrote
+    #[command(after_help = "Example:\n  pointillist merge part0.exr part1.exr part2.exr part3.exr -o house.exr")]
+    Merge(MergeOptions),
+    /// Print a completion script for a shell
+    #[command(after_help = "Example:\n  \
+        pointillist completions bash > ~/.local/share/bash-completion/completions/pointillist")]
+    Completions {
+        /// Which shell.
+        shell: Shell,
+    },
+    /// Print the manual page, or write one for every command into a folder
+    #[command(after_help = "Examples:\n  \
+        pointillist man | man -l -\n  \
+        pointillist man -o ~/.local/share/man/man1")]
+    Man {
+        /// Folder to write pointillist.1, pointillist-render.1, … into.
+        #[arg(short, long, value_name = "FOLDER")]
+        output: Option<PathBuf>,
+    },
+}
+
+/// `dice`.
+#[derive(Debug, clap::Args)]
+pub struct DiceOptions {
+    /// File with a JSON object on each line; `-` is standard input.
+    #[arg(value_name = "FILE", default_value = "-")]
+    pub input: PathBuf,
+    /// One area and centroid for each cell in the place of pieces; accepts concave polygons.
+    #[arg(long)]
+    pub areas: bool,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: TextOutput,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `compare`.
+#[derive(Debug, clap::Args)]
+pub struct CompareOptions {
+    /// A picture: EXR, PNG, JPEG or HDR.
+    pub a: PathBuf,
+    /// The picture to compare it with.
+    pub b: PathBuf,
+    /// Write the absolute difference as a picture, brightened so that the largest is white.
+    #[arg(long, value_name = "OUT.png")]
+    pub diff: Option<PathBuf>,
+    /// Exit with code 5 if the RMSE is larger.
+    #[arg(long, value_name = "X", value_parser = values::not_negative)]
+    pub max_rmse: Option<f64>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: TextOutput,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `info`.
+#[derive(Debug, clap::Args)]
+pub struct InfoOptions {
+    /// A scene (.toml, .json), mesh (.obj, .ply) or picture (.exr, .png, .jpg, .hdr).
+    pub file: PathBuf,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: TextOutput,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `check`.
+#[derive(Debug, clap::Args)]
+pub struct CheckOptions {
+    /// The scene; `-` is standard input.
+    pub scene: PathBuf,
+    /// Override a key of the scene.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `merge`.
+#[derive(Debug, clap::Args)]
+pub struct MergeOptions {
+    /// EXR files that `render --tile` wrote, in any order.
+    #[arg(required = true, value_name = "PART")]
+    pub parts: Vec<PathBuf>,
+    /// The whole picture: .exr or .png.
+    #[arg(short, long, value_name = "PATH")]
+    pub output: PathBuf,
+    /// For PNG: brighten by this many stops.
+    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = values::exposure, allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}

@@ -1,0 +1,132 @@
+//! `render`.
+
+use super::values::{self, Tile, Vector};
+use super::Common;
+use crate::image_io::Window;
+use crate::scene::Overrides;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// `render`.
+#[derive(Debug, clap::Args)]
+pub struct RenderOptions {
+    /// Scene file or mesh; `-` is a scene file on standard input.
+    pub scene: Option<PathBuf>,
+    /// The picture: .png or .exr (default: pointillist.png for the built-in scene, else SCENE with .png)
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// Override any key of the scene; the value is TOML
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// The view.
+    #[command(flatten)]
+    pub camera: CameraOptions,
+    /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.<light>, id
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub layers: Vec<LayerRequest>,
+    /// For EXR: 32-bit colours in the place of 16-bit
+    #[arg(long)]
+    pub float: bool,
+    /// For PNG: brighten by this many stops
+    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = values::exposure, allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Draw even if the EXR is already there with the same fingerprint
+    #[arg(long)]
+    pub overwrite: bool,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Options that override the scene's camera and picture.
+#[derive(Clone, Debug, Default, clap::Args)]
+#[command(next_help_heading = "View")]
+pub struct CameraOptions {
+    /// Where the camera is
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub eye: Option<Vector>,
+    /// What it looks at
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub target: Option<Vector>,
+    /// Up in the picture
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub up: Option<Vector>,
+    /// Vertical field of view in degrees
+    #[arg(long, value_name = "DEG", value_parser = values::degrees)]
+    pub fov: Option<f64>,
+    /// Width and height of the picture
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    pub size: Option<[u32; 2]>,
+    /// Draw only these pixels: from X0,Y0 to before X1,Y1
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = values::window)]
+    pub crop: Option<Window>,
+    /// Draw only one of N bands of rows, or several, counted from 0
+    #[arg(long, value_name = "I/N")]
+    pub tile: Option<Tile>,
+}
+
+impl CameraOptions {
+    /// What these options and `--set` change in a scene; the options win.
+    pub fn overrides(&self, set: &[String]) -> Overrides {
+        let mut assignments: Vec<(String, String)> =
+            set.iter().map(|assignment| ("--set".to_owned(), assignment.clone())).collect();
+        let mut add = |option: &str, assignment: String| assignments.push((option.to_owned(), assignment));
+        for (key, value) in [("eye", self.eye), ("target", self.target), ("up", self.up)] {
+            if let Some(Vector([x, y, z])) = value {
+                // `{:?}` writes every finite number so that it reads back the same, and is TOML.
+                add(&format!("--{key}"), format!("camera.{key}=[{x:?}, {y:?}, {z:?}]"));
+            }
+        }
+        if let Some(fov) = self.fov {
+            add("--fov", format!("camera.fov={fov:?}"));
+        }
+        if let Some([width, height]) = self.size {
+            add("--size", format!("image.size=[{width}, {height}]"));
+        }
+        Overrides { assignments }
+    }
+}
+
+/// One entry of `--layers`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LayerRequest {
+    /// Everything there is.
+    All,
+    /// `N`.
+    Normal,
+    /// `P`.
+    Position,
+    /// `albedo`.
+    Albedo,
+    /// `direct`.
+    Direct,
+    /// `indirect`.
+    Indirect,
+    /// `lit`: all lights; `lit.NAME`: one.
+    Lit(Option<String>),
+    /// `id`.
+    Id,
+}
+
+impl FromStr for LayerRequest {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Ok(match text {
+            "all" => Self::All,
+            "N" => Self::Normal,
+            "P" => Self::Position,
+            "albedo" => Self::Albedo,
+            "direct" => Self::Direct,
+            "indirect" => Self::Indirect,
+            "lit" => Self::Lit(None),
+            "id" => Self::Id,
+            _ => match text.strip_prefix("lit.") {
+                Some(light) => Self::Lit(Some(light.to_owned())),
+                None => {
+                    return Err("layers are all, N, P, albedo, direct, indirect, lit, lit.<light> and id".to_owned());
+                }
+            },
+        })
+    }
+}

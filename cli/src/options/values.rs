@@ -1,0 +1,122 @@
+//! Values of options: vectors, sizes, windows, tiles.
+
+use crate::image_io::Window;
+use std::str::FromStr;
+
+/// Three finite numbers, as in `1,2.5,-3`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vector(pub [f64; 3]);
+
+impl FromStr for Vector {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f64> = list(text, ',', "three numbers such as 1,2.5,-3")?;
+        match numbers[..] {
+            [x, y, z] if numbers.iter().all(|n| n.is_finite()) => Ok(Self([x, y, z])),
+            [_, _, _] => Err("numbers must be finite".to_owned()),
+            _ => Err(format!("{} numbers; three are needed, such as 1,2.5,-3", numbers.len())),
+        }
+    }
+}
+
+/// A part of a picture's rows: from `first` to `last` of `count` nearly equal bands, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    /// First band.
+    pub first: u32,
+    /// Last band, included.
+    pub last: u32,
+    /// How many bands there are.
+    pub count: u32,
+}
+
+impl FromStr for Tile {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        const WANTED: &str = "I/N or A-B/N, counted from 0, such as 0/4 or 2-3/4";
+        let wrong = || format!("must be {WANTED}");
+        let number = |text: &str| text.parse::<u32>().map_err(|_| wrong());
+        let (bands, count) = text.split_once('/').ok_or_else(wrong)?;
+        let (first, last) = bands.split_once('-').unwrap_or((bands, bands));
+        let tile = Self { first: number(first)?, last: number(last)?, count: number(count)? };
+        if tile.count == 0 {
+            Err("there must be at least one tile".to_owned())
+        } else if tile.first > tile.last {
+            Err(format!("tile {} comes after tile {}", tile.first, tile.last))
+        } else if tile.last >= tile.count {
+            Err(format!("tiles of {} go from 0 to {}", tile.count, tile.count - 1))
+        } else {
+            Ok(tile)
+        }
+    }
+}
+
+impl std::fmt::Display for Tile {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.first == self.last {
+            write!(f, "{}/{}", self.first, self.count)
+        } else {
+            write!(f, "{}-{}/{}", self.first, self.last, self.count)
+        }
+    }
+}
+
+impl Tile {
+    /// The rows of `region` that this tile covers, `None` if there are fewer rows than tiles.
+    ///
+    /// Tiles 0 to N − 1 cover the region without gap or overlap.
+    pub fn window(self, region: Window) -> Option<Window> {
+        let rows = u64::from(region.height());
+        let count = u64::from(self.count);
+        if count > rows {
+            return None;
+        }
+        // Fits: at most `rows`, which is a u32.
+        let edge = |band: u64| region.y0 + (rows * band / count) as u32;
+        Some(Window { y0: edge(u64::from(self.first)), y1: edge(u64::from(self.last) + 1), ..region })
+    }
+}
+
+/// `WxH`.
+pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
+    let numbers: Vec<u32> = list(text, 'x', "width and height such as 1280x720")?;
+    match numbers[..] {
+        [0, _] | [_, 0] => Err("width and height must be at least 1".to_owned()),
+        [width, height] => Ok([width, height]),
+        _ => Err("must be width and height such as 1280x720".to_owned()),
+    }
+}
+
+/// `X0,Y0,X1,Y1` with x0 < x1 and y0 < y1.
+pub(super) fn window(text: &str) -> Result<Window, String> {
+    let numbers: Vec<u32> = list(text, ',', "four pixel numbers X0,Y0,X1,Y1")?;
+    match numbers[..] {
+        [x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Ok(Window { x0, y0, x1, y1 }),
+        [_, _, _, _] => Err("the window is empty: X0 < X1 and Y0 < Y1 are needed".to_owned()),
+        _ => Err("must be four pixel numbers X0,Y0,X1,Y1".to_owned()),
+    }
+}
+
+/// A field of view.
+pub(super) fn degrees(text: &str) -> Result<f64, String> {
+    let angle = text.parse::<f64>().map_err(|_| "must be a number of degrees".to_owned())?;
+    if angle > 0.0 && angle < 180.0 { Ok(angle) } else { Err("must be more than 0 and less than 180".to_owned()) }
+}
+
+/// An exposure.
+pub(super) fn exposure(text: &str) -> Result<f32, String> {
+    let ev = text.parse::<f32>().map_err(|_| "must be a number of stops".to_owned())?;
+    if ev.abs() <= 60.0 { Ok(ev) } else { Err("must be from -60 to 60".to_owned()) }
+}
+
+/// A limit.
+pub(super) fn not_negative(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().map_err(|_| "must be a number".to_owned())?;
+    if number >= 0.0 { Ok(number) } else { Err("must be 0 or more".to_owned()) }
+}
+
+fn list<T: FromStr>(text: &str, separator: char, wanted: &str) -> Result<Vec<T>, String> {
+    text.split(separator).map(|part| part.trim().parse().map_err(|_| format!("must be {wanted}"))).collect()
+}

@@ -1,0 +1,44 @@
+//! The textures of the built-in scene.
+
+use crate::scene::textures::Purpose;
+use crate::scene::{Texels, Texture, srgb_from_linear};
+use std::path::PathBuf;
+
+/// All of them, by the names that the scene file uses.
+pub(super) fn all() -> Vec<(&'static str, Purpose, Texture)> {
+    let color = Purpose::Color { srgb: true };
+    vec![("floor texture", color, floor()), ("sky texture", color, sky())]
+}
+
+fn texture(name: &str, width: u32, height: u32, color: impl Fn(u32, u32) -> [f32; 3]) -> Texture {
+    let byte = |c: f32| (srgb_from_linear(c) * 255.0 + 0.5) as u8;
+    let texel = |x: u32, y: u32| {
+        let [r, g, b] = color(x, y).map(byte);
+        [r, g, b, u8::MAX]
+    };
+    let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
+    Texture { width, height, texels: Texels::Srgb8(texels), path: PathBuf::from(name) }
+}
+
+/// A chequered floor, no two tiles quite alike.
+fn floor() -> Texture {
+    texture("floor texture", 8, 8, |x, y| {
+        // A multiplicative hash; only its look matters.
+        let noise = (x * 8 + y + 1).wrapping_mul(2_654_435_761) >> 24;
+        let shade = 1.0 + 0.16 * (noise as f32 / 255.0 - 0.5);
+        let light = (x + y) % 2 == 0;
+        let tile = if light { [0.52, 0.48, 0.42] } else { [0.16, 0.145, 0.13] };
+        tile.map(|c| c * shade)
+    })
+}
+
+/// Haze at the horizon, blue above; row 0 is the top.
+fn sky() -> Texture {
+    const ROWS: u32 = 256;
+    texture("sky texture", 1, ROWS, |_, y| {
+        let height = 1.0 - (y as f32 + 0.5) / ROWS as f32;
+        let haze = (-6.0 * height).exp();
+        let mix = |horizon: f32, zenith: f32| horizon * haze + zenith * (1.0 - haze);
+        [mix(0.78, 0.16), mix(0.8, 0.33), mix(0.8, 0.62)]
+    })
+}
