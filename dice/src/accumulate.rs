@@ -166,7 +166,8 @@ impl Walker {
         let sign = self.sign;
         let mut add = |column: i32, from: Point, to: Point| {
             let base = Point { x: fixed::line(column), y: row_line };
-            let entry = Entry::new(column, [from.x - base.x, from.y - base.y], [to.x - base.x, to.y - base.y]);
+            let entry =
+                Entry::new(column, [from.x - base.x, from.y - base.y], [to.x - base.x, to.y - base.y]);
             entries.push(if sign > 0 { entry } else { entry.negated() });
         };
         let mut column = fixed::floor(from.x);

@@ -91,7 +91,11 @@ fn clip_half_space(polygon: &[ClipVertex], out: &mut Vec<ClipVertex>, distance: 
         let b_distance = distance(b.position);
         if (a_distance < 0.0) != (b_distance < 0.0) {
             // Always from the vertex that stays, so that both neighbours of an edge find the same point.
-            out.push(if a_distance < 0.0 { between(b, a, b_distance, a_distance) } else { between(a, b, a_distance, b_distance) });
+            out.push(if a_distance < 0.0 {
+                between(b, a, b_distance, a_distance)
+            } else {
+                between(a, b, a_distance, b_distance)
+            });
         }
         if b_distance >= 0.0 {
             out.push(*b);

@@ -31,17 +31,17 @@ pub enum CodeKind {
 /// A corner of a piece: where two of the lines LU, LB, LL, LR and the edges EL, ER meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Corner {
-    UpperLeft,       // EL and LU
-    LowerLeft,       // EL and LB
-    UpperRight,      // ER and LU
-    LowerRight,      // ER and LB
-    CellUpperLeft,   // LL and LU
-    CellUpperRight,  // LR and LU
-    CellLowerLeft,   // LL and LB
-    CellLowerRight,  // LR and LB
-    LeftEdgeAtLeft,  // EL and LL
-    LeftEdgeAtRight, // EL and LR
-    RightEdgeAtLeft, // ER and LL
+    UpperLeft,        // EL and LU
+    LowerLeft,        // EL and LB
+    UpperRight,       // ER and LU
+    LowerRight,       // ER and LB
+    CellUpperLeft,    // LL and LU
+    CellUpperRight,   // LR and LU
+    CellLowerLeft,    // LL and LB
+    CellLowerRight,   // LR and LB
+    LeftEdgeAtLeft,   // EL and LL
+    LeftEdgeAtRight,  // EL and LR
+    RightEdgeAtLeft,  // ER and LL
     RightEdgeAtRight, // ER and LR
 }
 
@@ -170,7 +170,9 @@ mod tests {
 
     #[test]
     fn the_examples_of_the_paper_have_their_shapes() {
-        use Corner::{CellLowerLeft, CellLowerRight, LeftEdgeAtRight, LowerLeft, LowerRight, RightEdgeAtLeft};
+        use Corner::{
+            CellLowerLeft, CellLowerRight, LeftEdgeAtRight, LowerLeft, LowerRight, RightEdgeAtLeft,
+        };
         let corners = |digits| Code::from_digits(digits).map(|c| c.shape().corners().to_vec());
         assert_eq!(corners([2, 1, 2, 2]), Some(vec![CellLowerRight, LowerLeft, LeftEdgeAtRight]));
         assert_eq!(corners([0, 0, 0, 1]), Some(vec![RightEdgeAtLeft, LowerRight, CellLowerLeft]));

@@ -26,7 +26,16 @@ pub(crate) struct Edge {
 impl Edge {
     /// The edge from `p` to itself: a chain before its first edge.
     pub(crate) fn at(p: Point) -> Self {
-        Self { top: p, bottom: p, slope: 0, steepness: 0, first_row: 0, first_x: p.x, first_column: 0, first_y: p.y }
+        Self {
+            top: p,
+            bottom: p,
+            slope: 0,
+            steepness: 0,
+            first_row: 0,
+            first_x: p.x,
+            first_column: 0,
+            first_y: p.y,
+        }
     }
 
     /// The edge between two points.
@@ -36,8 +45,16 @@ impl Edge {
         let first_row = fixed::floor(top.y) + 1;
         let rightward = bottom.x >= top.x;
         let first_column = if rightward { fixed::floor(top.x) + 1 } else { fixed::ceil(top.x) - 1 };
-        let mut edge =
-            Self { top, bottom, slope: 0, steepness: 0, first_row, first_x: top.x, first_column, first_y: top.y };
+        let mut edge = Self {
+            top,
+            bottom,
+            slope: 0,
+            steepness: 0,
+            first_row,
+            first_x: top.x,
+            first_column,
+            first_y: top.y,
+        };
         let (dx, dy) = (bottom.x - top.x, bottom.y - top.y);
         if fixed::line(first_row) < bottom.y {
             (edge.slope, edge.first_x) = first_crossing(top.x, dx, dy, fixed::line(first_row) - top.y);
@@ -58,10 +75,21 @@ impl Edge {
         self.clamp_x(self.first_x + lines * self.slope)
     }
 
-    /// y where the edge crosses column line `column`, between its ends.
+    /// y where the edge meets column line `column`; its nearer end for lines that it does not reach.
     #[inline]
     pub(crate) fn y_at_column(&self, column: i32) -> Fixed {
-        let lines = Fixed::from((column - self.first_column).unsigned_abs());
+        let line = fixed::line(column);
+        let rightward = self.bottom.x >= self.top.x;
+        // The ends exactly: a corner on a line must not appear twice, 2⁻⁹⁵ apart.
+        let (before, after) = if rightward {
+            (line <= self.top.x, line >= self.bottom.x)
+        } else {
+            (line >= self.top.x, line <= self.bottom.x)
+        };
+        if before || after {
+            return if before { self.top.y } else { self.bottom.y };
+        }
+        let lines = Fixed::from(column.abs_diff(self.first_column));
         (self.first_y + lines * self.steepness).min(self.bottom.y)
     }
 
@@ -79,8 +107,11 @@ impl Edge {
             return self.x_at_row(row);
         }
         let (dx, dy, below) = (self.bottom.x - self.top.x, self.bottom.y - self.top.y, y - self.top.y);
-        let across =
-            if dy >= ONE { fixed::multiply(self.slope, below) } else { fixed::multiply(dx, fixed::divide(below, dy)) };
+        let across = if dy >= ONE {
+            fixed::multiply(self.slope, below)
+        } else {
+            fixed::multiply(dx, fixed::divide(below, dy))
+        };
         self.clamp_x(self.top.x + across)
     }
 

@@ -20,7 +20,9 @@ pub enum DiceError {
         index: usize,
     },
     /// The polygon that [`split`](crate::split()) was given is not convex.
-    #[error("the polygon is not convex at vertex {index}: triangulate it, or use `accumulate`, which needs no convexity")]
+    #[error(
+        "the polygon is not convex at vertex {index}: triangulate it, or use `accumulate`, which needs no convexity"
+    )]
     NotConvex {
         /// Position of a vertex where the outline turns the wrong way.
         index: usize,

@@ -31,9 +31,12 @@
 //! Inside, coordinates are fixed point with 2⁻⁹⁶ of a cell, exact for what an `f64` vertex within ±2³⁰ cells can say
 //! (from 2⁻⁴³ cells upwards; finer digits are cut off). Which cell a point is in, on which side of a line, and whether a
 //! cell is full or empty are decided exactly; crossings of edges with grid lines are off by some 2⁻⁹⁶ cells for each row
-//! or column that the edge passes. What is left is the rounding of the results to `f64`: within 2 units in the last
-//! place for the cell areas of `accumulate` and a few for those of `split`, wherever the polygon lies. Cells with less
-//! than about 2⁻⁸⁵ of their area covered (2⁻⁶⁸ for polygons across 10⁷ cells) are taken as not covered.
+//! or column that the edge passes. What is left is the rounding of the results to `f64`: the cell areas of `accumulate`
+//! are the exact ones rounded once (half a unit in the last place), wherever the polygon lies; those of `split` lose up
+//! to 8 bits more for thin pieces. A sliver's area keeps its digits down to a width of 10⁻¹² cells and beyond. Cells with
+//! less than about 2⁻⁸⁵ of their area covered (2⁻⁶⁸ for polygons across 10⁷ cells) are taken as not covered. On grids
+//! whose origin and cells are no powers of two, results in input coordinates are rounded to those once more, and two
+//! corners of a tiny piece may come out as the same point.
 //!
 //! `split` costs time for each piece, `accumulate` for each cell on the outline and each row. The figures are in the
 //! README, with the commands that give them.

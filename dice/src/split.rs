@@ -51,7 +51,8 @@ pub fn split(polygon: &[DVec2], grid: &Grid, mut visit: impl FnMut(Piece<'_>)) -
     // 1
     let mut up = Chain::new(polygon, grid, extent.top, true);
     let mut down = Chain::new(polygon, grid, extent.top, false);
-    let mut cutter = Cutter { grid, noise: extent.noise(), points: [Point { x: 0, y: 0 }; 6], visit: &mut visit };
+    let mut cutter =
+        Cutter { grid, noise: extent.noise(), points: [Point { x: 0, y: 0 }; 6], visit: &mut visit };
     let mut upper = extent.min.y;
     while upper < extent.max.y {
         // 2
@@ -111,7 +112,8 @@ fn check_convex(polygon: &[DVec2], grid: &Grid) -> Result<(), DiceError> {
             reversals += u32::from(heading * after.y < 0.0);
             heading = after.y.signum();
         }
-        if reversals > 2 {
+        // Forth and back on one line is no area, and no error.
+        if reversals > 2 && turn != 0.0 {
             return Err(DiceError::NotConvex { index });
         }
         before = after;
@@ -149,7 +151,11 @@ impl<'a> Chain<'a> {
             self.steps += 1;
             let from = (self.index, self.end);
             let len = self.polygon.len();
-            self.index = if self.forward { next(self.index, len) } else { self.index.checked_sub(1).unwrap_or(len - 1) };
+            self.index = if self.forward {
+                next(self.index, len)
+            } else {
+                self.index.checked_sub(1).unwrap_or(len - 1)
+            };
             let to = point(self.polygon, self.grid, self.index);
             if to.y < from.1.y {
                 continue; // reflex by less than the tolerance: the chain stays where it was
@@ -298,13 +304,21 @@ impl<V: FnMut(Piece<'_>)> Cutter<'_, V> {
         if count > 1 && self.points[0] == self.points[count - 1] {
             count -= 1;
         }
-        let Some((area, centroid)) = area_and_centroid(&self.points[..count], base, self.noise) else { return };
+        let Some((area, centroid)) = area_and_centroid(&self.points[..count], base, self.noise) else {
+            return;
+        };
         let vertices = &mut vertices[..count];
         if band.reverse {
             vertices.reverse();
         }
         let area = area * self.grid.cell_area();
-        (self.visit)(Piece { cell, vertices, area, centroid: self.grid.input_from_local(cell, centroid), code });
+        (self.visit)(Piece {
+            cell,
+            vertices,
+            area,
+            centroid: self.grid.input_from_local(cell, centroid),
+            code,
+        });
     }
 }
 
@@ -337,8 +351,8 @@ fn area_and_centroid(points: &[Point], base: Point, noise: Fixed) -> Option<(f64
     Some((0.5 * twice_area, centroid.clamp(DVec2::ZERO, DVec2::ONE)))
 }
 
-/// Below this part of its terms, a sum of products in `f64` has lost the digits that a sliver needs (2⁻²⁰ leaves 33 bits).
-const CANCELLED: f64 = 1.0 / (1 << 20) as f64;
+/// Below this part of its terms, a sum of products in `f64` has lost the digits that a sliver needs (2⁻⁸ leaves 45 bits).
+const CANCELLED: f64 = 1.0 / (1 << 8) as f64;
 
 /// The same in fixed point, slower: (twice the area, its first moment times six, from the first point).
 fn exact_area_and_moment(points: &[Point]) -> (f64, DVec2) {
@@ -346,7 +360,8 @@ fn exact_area_and_moment(points: &[Point]) -> (f64, DVec2) {
     let (mut twice_area, mut moment) = (0, DVec2::ZERO);
     for pair in points[1..].windows(2) {
         let (a, b) = (pair[0], pair[1]);
-        let cross = fixed::multiply(a.x - first.x, b.y - first.y) - fixed::multiply(a.y - first.y, b.x - first.x);
+        let cross =
+            fixed::multiply(a.x - first.x, b.y - first.y) - fixed::multiply(a.y - first.y, b.x - first.x);
         twice_area += cross;
         moment += fixed::to_f64(cross) * (local(a, first) + local(b, first));
     }
