@@ -1,0 +1,179 @@
+//! A scene's materials as the renderer sees them: opacity, and textures summed up for exact means.
+
+use crate::scene::{Material, NONE, Scene, Texture};
+use glam::{DVec2, DVec3, Vec3};
+use pointillist_micropoint::{
+    Geometry, MicropointError, Surface, SurfacePoint, TexelCorner, TexelSums, TexelWrap, TexturedOpacity,
+};
+use pointillist_shade::Wrap;
+use std::collections::HashMap;
+
+/// What a material looks up in textures. Colour is summed up as colour × opacity, so that the empty
+/// part of a leaf's texture does not bleed into its rim.
+enum Textured {
+    Nothing,
+    Color(TexelSums<3>),
+    Opacity(TexelSums<1>),
+    ColorAndOpacity(TexelSums<4>),
+}
+
+/// Materials ready to be looked up, and where their textures lie on the triangles.
+pub(crate) struct Surfaces {
+    textures: Vec<std::sync::Arc<Textured>>,
+    uv_of: Vec<[DVec2; 3]>,
+    surface_of: Vec<u32>,
+    surfaces: Vec<Surface>,
+    material_of: Vec<u32>,
+}
+
+/// What textures say of a visible piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Texel {
+    /// Factor on the diffuse albedo.
+    pub(crate) color: Vec3,
+}
+
+impl Surfaces {
+    pub(crate) fn new(scene: &Scene) -> Result<Self, MicropointError> {
+        let mut known = HashMap::new();
+        let mut textures = Vec::with_capacity(scene.materials.len());
+        for m in &scene.materials {
+            let key = (m.diffuse_map, m.opacity_map, m.wrap);
+            if !known.contains_key(&key) {
+                known.insert(key, std::sync::Arc::new(sum_up(m, &scene.textures)?));
+            }
+            textures.push(known[&key].clone());
+        }
+        let (surfaces, surface_of) = surfaces_by_material(scene, &textures);
+        let any_texture = textures.iter().any(|t| !matches!(**t, Textured::Nothing));
+        let uv_of = if any_texture { corner_uvs(scene) } else { Vec::new() };
+        Ok(Self { textures, uv_of, surface_of, surfaces, material_of: scene.mesh.material_of.clone() })
+    }
+
+    pub(crate) fn geometry(&self, scene: &Scene) -> Result<Geometry, MicropointError> {
+        Geometry::new(&scene.mesh.positions, &scene.mesh.triangles, &self.surface_of, &self.surfaces)
+    }
+
+    fn textured(&self, triangle: u32) -> &Textured {
+        &self.textures[self.material_of[triangle as usize] as usize]
+    }
+
+    /// Whether the colour of a triangle varies.
+    pub(crate) fn has_color(&self, triangle: u32) -> bool {
+        matches!(self.textured(triangle), Textured::Color(_) | Textured::ColorAndOpacity(_))
+    }
+
+    /// Mean colour over a polygon of a triangle.
+    pub(crate) fn color(&self, triangle: u32, polygon: &[SurfacePoint]) -> Texel {
+        let rgb = |m: &[f64]| Vec3::new(m[0] as f32, m[1] as f32, m[2] as f32);
+        let color = match self.textured(triangle) {
+            Textured::Nothing | Textured::Opacity(_) => Vec3::ONE,
+            Textured::Color(sums) => rgb(&sums.mean(self.corners(triangle, polygon, sums).as_slice())),
+            Textured::ColorAndOpacity(sums) => {
+                let mean = sums.mean(self.corners(triangle, polygon, sums).as_slice());
+                if mean[3] > 0.0 { rgb(&mean) / mean[3] as f32 } else { Vec3::ZERO }
+            }
+        };
+        Texel { color }
+    }
+
+    fn corners<const N: usize>(&self, triangle: u32, polygon: &[SurfacePoint], sums: &TexelSums<N>) -> Corners {
+        let uv = &self.uv_of[triangle as usize];
+        let size = DVec2::new(f64::from(sums.width()), f64::from(sums.height()));
+        let mut corners = Corners::default();
+        for p in polygon.iter().take(corners.list.len()) {
+            let at = weighted(uv, p.barycentric);
+            let texel = DVec2::new(at.x, 1.0 - at.y) * size;
+            corners.list[corners.len] = TexelCorner { grid: p.grid, rational: p.rational, texel };
+            corners.len += 1;
+        }
+        corners
+    }
+}
+
+/// Corners of a polygon in a texture, on the stack.
+struct Corners {
+    list: [TexelCorner; 16],
+    len: usize,
+}
+
+impl Default for Corners {
+    fn default() -> Self {
+        let zero = TexelCorner { grid: DVec2::ZERO, rational: 1.0, texel: DVec2::ZERO };
+        Self { list: [zero; 16], len: 0 }
+    }
+}
+
+impl Corners {
+    fn as_slice(&self) -> &[TexelCorner] {
+        &self.list[..self.len]
+    }
+}
+
+impl TexturedOpacity for Surfaces {
+    fn mean_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
+        match self.textured(triangle) {
+            Textured::Nothing | Textured::Color(_) => 1.0,
+            Textured::Opacity(sums) => sums.mean(self.corners(triangle, polygon, sums).as_slice())[0] as f32,
+            Textured::ColorAndOpacity(sums) => sums.mean(self.corners(triangle, polygon, sums).as_slice())[3] as f32,
+        }
+    }
+}
+
+fn weighted(corners: &[DVec2; 3], b: DVec3) -> DVec2 {
+    corners[0] * b.x + corners[1] * b.y + corners[2] * b.z
+}
+
+/// A surface for each material and each kind of object.
+fn surfaces_by_material(scene: &Scene, textures: &[std::sync::Arc<Textured>]) -> (Vec<Surface>, Vec<u32>) {
+    let mut surfaces = Vec::with_capacity(2 * scene.materials.len());
+    for (m, t) in scene.materials.iter().zip(textures) {
+        let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::ColorAndOpacity(_));
+        let opacity = m.surface.opacity;
+        surfaces.push(Surface { opacity, textured_opacity, two_sided: true });
+        surfaces.push(Surface { opacity, textured_opacity, two_sided: false });
+    }
+    let mesh = &scene.mesh;
+    let two_sided = |t: usize| mesh.objects.get(mesh.object_of[t] as usize).is_none_or(|o| o.two_sided);
+    let surface = |(t, &m): (usize, &u32)| 2 * m + u32::from(!two_sided(t));
+    (surfaces, mesh.material_of.iter().enumerate().map(surface).collect())
+}
+
+/// Texture coordinates of each triangle's corners; zero where it has none.
+fn corner_uvs(scene: &Scene) -> Vec<[DVec2; 3]> {
+    let uv = |i: u32| if i == NONE { DVec2::ZERO } else { scene.mesh.uvs[i as usize] };
+    if scene.mesh.uv_of.is_empty() {
+        return vec![[DVec2::ZERO; 3]; scene.mesh.triangles.len()];
+    }
+    scene.mesh.uv_of.iter().map(|t| t.map(uv)).collect()
+}
+
+fn sum_up(material: &Material, textures: &[Texture]) -> Result<Textured, MicropointError> {
+    let wrap = match material.wrap {
+        Wrap::Clamp => TexelWrap::Clamp,
+        Wrap::Mirror => TexelWrap::Mirror,
+        _ => TexelWrap::Repeat,
+    };
+    let color = material.diffuse_map.map(|i| &textures[i]);
+    let opacity = material.opacity_map.map(|i| &textures[i]);
+    Ok(match (color, opacity) {
+        (None, None) => Textured::Nothing,
+        (Some(c), None) => Textured::Color(TexelSums::new(c.width, c.height, wrap, |x, y| {
+            c.texel(x, y).truncate().to_array()
+        })?),
+        (None, Some(o)) => {
+            Textured::Opacity(TexelSums::new(o.width, o.height, wrap, |x, y| [o.texel(x, y).w])?)
+        }
+        (Some(c), Some(o)) => {
+            let (width, height) = (c.width.max(o.width), c.height.max(o.height));
+            let at = |t: &Texture, x: u32, y: u32| {
+                let scale = |v: u32, from: u32, to: u32| (u64::from(v) * u64::from(to) / u64::from(from)) as u32;
+                t.texel(scale(x, width, t.width), scale(y, height, t.height))
+            };
+            Textured::ColorAndOpacity(TexelSums::new(width, height, wrap, |x, y| {
+                let alpha = at(o, x, y).w;
+                (at(c, x, y).truncate() * alpha).extend(alpha).to_array()
+            })?)
+        }
+    })
+}
