@@ -274,32 +274,32 @@ impl<V: FnMut(Run)> Sweep<'_, V> {
 fn orientation(ring: &[DVec2], grid: &Grid) -> Option<i8> {
     /// `f64` sums of products are certain of their sign above this part of their terms' sizes, for up to 2²⁰ vertices.
     const CERTAIN: f64 = 1.0 / (1u64 << 32) as f64;
-    let point = |i: usize| grid.point(ring[i], i).expect("every vertex was checked at the door");
-    let first = point(0);
-    let spoke = |i: usize| {
-        let p = point(i);
-        Point { x: p.x - first.x, y: p.y - first.y }
-    };
     let (mut sum, mut size) = (0.0, 0.0);
-    let mut a = spoke(0);
-    for i in 1..ring.len() {
-        let b = spoke(i);
-        let (forward, backward) = (a.x as f64 * b.y as f64, a.y as f64 * b.x as f64);
+    let in_cells = |v: DVec2| (v - ring[0]) / grid.cell();
+    let mut a = DVec2::ZERO;
+    for &v in &ring[1..] {
+        let b = in_cells(v);
+        let (forward, backward) = (a.x * b.y, a.y * b.x);
         sum += forward - backward;
         size += forward.abs() + backward.abs();
         a = b;
     }
     if sum.abs() <= CERTAIN * size {
-        sum = precise_area(ring.len(), size, spoke)?;
+        let point = |i: usize| grid.point(ring[i], i).expect("every vertex was checked at the door");
+        let first = point(0);
+        sum = precise_area(ring.len(), |i| {
+            let p = point(i);
+            Point { x: p.x - first.x, y: p.y - first.y }
+        })?;
     }
     Some(if sum > 0.0 { -1 } else { 1 })
 }
 
 /// The sum of cross products with about 100 bits; `None` if it is zero as far as those tell.
-fn precise_area(len: usize, size: f64, spoke: impl Fn(usize) -> Point) -> Option<f64> {
+fn precise_area(len: usize, spoke: impl Fn(usize) -> Point) -> Option<f64> {
     /// A sum of this part of its terms or less is rounding: 2⁻⁹⁰.
     const ZERO: f64 = 1.0 / (1u128 << 90) as f64;
-    let (mut high, mut low) = (0.0, 0.0);
+    let (mut high, mut low, mut size) = (0.0, 0.0, 0.0);
     let mut add = |v: f64| {
         let sum: f64 = high + v;
         let v_part = sum - high;
@@ -314,6 +314,7 @@ fn precise_area(len: usize, size: f64, spoke: impl Fn(usize) -> Point) -> Option
         let ((x1, x0), (y1, y0)) = (pair(x), pair(y));
         let head = x1 * y1;
         add(sign * head);
+        size += head.abs();
         add(sign * (fixed::product_error(x1, y1) + (x1 * y0 + x0 * y1)));
     };
     let mut a = spoke(0);

@@ -1,0 +1,229 @@
+//! `dice`: run time against error of four ways to find the areas of a triangle in the cells of a grid.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::hint::black_box;
+use std::path::Path;
+use std::time::Instant;
+
+use glam::{DVec2, IVec2, dvec2};
+use num_rational::BigRational;
+use num_traits::{Signed, ToPrimitive, Zero};
+use plotters::prelude::*;
+use pointillist_dice::invariants::cell_area_by_clipping;
+use pointillist_dice::{Accumulator, Grid, accumulate, split};
+
+type Cells = BTreeMap<(i32, i32), f64>;
+
+/// One way to find areas; the name says which.
+struct Method {
+    name: &'static str,
+    /// Fills the cells, which are empty.
+    areas: fn(&[DVec2; 3], &mut Accumulator, &mut dyn FnMut(IVec2, f64)),
+}
+
+const METHODS: [Method; 6] = [
+    Method { name: "accumulate", areas: by_accumulate },
+    Method { name: "split", areas: by_split },
+    Method { name: "Sutherland–Hodgman", areas: by_clipping },
+    Method { name: "4×4 points", areas: by_points::<4> },
+    Method { name: "16×16 points", areas: by_points::<16> },
+    Method { name: "64×64 points", areas: by_points::<64> },
+];
+
+fn by_accumulate(t: &[DVec2; 3], scratch: &mut Accumulator, visit: &mut dyn FnMut(IVec2, f64)) {
+    let runs = accumulate(t, &Grid::UNIT, scratch, |run| {
+        for x in run.columns {
+            visit(IVec2::new(x, run.row), run.area);
+        }
+    });
+    runs.expect("the triangles are small and finite");
+}
+
+fn by_split(t: &[DVec2; 3], _: &mut Accumulator, visit: &mut dyn FnMut(IVec2, f64)) {
+    split(t, &Grid::UNIT, |p| visit(p.cell, p.area)).expect("the triangles are small and finite");
+}
+
+fn by_clipping(t: &[DVec2; 3], _: &mut Accumulator, visit: &mut dyn FnMut(IVec2, f64)) {
+    for cell in cells_of(t) {
+        visit(cell, cell_area_by_clipping(t, &Grid::UNIT, cell));
+    }
+}
+
+fn by_points<const N: usize>(t: &[DVec2; 3], _: &mut Accumulator, visit: &mut dyn FnMut(IVec2, f64)) {
+    let side = |p: DVec2, i: usize| (t[(i + 1) % 3] - t[i]).perp_dot(p - t[i]) >= 0.0;
+    for cell in cells_of(t) {
+        let mut hits = 0;
+        for k in 0..N * N {
+            let p = cell.as_dvec2() + (dvec2((k % N) as f64, (k / N) as f64) + 0.5) / N as f64;
+            hits += usize::from(side(p, 0) && side(p, 1) && side(p, 2));
+        }
+        visit(cell, hits as f64 / (N * N) as f64);
+    }
+}
+
+fn cells_of(t: &[DVec2; 3]) -> impl Iterator<Item = IVec2> {
+    let low = t[0].min(t[1]).min(t[2]).floor().as_ivec2();
+    let high = t[0].max(t[1]).max(t[2]).ceil().as_ivec2();
+    (low.y..high.y).flat_map(move |y| (low.x..high.x).map(move |x| IVec2::new(x, y)))
+}
+
+/// A row of the result.
+struct Row {
+    method: &'static str,
+    size: f64,
+    offset: f64,
+    nanoseconds: f64,
+    /// Largest error of a cell, in cells.
+    error: f64,
+}
+
+/// Measures and writes `dice.csv`, `dice.md` and `dice.svg`.
+pub(crate) fn run(out_dir: &Path) -> std::io::Result<()> {
+    let mut rows = vec![];
+    for size in [1.5, 12.0, 200.0] {
+        for offset in [0.0, 1e3, 1e6, 1e7] {
+            let triangles = triangles(size, offset);
+            // 200 cells square by rational arithmetic would take minutes: there, every 15th partly covered cell is compared.
+            let stride = if size > 100.0 { 15 } else { 1 };
+            for method in &METHODS {
+                let error = triangles.iter().map(|t| worst_error(method, t, stride)).fold(0.0, f64::max);
+                let nanoseconds = time(method, &triangles);
+                rows.push(Row { method: method.name, size, offset, nanoseconds, error });
+            }
+        }
+    }
+    std::fs::create_dir_all(out_dir)?;
+    std::fs::write(out_dir.join("dice.csv"), csv(&rows))?;
+    std::fs::write(out_dir.join("dice.md"), markdown(&rows))?;
+    chart(&rows, &out_dir.join("dice.svg")).map_err(std::io::Error::other)
+}
+
+/// Fixed, counter-clockwise triangles of about `size` cells.
+fn triangles(size: f64, offset: f64) -> Vec<[DVec2; 3]> {
+    let corner = |i: usize, turn: f64| DVec2::from_angle(turn + i as f64 * 2.1) * (0.5 * size);
+    let centre = |k: usize| DVec2::splat(offset + 0.5 * size) + dvec2(0.317, 0.731) * k as f64;
+    let count = if size > 100.0 { 2 } else { 8 };
+    (0..count).map(|k| [0, 1, 2].map(|i| centre(k) + corner(i, 0.7 * k as f64))).collect()
+}
+
+fn worst_error(method: &Method, t: &[DVec2; 3], stride: usize) -> f64 {
+    let mut found = Cells::new();
+    (method.areas)(t, &mut Accumulator::new(), &mut |c, a| *found.entry((c.x, c.y)).or_insert(0.0) += a);
+    let error = |cell: IVec2| {
+        let area = found.get(&(cell.x, cell.y)).copied().unwrap_or(0.0);
+        (exact(area) - exact_area(t, cell)).abs().to_f64().unwrap_or(f64::INFINITY)
+    };
+    let mut cells = vec![];
+    by_accumulate(t, &mut Accumulator::new(), &mut |cell, area| {
+        if area < 1.0 {
+            cells.push(cell);
+        }
+    });
+    let compared: Vec<_> =
+        if stride == 1 { cells_of(t).collect() } else { cells.into_iter().step_by(stride).collect() };
+    compared.into_iter().map(error).fold(0.0, f64::max)
+}
+
+/// Mean time of a triangle, the best of three rounds.
+fn time(method: &Method, triangles: &[[DVec2; 3]]) -> f64 {
+    let mut scratch = Accumulator::new();
+    let mut round = || {
+        let (start, mut count, mut sum) = (Instant::now(), 0, 0.0);
+        while count == 0 || start.elapsed().as_millis() < 20 {
+            for t in triangles {
+                (method.areas)(black_box(t), &mut scratch, &mut |_, area| sum += area);
+            }
+            count += triangles.len();
+        }
+        black_box(sum);
+        start.elapsed().as_secs_f64() * 1e9 / count as f64
+    };
+    round().min(round()).min(round())
+}
+
+type Exact = BigRational;
+
+fn exact(v: f64) -> Exact {
+    Exact::from_float(v).expect("finite")
+}
+
+/// Area of the triangle in a cell without any rounding.
+fn exact_area(t: &[DVec2; 3], cell: IVec2) -> Exact {
+    let mut ring: Vec<[Exact; 2]> = t.iter().map(|v| [exact(v.x), exact(v.y)]).collect();
+    for (axis, at, keep) in [(0, cell.x, 1), (0, cell.x + 1, -1), (1, cell.y, 1), (1, cell.y + 1, -1)] {
+        let side = |p: &[Exact; 2]| (&p[axis] - exact(at.into())) * exact(keep.into());
+        let mut kept = vec![];
+        for (i, q) in ring.iter().enumerate() {
+            let p = &ring[(i + ring.len() - 1) % ring.len()];
+            let (from, to) = (side(p), side(q));
+            if from.is_negative() != to.is_negative() {
+                let s = &from / (&from - &to);
+                kept.push([&p[0] + (&q[0] - &p[0]) * &s, &p[1] + (&q[1] - &p[1]) * &s]);
+            }
+            if !to.is_negative() {
+                kept.push(q.clone());
+            }
+        }
+        ring = kept;
+    }
+    let twice = (0..ring.len()).fold(Exact::zero(), |sum, i| {
+        let (a, b) = (&ring[i], &ring[(i + 1) % ring.len()]);
+        sum + &a[0] * &b[1] - &a[1] * &b[0]
+    });
+    twice.abs() / exact(2.0)
+}
+
+fn csv(rows: &[Row]) -> String {
+    let mut text = "method,size_cells,offset_cells,nanoseconds,worst_error_cells\n".to_owned();
+    for r in rows {
+        let _ = writeln!(text, "{},{},{},{:.0},{:e}", r.method, r.size, r.offset, r.nanoseconds, r.error);
+    }
+    text
+}
+
+fn markdown(rows: &[Row]) -> String {
+    let mut text = "# Areas of a triangle in the cells of a grid: time against error\n\n\
+        `cargo run --release -p studies -- dice` made this. Errors are the largest of any cell, in cells, against exact \
+        rational arithmetic.\n\n| triangle | offset | method | time | worst error |\n| ---: | ---: | --- | ---: | ---: |\n"
+        .to_owned();
+    for r in rows {
+        let _ = writeln!(
+            text,
+            "| {} cells | {:e} | {} | {:.2} µs | {:.1e} |",
+            r.size,
+            r.offset,
+            r.method,
+            r.nanoseconds / 1e3,
+            r.error
+        );
+    }
+    text
+}
+
+/// Errors below this are drawn at it: a logarithmic axis has no zero.
+const SMALLEST: f64 = 1e-17;
+
+fn chart(rows: &[Row], path: &Path) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    let root = SVGBackend::new(path, (760, 520)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let mut chart = ChartBuilder::on(&root)
+        .caption("12-cell triangles: time against worst error", ("sans-serif", 18))
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(60)
+        .build_cartesian_2d((1e2f64..1e7).log_scale(), (SMALLEST..1.0f64).log_scale())?;
+    chart.configure_mesh().x_desc("nanoseconds").y_desc("worst error, cells").draw()?;
+    for (i, method) in METHODS.iter().enumerate() {
+        let points = rows.iter().filter(|r| r.method == method.name && r.size == 12.0);
+        let points: Vec<_> = points.map(|r| (r.nanoseconds, r.error.max(SMALLEST))).collect();
+        let style = Palette99::pick(i).filled();
+        chart
+            .draw_series(PointSeries::<_, _, Circle<_, _>, _>::new(points, 4, style))?
+            .label(method.name)
+            .legend(move |at| Circle::new(at, 4, style));
+    }
+    chart.configure_series_labels().border_style(BLACK).background_style(WHITE).draw()?;
+    root.present()?;
+    Ok(())
+}
