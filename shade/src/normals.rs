@@ -16,12 +16,12 @@ pub enum Weighting {
 /// Unit normal of the triangle, counter-clockwise seen from its front; zero for a triangle without area.
 pub fn face_normal(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     // Scaled by the longest side first: the cross product of 1e-200 sides would underflow to "no area".
-    let (ab, ac) = (b - a, c - a);
+    let (ab, ac) = (half_side(a, b), half_side(a, c));
     let largest = ab.abs().max_element().max(ac.abs().max_element());
     if largest == 0.0 || !largest.is_finite() {
         return DVec3::ZERO;
     }
-    (ab / largest).cross(ac / largest).normalize_or_zero()
+    unit((ab / largest).cross(ac / largest))
 }
 
 /// A unit normal for every vertex: the mean of its faces' normals; zero for a vertex without faces.
@@ -45,14 +45,14 @@ pub fn vertex_normals(
     for (triangle, corners) in triangles.iter().enumerate() {
         let [a, b, c] = corners_of(positions, triangle, *corners)?;
         let face = match weighting {
-            Weighting::Area => ((b - a) / extent).cross((c - a) / extent),
+            Weighting::Area => (half_side(a, b) / extent).cross(half_side(a, c) / extent),
             Weighting::Plain => face_normal(a, b, c),
         };
         for &vertex in corners {
             sums[vertex as usize] += face;
         }
     }
-    Ok(sums.iter().map(|&sum| unit(sum)).collect())
+    Ok(sums.iter().map(|&sum| unit(sum).as_vec3()).collect())
 }
 
 /// `normal`, or its opposite if that is the one on the side of `towards`.
@@ -83,12 +83,18 @@ fn extent(positions: &[DVec3]) -> f64 {
     let (low, high) = positions
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
-    // Halved before subtracting, because the difference of two finite numbers may be infinite.
-    let half = (high * 0.5 - low * 0.5).max_element();
+    let half = half_side(low, high).max_element();
     if half.is_finite() && half > 0.0 { half } else { 1.0 }
 }
 
-fn unit(sum: DVec3) -> Vec3 {
-    let largest = sum.abs().max_element();
-    if largest == 0.0 { Vec3::ZERO } else { (sum / largest).normalize().as_vec3() }
+/// Half of `b − a`, because the whole may be infinite.
+fn half_side(a: DVec3, b: DVec3) -> DVec3 {
+    b * 0.5 - a * 0.5
+}
+
+/// The direction of a vector of any finite length, or zero.
+pub(crate) fn unit(v: DVec3) -> DVec3 {
+    let largest = v.abs().max_element();
+    // Scaled first: the square of 1e200 is not a number we can use, nor is that of 1e-200.
+    if largest == 0.0 || !largest.is_finite() { DVec3::ZERO } else { (v / largest).normalize() }
 }

@@ -1,0 +1,205 @@
+//! Numbers that can be checked by hand.
+
+use glam::{DVec2, DVec3, Vec3, dvec2, dvec3, vec3};
+use pointillist_shade::{
+    Falloff, Light, Material, ShadeError, Weighting, Wrap, gl, interpolate_color, interpolate_normal, nearest, turn_to,
+    vertex_normals,
+};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+fn close(a: Vec3, b: Vec3) -> bool {
+    (a - b).abs().max_element() < 1e-5
+}
+
+#[test]
+fn point_light_falls_with_the_square() {
+    let light = Light::Point {
+        position: dvec3(0.0, 2.0, 0.0),
+        intensity: vec3(8.0, 4.0, 0.0),
+        falloff: Falloff::InverseSquare,
+    };
+    let incident = light.illuminate(0, DVec3::ZERO);
+    assert!(close(incident.irradiance, vec3(2.0, 1.0, 0.0)));
+    // 60° away from the normal: half of it, over π.
+    let normal = vec3(0.75f32.sqrt(), 0.5, 0.0);
+    let radiance = Material::lambert(Vec3::ONE).reflect(&incident, normal, normal);
+    assert!(close(radiance, incident.irradiance * 0.5 / PI as f32));
+}
+
+#[test]
+fn polynomial_attenuation_replaces_the_square() {
+    let light = Light::Point {
+        position: dvec3(0.0, 2.0, 0.0),
+        intensity: Vec3::splat(14.0),
+        falloff: Falloff::Polynomial([1.0, 1.0, 1.0]),
+    };
+    assert!(close(light.illuminate(0, DVec3::ZERO).irradiance, Vec3::splat(2.0)));
+}
+
+#[test]
+fn a_far_scene_is_lit_like_a_near_one() {
+    let offset = dvec3(1e6, -1e6, 1e6);
+    let light = |at: DVec3| Light::Point {
+        position: at + dvec3(0.25, 1.0, -0.5),
+        intensity: Vec3::ONE,
+        falloff: Falloff::InverseSquare,
+    };
+    let near = light(DVec3::ZERO).illuminate(0, DVec3::ZERO);
+    let far = light(offset).illuminate(0, offset);
+    assert_eq!((near.irradiance, near.to_light), (far.irradiance, far.to_light));
+}
+
+#[test]
+fn a_lamp_on_the_surface_lights_nothing() {
+    let light = Light::Point { position: DVec3::X, intensity: Vec3::ONE, falloff: Falloff::InverseSquare };
+    assert!(light.illuminate(0, DVec3::X).is_dark());
+}
+
+#[test]
+fn spot_falls_linearly_in_the_angle() {
+    let spot = Light::Spot {
+        position: DVec3::ZERO,
+        direction: dvec3(0.0, -3.0, 0.0),
+        intensity: Vec3::ONE,
+        beam_rad: 10f64.to_radians(),
+        cutoff_rad: 20f64.to_radians(),
+        falloff: Falloff::Polynomial([1.0, 0.0, 0.0]),
+    };
+    for (degrees, wanted) in [(0.0, 1.0), (9.99, 1.0), (12.5, 0.75), (15.0, 0.5), (20.0, 0.0), (120.0, 0.0)] {
+        let angle = f64::to_radians(degrees);
+        let got = spot.illuminate(0, dvec3(angle.sin(), -angle.cos(), 0.0)).irradiance.x;
+        assert!((got - wanted).abs() < 1e-5, "{degrees}°: {got}");
+    }
+}
+
+#[test]
+fn directional_light_has_no_distance() {
+    let sun = Light::Directional { direction: dvec3(0.0, -5.0, 0.0), irradiance: Vec3::splat(3.0) };
+    for at in [DVec3::ZERO, dvec3(1e9, 1e9, 1e9)] {
+        let incident = sun.illuminate(0, at);
+        assert_eq!((incident.irradiance, incident.to_light), (Vec3::splat(3.0), Vec3::Y));
+    }
+}
+
+const WHITE: gl::Material = gl::Material {
+    ambient: Vec3::splat(0.2),
+    diffuse: Vec3::splat(0.5),
+    specular: Vec3::splat(0.25),
+    shininess: 2.0,
+    emission: Vec3::ZERO,
+};
+
+const LAMP: gl::Light = gl::Light {
+    ambient: Vec3::splat(0.5),
+    diffuse: Vec3::ONE,
+    specular: Vec3::ONE,
+    placement: gl::Placement::At(DVec3::new(0.0, 2.0, 0.0)),
+    spot: None,
+    attenuation: [1.0, 0.5, 0.0],
+};
+
+#[test]
+fn opengl_formula_has_its_known_value() {
+    // Attenuation 1 / (1 + 0.5·2) = 1/2; ambient 0.1, diffuse 0.5; half vector at 30°: cos² = 0.75 times 0.25.
+    let to_eye = vec3(0.75f32.sqrt(), 0.5, 0.0);
+    let got = gl::contribution(&LAMP, &WHITE, DVec3::ZERO, Vec3::Y, to_eye);
+    assert!(close(got, Vec3::splat(0.5 * (0.1 + 0.5 + 0.75 * 0.25))), "{got}");
+}
+
+#[test]
+fn opengl_light_from_behind_is_ambient_only() {
+    let got = gl::contribution(&LAMP, &WHITE, DVec3::ZERO, -Vec3::Y, -Vec3::Y);
+    assert!(close(got, Vec3::splat(0.5 * 0.1)), "{got}");
+}
+
+#[test]
+fn opengl_spot_is_a_power_of_the_cosine() {
+    let spot = gl::Spot { direction: -DVec3::Y, cutoff_rad: FRAC_PI_2 / 2.0, exponent: 4.0 };
+    let light = gl::Light { spot: Some(spot), attenuation: [1.0, 0.0, 0.0], ..LAMP };
+    // 30° off the axis: cos⁴ = 9/16.
+    let at = dvec3(2.0 * (PI / 6.0).tan(), 0.0, 0.0);
+    let flat = gl::Material { diffuse: Vec3::ZERO, specular: Vec3::ZERO, ..WHITE };
+    assert!(close(gl::contribution(&light, &flat, at, Vec3::Y, Vec3::Y), Vec3::splat(0.1 * 9.0 / 16.0)));
+    let outside = dvec3(2.1, 0.0, 0.0);
+    assert_eq!(gl::contribution(&light, &flat, outside, Vec3::Y, Vec3::Y), Vec3::ZERO);
+}
+
+#[test]
+fn opengl_sum_is_clamped_only_for_display() {
+    let material = gl::Material { emission: Vec3::splat(3.0), ..WHITE };
+    let sum = gl::shade(&[LAMP, LAMP], Vec3::ONE, &material, DVec3::ZERO, Vec3::Y, Vec3::Y);
+    assert!(sum.x > 3.0);
+    assert_eq!(gl::display(sum), Vec3::ONE);
+}
+
+#[test]
+fn area_weights_keep_slivers_quiet() {
+    // A large face up and a small one to the side share the vertex at the origin.
+    let positions = [DVec3::ZERO, dvec3(0.0, 0.0, 2.0), dvec3(2.0, 0.0, 0.0), dvec3(0.0, 0.02, 0.0), dvec3(0.0, 0.0, 0.02)];
+    let triangles = [[0, 1, 2], [0, 3, 4]];
+    let area = vertex_normals(&positions, &triangles, Weighting::Area).unwrap()[0];
+    let plain = vertex_normals(&positions, &triangles, Weighting::Plain).unwrap()[0];
+    assert!(area.y > 0.9999, "{area}");
+    assert!(close(plain, vec3(0.5f32.sqrt(), 0.5f32.sqrt(), 0.0)), "{plain}");
+}
+
+#[test]
+fn wrong_meshes_are_named() {
+    let error = vertex_normals(&[DVec3::ZERO], &[[0, 0, 1]], Weighting::Area).unwrap_err();
+    assert_eq!(error, ShadeError::IndexOutOfRange { triangle: 0, vertex: 1, count: 1 });
+    let error = vertex_normals(&[DVec3::NAN], &[], Weighting::Area).unwrap_err();
+    assert_eq!(error, ShadeError::NotFinite { index: 0 });
+}
+
+#[test]
+fn a_vertex_without_faces_has_no_normal() {
+    assert_eq!(vertex_normals(&[DVec3::ONE], &[], Weighting::Area).unwrap(), [Vec3::ZERO]);
+}
+
+#[test]
+fn normals_that_cancel_fall_back_to_the_face() {
+    let n = interpolate_normal([Vec3::X, -Vec3::X, Vec3::X], vec3(0.25, 0.5, 0.25), Vec3::Y, Vec3::Y);
+    assert_eq!(n, Vec3::Y);
+}
+
+#[test]
+fn a_back_face_is_turned_to_the_eye() {
+    let eye = vec3(0.0, 0.6, 0.8);
+    let face = turn_to(-Vec3::Y, eye);
+    assert_eq!(face, Vec3::Y);
+    // The vertex normals still point down, with the front.
+    assert_eq!(interpolate_normal([-Vec3::Y; 3], Vec3::splat(1.0 / 3.0), face, eye), Vec3::Y);
+}
+
+#[test]
+fn gouraud_mixes_colours() {
+    let mixed = interpolate_color([Vec3::X, Vec3::Y, Vec3::Z], vec3(0.5, 0.25, 0.25));
+    assert_eq!(mixed, vec3(0.5, 0.25, 0.25));
+}
+
+#[test]
+fn wrap_modes_at_the_borders() {
+    let row = |wrap: Wrap| -> Vec<u32> { (-4..8).map(|i| wrap.texel(i, 4)).collect() };
+    assert_eq!(row(Wrap::Repeat), [0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3]);
+    assert_eq!(row(Wrap::Clamp), [0, 0, 0, 0, 0, 1, 2, 3, 3, 3, 3, 3]);
+    assert_eq!(row(Wrap::Mirror), [3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0]);
+}
+
+#[test]
+fn v_runs_upward_and_row_zero_is_the_top() {
+    let texels = ["top left", "top right", "bottom left", "bottom right"];
+    let at = |u: f64, v: f64| nearest(&texels, 2, 2, Wrap::Repeat, dvec2(u, v)).unwrap();
+    assert_eq!(at(0.25, 0.75), "top left");
+    assert_eq!(at(0.75, 0.25), "bottom right");
+    // On the borders: the right and upper texel; 1 is 0 again.
+    assert_eq!(at(0.5, 0.5), "top right");
+    assert_eq!(at(1.0, 1.0), "bottom left");
+    assert_eq!(at(f64::NAN, f64::NAN), "bottom left");
+}
+
+#[test]
+fn a_texture_of_the_wrong_size_is_refused() {
+    let error = nearest(&[0u8; 3], 2, 2, Wrap::Clamp, DVec2::ZERO).unwrap_err();
+    assert_eq!(error, ShadeError::TextureSize { len: 3, width: 2, height: 2 });
+    assert!(nearest::<u8>(&[], 0, 0, Wrap::Clamp, DVec2::ZERO).is_err());
+}

@@ -1,0 +1,278 @@
+//! Facts that hold for every input.
+
+use glam::{DVec2, DVec3, Vec3, dvec3, vec3};
+use pointillist_shade::{
+    Falloff, Light, Material, Model, Weighting, Wrap, face_normal, gl, interpolate_normal, nearest, sees_light, turn_to,
+    vertex_normals,
+};
+use proptest::prelude::*;
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+const MODELS: [Model; 5] =
+    [Model::Lambert, Model::Phong, Model::NormalizedPhong, Model::BlinnPhong, Model::NormalizedBlinnPhong];
+
+/// Any finite number, with the awkward ones more often than chance would have it.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        any::<f64>().prop_filter("finite", |n| n.is_finite()),
+        -10.0..10.0,
+        Just(0.0),
+        Just(-0.0),
+        Just(f64::MAX),
+        Just(f64::MIN_POSITIVE),
+    ]
+}
+
+fn point() -> BoxedStrategy<DVec3> {
+    [number(), number(), number()].prop_map(DVec3::from_array).boxed()
+}
+
+fn color() -> impl Strategy<Value = Vec3> {
+    let channel = || prop_oneof![0.0f32..10.0, Just(0.0), Just(f32::MAX)];
+    [channel(), channel(), channel()].prop_map(Vec3::from_array)
+}
+
+fn unit() -> impl Strategy<Value = Vec3> {
+    (-1.0f32..1.0, 0.0..TAU).prop_map(|(z, angle)| {
+        let r = (1.0 - z * z).sqrt();
+        vec3(r * angle.cos(), r * angle.sin(), z)
+    })
+}
+
+fn falloff() -> impl Strategy<Value = Falloff> {
+    let term = || any::<f32>();
+    prop_oneof![Just(Falloff::InverseSquare), [term(), term(), term()].prop_map(Falloff::Polynomial)]
+}
+
+/// Boxed, because the nested types would need more stack than a test thread has.
+fn light() -> BoxedStrategy<Light> {
+    let directional =
+        (point(), color()).prop_map(|(direction, irradiance)| Light::Directional { direction, irradiance });
+    let lamp = (point(), color(), falloff())
+        .prop_map(|(position, intensity, falloff)| Light::Point { position, intensity, falloff });
+    let spot = (point(), point(), color(), number(), number(), falloff()).prop_map(
+        |(position, direction, intensity, beam_rad, cutoff_rad, falloff)| Light::Spot {
+            position,
+            direction,
+            intensity,
+            beam_rad,
+            cutoff_rad,
+            falloff,
+        },
+    );
+    let rect = (point(), point(), point(), color(), any::<u32>(), falloff()).prop_map(
+        |(corner, edge_u, edge_v, radiance, samples, falloff)| Light::Rect {
+            corner,
+            edge_u,
+            edge_v,
+            radiance,
+            samples,
+            falloff,
+        },
+    );
+    prop_oneof![directional.boxed(), lamp.boxed(), spot.boxed(), rect.boxed()].boxed()
+}
+
+fn material() -> impl Strategy<Value = Material> {
+    (0..MODELS.len(), color(), color(), any::<f32>().prop_filter("not NaN", |m| !m.is_nan())).prop_map(
+        |(model, diffuse, specular, shininess)| {
+            Material::lambert(diffuse).with_specular(MODELS[model], specular, shininess)
+        },
+    )
+}
+
+proptest! {
+    #[test]
+    fn finite_input_gives_finite_light(light in light(), sample in any::<u32>(), at in point(), m in material(), n in unit(), v in unit()) {
+        let incident = light.illuminate(sample, at);
+        prop_assert!(incident.irradiance.is_finite(), "{incident:?}");
+        prop_assert!(incident.to_light.is_finite());
+        let length = incident.to_light.length();
+        prop_assert!(length == 0.0 || (length - 1.0).abs() < 1e-5, "{length}");
+        prop_assert!(m.reflect(&incident, n, v).is_finite());
+    }
+
+    #[test]
+    fn light_and_eye_can_be_exchanged(m in material(), n in unit(), l in unit(), v in unit()) {
+        let (there, back) = (m.brdf(n, l, v), m.brdf(n, v, l));
+        // Rounding of the cosine is raised to the power of the exponent.
+        let tolerance = 1e-5 + 4e-7 * m.shininess.clamp(0.0, 1e7);
+        let difference = (there - back).abs();
+        prop_assert!(difference.cmple(there.max(back) * tolerance.min(1.0) + 1e-30).all() || !there.is_finite(), "{there} {back}");
+    }
+
+    #[test]
+    fn interpolated_normals_face_the_eye(a in unit(), b in unit(), c in unit(), w in [0.0f32..1.0, 0.0f32..1.0], face in unit(), eye in unit()) {
+        let face = turn_to(face, eye);
+        let weights = vec3(w[0] * (1.0 - w[1]), w[1] * w[0], 1.0 - w[0]);
+        let n = interpolate_normal([a, b, c], weights, face, eye);
+        prop_assert!((n.length() - 1.0).abs() < 1e-4);
+        prop_assert!(n.dot(eye) > -1e-3, "{}", n.dot(eye));
+    }
+
+    #[test]
+    fn equal_corners_are_flat_shading(n in unit(), w in [0.0f32..1.0, 0.0f32..1.0], eye in unit()) {
+        let face = turn_to(n, eye);
+        let weights = vec3(w[0] * (1.0 - w[1]), w[1] * w[0], 1.0 - w[0]);
+        let phong = interpolate_normal([n, n, n], weights, face, eye);
+        // A face seen edge-on may be tilted by rounding.
+        prop_assume!(face.dot(eye) > 1e-4);
+        prop_assert!((phong - face).length() < 1e-5, "{phong} {face}");
+    }
+
+    #[test]
+    fn every_index_wraps_into_the_texture(i in any::<i64>(), size in any::<u32>()) {
+        let i = i / 4;
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            prop_assert!(wrap.texel(i, size) < size.max(1));
+        }
+    }
+
+    #[test]
+    fn repeat_and_mirror_have_their_periods(i in -1000i64..1000, size in 1u32..50) {
+        let n = i64::from(size);
+        prop_assert_eq!(Wrap::Repeat.texel(i, size), Wrap::Repeat.texel(i + n, size));
+        prop_assert_eq!(Wrap::Mirror.texel(i, size), Wrap::Mirror.texel(i + 2 * n, size));
+        prop_assert_eq!(Wrap::Mirror.texel(i, size), Wrap::Mirror.texel(-1 - i, size));
+    }
+
+    #[test]
+    fn any_coordinate_has_a_texel(u in any::<f64>(), v in any::<f64>(), width in 1u32..9, height in 1u32..9) {
+        let texels: Vec<u32> = (0..width * height).collect();
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            prop_assert!(nearest(&texels, width, height, wrap, DVec2::new(u, v)).is_ok());
+        }
+    }
+
+    #[test]
+    fn vertex_normals_take_anything(positions in prop::collection::vec(point(), 0..6), triangles in prop::collection::vec([0u32..7, 0u32..7, 0u32..7], 0..6)) {
+        for weighting in [Weighting::Area, Weighting::Plain] {
+            match vertex_normals(&positions, &triangles, weighting) {
+                Ok(normals) => for n in normals {
+                    prop_assert!(n == Vec3::ZERO || (n.length() - 1.0).abs() < 1e-5, "{n}");
+                },
+                Err(_) => prop_assert!(triangles.iter().flatten().any(|&v| v as usize >= positions.len())),
+            }
+        }
+    }
+
+    #[test]
+    fn face_normals_take_anything(a in point(), b in point(), c in point()) {
+        let n = face_normal(a, b, c);
+        prop_assert!(n == DVec3::ZERO || (n.length() - 1.0).abs() < 1e-9, "{n}");
+    }
+
+    #[test]
+    fn opengl_takes_anything(at in point(), position in point(), n in unit(), v in unit(), shininess in 0.0f32..200.0) {
+        let light = gl::Light {
+            ambient: Vec3::ONE, diffuse: Vec3::ONE, specular: Vec3::ONE,
+            placement: gl::Placement::At(position), spot: None, attenuation: [1.0, 0.0, 0.0],
+        };
+        let material = gl::Material { ambient: Vec3::ONE, diffuse: Vec3::ONE, specular: Vec3::ONE, shininess, emission: Vec3::ZERO };
+        prop_assert!(gl::shade(&[light], Vec3::ONE, &material, at, n, v).is_finite());
+    }
+}
+
+/// Share of the light from `to_light` that leaves a surface again: BRDF · cosine summed over the hemisphere.
+fn albedo(material: &Material, to_light: Vec3) -> f32 {
+    const STEPS: usize = 400;
+    let mut sum = 0.0;
+    for i in 0..STEPS {
+        // Even steps in angle, which has many near the mirror direction wherever it is.
+        let theta = (i as f32 + 0.5) / STEPS as f32 * FRAC_PI_2;
+        for j in 0..STEPS {
+            let phi = (j as f32 + 0.5) / STEPS as f32 * TAU;
+            let v = vec3(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos());
+            sum += f64::from(material.brdf(Vec3::Z, to_light, v).x * theta.cos() * theta.sin());
+        }
+    }
+    (sum * f64::from(FRAC_PI_2 / STEPS as f32) * f64::from(TAU / STEPS as f32)) as f32
+}
+
+#[test]
+fn no_normalised_model_makes_light() {
+    for model in [Model::Lambert, Model::NormalizedPhong, Model::NormalizedBlinnPhong] {
+        for shininess in [0.0, 1.0, 5.0, 20.0, 100.0, 500.0] {
+            let material =
+                Material::lambert(Vec3::splat(0.4)).with_specular(model, Vec3::splat(0.6), shininess);
+            for degrees in [0.0f32, 20.0, 45.0, 70.0, 85.0] {
+                let angle = degrees.to_radians();
+                let share = albedo(&material, vec3(angle.sin(), 0.0, angle.cos()));
+                // The quadrature's own error stays below 1e-3 with these lobes.
+                assert!(share <= 1.001, "{model:?} {shininess} at {degrees}°: {share}");
+            }
+        }
+    }
+}
+
+#[test]
+fn normalised_models_return_all_at_normal_incidence() {
+    // Phong's lobe narrows as it should with the cosine; both are normalised where the mirror direction is the normal.
+    for model in [Model::NormalizedPhong, Model::NormalizedBlinnPhong] {
+        for shininess in [0.0, 3.0, 30.0, 300.0] {
+            let material = Material::lambert(Vec3::ZERO).with_specular(model, Vec3::ONE, shininess);
+            let share = albedo(&material, Vec3::Z);
+            assert!((share - 1.0).abs() < 2e-3, "{model:?} {shininess}: {share}");
+        }
+    }
+}
+
+#[test]
+fn lambert_returns_its_albedo_from_anywhere() {
+    let material = Material::lambert(Vec3::splat(0.7));
+    for degrees in [0.0f32, 50.0, 89.0] {
+        let angle = degrees.to_radians();
+        assert!((albedo(&material, vec3(angle.sin(), 0.0, angle.cos())) - 0.7).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn a_rectangle_far_away_is_a_point() {
+    let rect = Light::Rect {
+        corner: dvec3(-0.5, 100.0, -1.0),
+        // u × v points down, at the receiver.
+        edge_u: DVec3::X,
+        edge_v: 2.0 * DVec3::Z,
+        radiance: Vec3::splat(10.0),
+        samples: 16,
+        falloff: Falloff::InverseSquare,
+    };
+    let total: f32 = (0..rect.samples()).map(|i| rect.illuminate(i, DVec3::ZERO).irradiance.x).sum();
+    let wanted = 10.0 * 2.0 / 1e4;
+    assert!((total / wanted - 1.0).abs() < 1e-3, "{total} {wanted}");
+    let behind: f32 = (0..16).map(|i| rect.illuminate(i, dvec3(0.0, 200.0, 0.0)).irradiance.x).sum();
+    assert_eq!(behind, 0.0);
+}
+
+#[test]
+fn a_rectangle_near_by_converges_to_the_form_factor() {
+    // Unit square one above a parallel patch below its corner: F = (2 / 2π) · (1/√2 · atan(1/√2)) for each term.
+    let s = 0.5f64.sqrt();
+    let factor = (2.0 * s * s.atan()) / (2.0 * std::f64::consts::PI);
+    let mut before = f64::INFINITY;
+    for samples in [4, 16, 64, 256] {
+        let rect = Light::Rect {
+            corner: dvec3(0.0, 1.0, 0.0),
+            edge_u: DVec3::X,
+            edge_v: DVec3::Z,
+            radiance: Vec3::ONE,
+            samples,
+            falloff: Falloff::InverseSquare,
+        };
+        let sum: f64 = (0..samples)
+            .map(|i| rect.illuminate(i, DVec3::ZERO))
+            .map(|incident| f64::from(incident.irradiance.x * incident.to_light.y))
+            .sum();
+        let error = (sum / std::f64::consts::PI - factor).abs();
+        assert!(error < before, "{samples} samples: {error}");
+        before = error;
+    }
+    assert!(before < 2e-3, "{before}");
+}
+
+#[test]
+fn light_and_eye_on_two_sides_see_nothing() {
+    let face = turn_to(-Vec3::Y, Vec3::Y);
+    assert!(sees_light(face, vec3(0.6, 0.8, 0.0)));
+    assert!(!sees_light(face, vec3(0.6, -0.8, 0.0)));
+}
