@@ -18,9 +18,11 @@ type Cells = BTreeMap<(i32, i32), f64>;
 /// One way to find areas; the name says which.
 struct Method {
     name: &'static str,
-    /// Fills the cells, which are empty.
-    areas: fn(&[DVec2; 3], &mut Accumulator, &mut dyn FnMut(IVec2, f64)),
+    areas: FindAreas,
 }
+
+/// Tells every cell that a triangle may meet and the area found there.
+type FindAreas = fn(&[DVec2; 3], &mut Accumulator, &mut dyn FnMut(IVec2, f64));
 
 const METHODS: [Method; 6] = [
     Method { name: "accumulate", areas: by_accumulate },
