@@ -18,7 +18,7 @@
 //!     area += run.area * run.columns.len() as f64;
 //!     runs += 1;
 //! })?;
-//! assert_eq!((area, runs), (5000.0, 298));
+//! assert_eq!((area, runs), (5000.0, 297));
 //! # Ok::<(), pointillist_dice::DiceError>(())
 //! ```
 //!
