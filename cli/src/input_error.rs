@@ -38,7 +38,13 @@ impl InputError {
     }
 
     /// An error about the bytes `start..end` of `text`.
-    pub fn in_text(source_name: &str, text: &str, start: usize, end: usize, message: impl Into<String>) -> Self {
+    pub fn in_text(
+        source_name: &str,
+        text: &str,
+        start: usize,
+        end: usize,
+        message: impl Into<String>,
+    ) -> Self {
         Self { place: Some(Place::of_span(text, start, end)), ..Self::of_file(source_name, message) }
     }
 

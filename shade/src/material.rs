@@ -89,7 +89,9 @@ impl Material {
             Model::Phong => brdf::phong_lobe(normal, to_light, to_eye, m),
             Model::NormalizedPhong => brdf::phong_norm(m) * brdf::phong_lobe(normal, to_light, to_eye, m),
             Model::BlinnPhong => brdf::blinn_lobe(normal, to_light, to_eye, m),
-            Model::NormalizedBlinnPhong => brdf::blinn_norm(m) * brdf::blinn_lobe(normal, to_light, to_eye, m),
+            Model::NormalizedBlinnPhong => {
+                brdf::blinn_norm(m) * brdf::blinn_lobe(normal, to_light, to_eye, m)
+            }
         };
         brdf::lambert(self.diffuse) + self.specular * lobe
     }

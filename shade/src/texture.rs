@@ -39,7 +39,13 @@ impl Wrap {
 /// # Errors
 ///
 /// The slice does not hold `width · height` texels, or none.
-pub fn nearest<T: Copy>(texels: &[T], width: u32, height: u32, wrap: Wrap, uv: DVec2) -> Result<T, ShadeError> {
+pub fn nearest<T: Copy>(
+    texels: &[T],
+    width: u32,
+    height: u32,
+    wrap: Wrap,
+    uv: DVec2,
+) -> Result<T, ShadeError> {
     let size_error = ShadeError::TextureSize { len: texels.len(), width, height };
     if width == 0 || height == 0 || texels.len() as u64 != u64::from(width) * u64::from(height) {
         return Err(size_error);

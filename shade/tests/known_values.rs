@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3, Vec3, dvec2, dvec3, vec3};
 use pointillist_shade::{
-    Falloff, Light, Material, ShadeError, Weighting, Wrap, gl, interpolate_color, interpolate_normal, nearest, turn_to,
-    vertex_normals,
+    Falloff, Light, Material, ShadeError, Weighting, Wrap, gl, interpolate_color, interpolate_normal,
+    nearest, turn_to, vertex_normals,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -135,7 +135,13 @@ fn opengl_sum_is_clamped_only_for_display() {
 #[test]
 fn area_weights_keep_slivers_quiet() {
     // A large face up and a small one to the side share the vertex at the origin.
-    let positions = [DVec3::ZERO, dvec3(0.0, 0.0, 2.0), dvec3(2.0, 0.0, 0.0), dvec3(0.0, 0.02, 0.0), dvec3(0.0, 0.0, 0.02)];
+    let positions = [
+        DVec3::ZERO,
+        dvec3(0.0, 0.0, 2.0),
+        dvec3(2.0, 0.0, 0.0),
+        dvec3(0.0, 0.02, 0.0),
+        dvec3(0.0, 0.0, 0.02),
+    ];
     let triangles = [[0, 1, 2], [0, 3, 4]];
     let area = vertex_normals(&positions, &triangles, Weighting::Area).unwrap()[0];
     let plain = vertex_normals(&positions, &triangles, Weighting::Plain).unwrap()[0];

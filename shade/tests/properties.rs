@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3, Vec3, dvec3, vec3};
 use pointillist_shade::{
-    Falloff, Light, Material, Model, Weighting, Wrap, face_normal, gl, interpolate_normal, nearest, sees_light, turn_to,
-    vertex_normals,
+    Falloff, Light, Material, Model, Weighting, Wrap, face_normal, gl, interpolate_normal, nearest,
+    sees_light, turn_to, vertex_normals,
 };
 use proptest::prelude::*;
 use std::f32::consts::{FRAC_PI_2, TAU};
@@ -48,8 +48,11 @@ fn falloff() -> impl Strategy<Value = Falloff> {
 fn light() -> BoxedStrategy<Light> {
     let directional =
         (point(), color()).prop_map(|(direction, irradiance)| Light::Directional { direction, irradiance });
-    let lamp = (point(), color(), falloff())
-        .prop_map(|(position, intensity, falloff)| Light::Point { position, intensity, falloff });
+    let lamp = (point(), color(), falloff()).prop_map(|(position, intensity, falloff)| Light::Point {
+        position,
+        intensity,
+        falloff,
+    });
     let spot = (point(), point(), color(), number(), number(), falloff()).prop_map(
         |(position, direction, intensity, beam_rad, cutoff_rad, falloff)| Light::Spot {
             position,

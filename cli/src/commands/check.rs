@@ -1,9 +1,11 @@
 //! `check`.
 
 use super::Report;
+use super::report::write_text;
 use crate::error::CliError;
 use crate::options::{CameraOptions, CheckOptions};
 use crate::scene;
+use std::path::Path;
 
 pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
@@ -12,7 +14,7 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
     scene.warnings.iter().for_each(|warning| report.warn(warning));
     report.stats.count("triangles", scene.mesh.triangles.len() as u64);
     report.stats.count("lights", scene.lights.len() as u64);
-    report.note(&format!(
+    let text = format!(
         "{}: fine; {} triangles in {} objects, {} materials, {} textures, {} lights, {}×{} pixels",
         options.scene.display(),
         scene.mesh.triangles.len(),
@@ -22,6 +24,9 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
         scene.lights.len(),
         scene.image.width,
         scene.image.height
-    ));
+    );
+    if !options.common.quiet {
+        write_text(Path::new("-"), |output| writeln!(output, "{text}"))?;
+    }
     report.finish()
 }

@@ -23,14 +23,16 @@ pub(super) fn run(options: &DiceOptions) -> Result<(), CliError> {
     let path = &options.output.path;
     let mut stopped = None;
     let mut dice = |output: &mut dyn Write| {
-        report.stats.stage("dice", || dice_command::run(&mut *input, output, options.areas, &name)).map_err(|error| {
-            let kind = match &error {
-                DiceCommandError::Write(error) => error.kind(),
-                _ => io::ErrorKind::Other,
-            };
-            stopped = Some(error);
-            io::Error::from(kind)
-        })
+        report.stats.stage("dice", || dice_command::run(&mut *input, output, options.areas, &name)).map_err(
+            |error| {
+                let kind = match &error {
+                    DiceCommandError::Write(error) => error.kind(),
+                    _ => io::ErrorKind::Other,
+                };
+                stopped = Some(error);
+                io::Error::from(kind)
+            },
+        )
     };
     // On standard output the results of the lines before a bad one stay: they are already read.
     let result = if path == Path::new("-") {

@@ -24,7 +24,8 @@ pub(super) fn run(options: &InfoOptions) -> Result<(), CliError> {
 
 fn describe(path: &Path) -> Result<Value, InputError> {
     let name = path.display().to_string();
-    let bytes = || std::fs::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")));
+    let bytes =
+        || std::fs::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")));
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match extension.as_str() {
         "toml" | "json" => Ok(of_scene(&scene::load(path, &Overrides::default())?)),

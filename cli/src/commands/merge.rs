@@ -47,7 +47,8 @@ fn read_part(path: &Path) -> Result<Part, CliError> {
     })?;
     let mut file = ExrFile::read(&bytes).map_err(|error| fault(format!("cannot be decoded: {error}")))?;
     let stamp = file.stamp.take();
-    let stamp = stamp.ok_or_else(|| CliError::Parts(format!("{name} was not written by `pointillist render`")))?;
+    let stamp =
+        stamp.ok_or_else(|| CliError::Parts(format!("{name} was not written by `pointillist render`")))?;
     Ok(Part { name, file, stamp })
 }
 
@@ -84,7 +85,10 @@ fn check_cover(parts: &[Part]) -> Result<(), CliError> {
         }
         if window.y0 < next {
             let other = before.map_or("another part", |part| part.name.as_str());
-            return Err(CliError::Parts(format!("{other} and {} overlap from row {} on", part.name, window.y0)));
+            return Err(CliError::Parts(format!(
+                "{other} and {} overlap from row {} on",
+                part.name, window.y0
+            )));
         }
         if window.y0 > next {
             return Err(gap(next, window.y0));
@@ -106,26 +110,41 @@ fn join(parts: &[Part]) -> ExrFile {
         let planes = parts.iter().map(|part| &part.file.channels[index].samples);
         let samples = match channel.samples {
             FlatSamples::F16(_) => FlatSamples::F16(
-                planes.flat_map(|plane| if let FlatSamples::F16(s) = plane { s.as_slice() } else { &[] }).copied().collect(),
+                planes
+                    .flat_map(|plane| if let FlatSamples::F16(s) = plane { s.as_slice() } else { &[] })
+                    .copied()
+                    .collect(),
             ),
             FlatSamples::F32(_) => FlatSamples::F32(
-                planes.flat_map(|plane| if let FlatSamples::F32(s) = plane { s.as_slice() } else { &[] }).copied().collect(),
+                planes
+                    .flat_map(|plane| if let FlatSamples::F32(s) = plane { s.as_slice() } else { &[] })
+                    .copied()
+                    .collect(),
             ),
             FlatSamples::U32(_) => FlatSamples::U32(
-                planes.flat_map(|plane| if let FlatSamples::U32(s) = plane { s.as_slice() } else { &[] }).copied().collect(),
+                planes
+                    .flat_map(|plane| if let FlatSamples::U32(s) = plane { s.as_slice() } else { &[] })
+                    .copied()
+                    .collect(),
             ),
         };
         Channel { name: channel.name.clone(), samples }
     });
     let stamp = Stamp { tile: None, ..first.stamp.clone() };
-    ExrFile { size: first.file.size, window: first.stamp.region, channels: channels.collect(), stamp: Some(stamp) }
+    ExrFile {
+        size: first.file.size,
+        window: first.stamp.region,
+        channels: channels.collect(),
+        stamp: Some(stamp),
+    }
 }
 
 /// Only the colours, for a PNG.
 fn frame_of(file: &ExrFile) -> Frame {
     let pixels = file.window.pixels() as usize;
     let plane = |name: &str, other: f32| file.plane(name).unwrap_or_else(|| vec![other; pixels]);
-    let [r, g, b, a] = [("R", 0.0), ("G", 0.0), ("B", 0.0), ("A", 1.0)].map(|(name, other)| plane(name, other));
+    let [r, g, b, a] =
+        [("R", 0.0), ("G", 0.0), ("B", 0.0), ("A", 1.0)].map(|(name, other)| plane(name, other));
     let color = (0..pixels).map(|i| [r[i], g[i], b[i], a[i]]).collect();
     let window: Window = file.window;
     Frame { size: file.size, window, color, depth: Vec::new(), layers: Vec::new() }

@@ -78,7 +78,9 @@ fn output_path(options: &RenderOptions) -> PathBuf {
 
 fn check_options(options: &RenderOptions, format: OutputFormat, report: &Report<'_>) -> Result<(), CliError> {
     if format == OutputFormat::Png && (!options.layers.is_empty() || options.float) {
-        return Err(CliError::Usage("--layers and --float need an .exr output; add -o picture.exr".to_owned()));
+        return Err(CliError::Usage(
+            "--layers and --float need an .exr output; add -o picture.exr".to_owned(),
+        ));
     }
     if format == OutputFormat::Exr && options.exposure != 0.0 {
         report.warn("--exposure changes PNG only; EXR keeps the light as it is");
@@ -98,7 +100,9 @@ fn job(scene: &Scene, options: &RenderOptions) -> Result<RenderJob, CliError> {
     let (width, height) = (scene.image.width, scene.image.height);
     let region = options.camera.crop.unwrap_or(Window::whole(width, height));
     if region.x1 > width || region.y1 > height {
-        return Err(CliError::Usage(format!("--crop {region} is not inside the picture of {width}×{height} pixels")));
+        return Err(CliError::Usage(format!(
+            "--crop {region} is not inside the picture of {width}×{height} pixels"
+        )));
     }
     let window = match options.camera.tile {
         None => region,
@@ -160,7 +164,9 @@ fn check_memory(job: &RenderJob) -> Result<(), CliError> {
         memory::human(needed),
         memory::human(u128::from(available))
     );
-    Err(crate::InputError::of_file("image.size", message).with_help("draw it in parts with --tile, or smaller").into())
+    Err(crate::InputError::of_file("image.size", message)
+        .with_help("draw it in parts with --tile, or smaller")
+        .into())
 }
 
 fn stamp(scene: &Scene, job: &RenderJob, options: &RenderOptions) -> Stamp {

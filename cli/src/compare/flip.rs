@@ -34,7 +34,8 @@ pub fn flip_map(a: &[[f32; 3]], b: &[[f32; 3]], width: usize, pixels_per_degree:
     let (a, b) = (opponent(a), opponent(b));
     let [seen_a, seen_b] = [&a, &b].map(|pixels| perceived(pixels, width, pixels_per_degree));
     let [edges_a, edges_b] = [&a, &b].map(|pixels| features(pixels, width, pixels_per_degree));
-    let largest = hyab(hunt_lab_from_rgb([0.0, 1.0, 0.0]), hunt_lab_from_rgb([0.0, 0.0, 1.0])).powf(COLOR_EXPONENT);
+    let largest =
+        hyab(hunt_lab_from_rgb([0.0, 1.0, 0.0]), hunt_lab_from_rgb([0.0, 0.0, 1.0])).powf(COLOR_EXPONENT);
     (0..a.len())
         .map(|i| {
             let color = spread(hyab(seen_a[i], seen_b[i]).powf(COLOR_EXPONENT), largest);
@@ -102,18 +103,32 @@ fn features(pixels: &[[f64; 3]], width: usize, pixels_per_degree: f64) -> Vec<[f
 fn scaled(kernel: &[f64]) -> Vec<f64> {
     let positive: f64 = kernel.iter().filter(|&&k| k > 0.0).sum();
     let negative: f64 = -kernel.iter().filter(|&&k| k < 0.0).sum::<f64>();
-    kernel.iter().map(|&k| if k > 0.0 { k / positive } else if k < 0.0 { k / negative } else { 0.0 }).collect()
+    kernel
+        .iter()
+        .map(|&k| {
+            if k > 0.0 {
+                k / positive
+            } else if k < 0.0 {
+                k / negative
+            } else {
+                0.0
+            }
+        })
+        .collect()
 }
 
 /// A plane filtered along rows, then along columns; beyond the border its values go on.
 fn separable(plane: &[f64], width: usize, along_x: &[f64], along_y: &[f64]) -> Vec<f64> {
     let height = plane.len() / width;
-    let tap = |at: usize, offset: usize, radius: usize, size: usize| (at + offset).saturating_sub(radius).min(size - 1);
+    let tap = |at: usize, offset: usize, radius: usize, size: usize| {
+        (at + offset).saturating_sub(radius).min(size - 1)
+    };
     let radius = along_x.len() / 2;
     let mut rows = vec![0.0; plane.len()];
     for (row, out) in plane.chunks_exact(width).zip(rows.chunks_exact_mut(width)) {
         for (x, value) in out.iter_mut().enumerate() {
-            *value = along_x.iter().enumerate().map(|(k, weight)| weight * row[tap(x, k, radius, width)]).sum();
+            *value =
+                along_x.iter().enumerate().map(|(k, weight)| weight * row[tap(x, k, radius, width)]).sum();
         }
     }
     let radius = along_y.len() / 2;

@@ -28,7 +28,10 @@ pub fn remove_temporaries() {
 /// # Errors
 ///
 /// What `write` says, or the system; the old file is then untouched.
-pub fn write_atomically(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> io::Result<()> {
+pub fn write_atomically(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
+) -> io::Result<()> {
     let fill = |file: &File| {
         let mut buffered = BufWriter::new(file);
         write(&mut buffered)?;
@@ -51,7 +54,8 @@ pub fn write_atomically(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -
     let temporary = builder.tempfile_in(folder)?;
     let name = temporary.path().to_path_buf();
     temporaries().push(name.clone());
-    let result = fill(temporary.as_file()).and_then(|()| temporary.persist(path).map(drop).map_err(|e| e.error));
+    let result =
+        fill(temporary.as_file()).and_then(|()| temporary.persist(path).map(drop).map_err(|e| e.error));
     temporaries().retain(|path| *path != name);
     result
 }

@@ -1,11 +1,12 @@
 //! EXR files: one part, any channels, data window within the display window.
 
 use super::{Frame, Stamp, Window};
-use exr::prelude::{
-    self as exr_lib, AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, ImageAttributes,
-    IntegerBounds, LayerAttributes, LineOrder, ReadChannels as _, ReadLayers as _, Text, WritableImage as _, f16,
-};
 use exr::meta::attribute::AttributeValue;
+use exr::prelude::{
+    self as exr_lib, AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image,
+    ImageAttributes, IntegerBounds, LayerAttributes, LineOrder, ReadChannels as _, ReadLayers as _, Text,
+    WritableImage as _, f16,
+};
 use std::io::{Cursor, Seek, Write};
 
 /// Name of the header attribute that holds the [`Stamp`].
@@ -77,7 +78,8 @@ impl ExrFile {
                 // Half has eleven bits: too few for a place or a number.
                 let exact = name.starts_with("P.") || name == "id";
                 let precision = if exact { Precision::Float } else { precision };
-                channels.push(Channel { name: name.clone(), samples: stored(plane.iter().copied(), precision) });
+                channels
+                    .push(Channel { name: name.clone(), samples: stored(plane.iter().copied(), precision) });
             }
         }
         channels.sort_by(|a, b| a.name.cmp(&b.name));
@@ -148,8 +150,7 @@ impl ExrFile {
             line_order: LineOrder::Increasing,
         };
         let size = (self.window.width() as usize, self.window.height() as usize);
-        let layer =
-            exr_lib::Layer::new(size, attributes, encoding, AnyChannels::sort(channels.collect()));
+        let layer = exr_lib::Layer::new(size, attributes, encoding, AnyChannels::sort(channels.collect()));
         let display = IntegerBounds::new((0, 0), (width, height));
         let image = Image::new(ImageAttributes::new(display), layer);
         image.write().to_buffered(output).map_err(|error| match error {

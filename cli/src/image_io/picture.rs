@@ -42,7 +42,8 @@ pub fn read_exr_picture(bytes: &[u8]) -> Result<Picture, ExrError> {
 /// The file cannot be read or decoded.
 pub fn read_picture(path: &Path) -> Result<Picture, InputError> {
     let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")))?;
+    let bytes =
+        std::fs::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")))?;
     let fault = |message: String| {
         let error = InputError::of_file(&name, format!("cannot be decoded: {message}"));
         error.with_help("EXR, PNG, JPEG and HDR pictures can be read")
@@ -50,7 +51,8 @@ pub fn read_picture(path: &Path) -> Result<Picture, InputError> {
     if bytes.starts_with(&exr::meta::magic_number::BYTES) {
         return read_exr_picture(&bytes).map_err(|error| fault(error.to_string()));
     }
-    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| fault(e.to_string()))?;
+    let reader =
+        ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| fault(e.to_string()))?;
     let image = reader.decode().map_err(|error| fault(error.to_string()))?;
     let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
     let decode = |c: f32| if is_float { c } else { linear_from_srgb(c) };

@@ -40,7 +40,13 @@ pub fn encode_rgb_png(output: impl Write, bytes: &[u8], width: u32, height: u32)
     encode(output, bytes, width, height, ExtendedColorType::Rgb8)
 }
 
-fn encode(output: impl Write, bytes: &[u8], width: u32, height: u32, kind: ExtendedColorType) -> io::Result<()> {
+fn encode(
+    output: impl Write,
+    bytes: &[u8],
+    width: u32,
+    height: u32,
+    kind: ExtendedColorType,
+) -> io::Result<()> {
     PngEncoder::new(output).write_image(bytes, width, height, kind).map_err(|error| match error {
         image::ImageError::IoError(error) => error,
         other => io::Error::other(other.to_string()),

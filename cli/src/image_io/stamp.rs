@@ -36,7 +36,8 @@ impl Stamp {
         let value = |key: &str| text.split(' ').find_map(|word| word.strip_prefix(key)?.strip_prefix('='));
         let numbers = |key: &str| value(key).map(|list| list.split(',').collect::<Vec<_>>());
         let region: Vec<u32> = numbers("region")?.iter().map(|n| n.parse().ok()).collect::<Option<_>>()?;
-        let background: Vec<f32> = numbers("background")?.iter().map(|n| n.parse().ok()).collect::<Option<_>>()?;
+        let background: Vec<f32> =
+            numbers("background")?.iter().map(|n| n.parse().ok()).collect::<Option<_>>()?;
         let &[x0, y0, x1, y1] = region.as_slice() else { return None };
         if x0 >= x1 || y0 >= y1 {
             return None;

@@ -33,8 +33,8 @@ pub struct MtlMaterial {
 
 /// Keys that change the picture where they are understood; here they are ignored with a warning.
 const NOT_YET: [&str; 13] = [
-    "map_bump", "map_Bump", "bump", "map_Ks", "map_Ke", "map_Ns", "map_Ka", "norm", "disp", "decal", "refl", "map_Pr",
-    "map_Pm",
+    "map_bump", "map_Bump", "bump", "map_Ks", "map_Ke", "map_Ns", "map_Ka", "norm", "disp", "decal", "refl",
+    "map_Pr", "map_Pm",
 ];
 
 /// Reads an MTL; `name` is how messages call it.
@@ -131,12 +131,14 @@ fn finite(keyword: &str, word: &str) -> Result<f32, String> {
 
 fn convert(material: tobj::Material, line_of: impl Fn(&str) -> usize) -> MtlMaterial {
     let color = |value: Option<[f64; 3]>| value.map(|rgb| Vec3::from_array(rgb.map(|n| n as f32)));
-    let map = |value: &Option<String>| {
-        value.as_deref().map(|text| (file_name(text).to_owned(), line_of(text)))
-    };
+    let map =
+        |value: &Option<String>| value.as_deref().map(|text| (file_name(text).to_owned(), line_of(text)));
     let emission = material.emissive;
-    let mut ignored: Vec<String> =
-        NOT_YET.iter().filter(|key| material.unknown_param.contains_key(**key)).map(|&key| key.to_owned()).collect();
+    let mut ignored: Vec<String> = NOT_YET
+        .iter()
+        .filter(|key| material.unknown_param.contains_key(**key))
+        .map(|&key| key.to_owned())
+        .collect();
     let known = [
         ("map_bump", &material.normal_texture),
         ("map_Ks", &material.specular_texture),

@@ -64,8 +64,14 @@ fn not_finite(name: &str, bytes: &[u8]) -> InputError {
     let is_bad = |line: &[u8]| {
         let text = String::from_utf8_lossy(line);
         let mut words = text.split('#').next().unwrap_or_default().split_whitespace();
-        matches!(words.next(), Some("v" | "vt" | "vn"))
-            && words.any(|word| word.parse::<f64>().is_ok_and(|number| !(number as f32).is_finite()))
+        let is_normal = match words.next() {
+            Some("vn") => true,
+            Some("v" | "vt") => false,
+            _ => return false,
+        };
+        // Normals are kept in 32 bits.
+        let fits = |n: f64| if is_normal { (n as f32).is_finite() } else { n.is_finite() };
+        words.take(3).any(|word| word.parse().is_ok_and(|number| !fits(number)))
     };
     let line = bytes.split(|&b| b == b'\n').position(is_bad);
     let message = "a number that is not finite";
@@ -101,7 +107,8 @@ fn append(
     while first < model.indices.len() {
         let count = arity(face);
         if count > MOST_CORNERS {
-            let message = format!("a face with {count} corners; at most {MOST_CORNERS} can be cut into triangles");
+            let message =
+                format!("a face with {count} corners; at most {MOST_CORNERS} can be cut into triangles");
             return Err(InputError::of_file(name, message));
         }
         corners.clear();

@@ -50,7 +50,8 @@ const NO_NAME: &str = "";
 impl<'a> ObjLines<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         Self {
-            rest: bytes,
+            // Some editors put a byte-order mark in front, which is not part of the first keyword.
+            rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes),
             line: 0,
             next_line: 1,
             out: Vec::new(),
@@ -123,10 +124,10 @@ impl<'a> ObjLines<'a> {
             }
             // Groups, smoothing, curves, points, lines: not part of the surface.
             Some(
-                "o" | "g" | "s" | "l" | "p" | "vp" | "mg" | "lod" | "bevel" | "c_interp" | "d_interp" | "usemap"
-                | "maplib" | "shadow_obj" | "trace_obj" | "ctech" | "stech" | "cstype" | "deg" | "bmat" | "step"
-                | "curv" | "curv2" | "surf" | "parm" | "trim" | "hole" | "scrv" | "sp" | "end" | "con" | "call"
-                | "csh",
+                "o" | "g" | "s" | "l" | "p" | "vp" | "mg" | "lod" | "bevel" | "c_interp" | "d_interp"
+                | "usemap" | "maplib" | "shadow_obj" | "trace_obj" | "ctech" | "stech" | "cstype" | "deg"
+                | "bmat" | "step" | "curv" | "curv2" | "surf" | "parm" | "trim" | "hole" | "scrv" | "sp"
+                | "end" | "con" | "call" | "csh",
             )
             | None => Ok(()),
             Some(other) => Err(self.fault(
@@ -186,7 +187,9 @@ impl<'a> ObjLines<'a> {
         }
         self.out.push(b'\n');
         if corners < 3 {
-            return Err(self.fault(format!("a face with {corners} corners"), "a face needs 3 or more, as in f 1 2 3"));
+            return Err(
+                self.fault(format!("a face with {corners} corners"), "a face needs 3 or more, as in f 1 2 3")
+            );
         }
         if self.group != Some((kinds, self.material)) {
             self.group = Some((kinds, self.material));
@@ -200,7 +203,8 @@ impl<'a> ObjLines<'a> {
 
     /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn` and passes it on with indices from 1.
     fn corner(&mut self, word: &str) -> Result<Kinds, LineFault> {
-        const HELP: &str = "corners are v, v/vt, v//vn or v/vt/vn, counted from 1, or from the end with a minus";
+        const HELP: &str =
+            "corners are v, v/vt, v//vn or v/vt/vn, counted from 1, or from the end with a minus";
         let mut present = [false; 3];
         self.out.push(b' ');
         for (kind, part) in word.split('/').enumerate() {

@@ -104,7 +104,8 @@ pub fn read_ply(name: &str, bytes: &[u8]) -> Result<FileMesh, InputError> {
         return Err(InputError::of_file(name, "the PLY file has no element `vertex` with x, y and z"));
     }
     let has_normals = ["nx", "ny", "nz"].into_iter().all(has);
-    let has_uvs = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]].iter().any(|pair| pair.iter().all(|p| has(p)));
+    let has_uvs =
+        [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]].iter().any(|pair| pair.iter().all(|p| has(p)));
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for (element_name, element) in &header.elements {
         check_count(name, element_name, element.count, bytes.len())?;
@@ -146,11 +147,13 @@ fn build(
     has_normals: bool,
     has_uvs: bool,
 ) -> Result<FileMesh, InputError> {
-    let bad = vertices
-        .iter()
-        .position(|v| !v.position.is_finite() || !v.normal.is_finite() || !v.uv.is_finite());
+    let bad =
+        vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite() || !v.uv.is_finite());
     if let Some(index) = bad {
-        return Err(InputError::of_file(name, format!("vertex {index} (from 0) has a number that is not finite")));
+        return Err(InputError::of_file(
+            name,
+            format!("vertex {index} (from 0) has a number that is not finite"),
+        ));
     }
     let mut mesh = FileMesh {
         positions: vertices.iter().map(|v| v.position).collect(),
@@ -162,7 +165,8 @@ fn build(
     let mut corners = Vec::new();
     for (face, Face(indices)) in faces.iter().enumerate() {
         if let Some(&index) = indices.iter().find(|&&i| i < 0 || i >= vertices.len() as i64) {
-            let message = format!("face {face} (from 0) names vertex {index}, but there are {}", vertices.len());
+            let message =
+                format!("face {face} (from 0) names vertex {index}, but there are {}", vertices.len());
             return Err(InputError::of_file(name, message));
         }
         if indices.len() < 3 {

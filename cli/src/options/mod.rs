@@ -62,7 +62,9 @@ pub enum Command {
         pointillist check house.toml --set camera.fov=200")]
     Check(CheckOptions),
     /// Join the EXR parts that `render --tile` wrote
-    #[command(after_help = "Example:\n  pointillist merge part0.exr part1.exr part2.exr part3.exr -o house.exr")]
+    #[command(
+        after_help = "Example:\n  pointillist merge part0.exr part1.exr part2.exr part3.exr -o house.exr"
+    )]
     Merge(MergeOptions),
     /// Print a completion script for a shell
     #[command(after_help = "Example:\n  \

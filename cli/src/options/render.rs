@@ -1,7 +1,7 @@
 //! `render`.
 
-use super::values::{self, Tile, Vector};
 use super::Common;
+use super::values::{self, Tile, Vector};
 use crate::image_io::Window;
 use crate::scene::Overrides;
 use std::path::PathBuf;
@@ -124,7 +124,9 @@ impl FromStr for LayerRequest {
             _ => match text.strip_prefix("lit.") {
                 Some(light) => Self::Lit(Some(light.to_owned())),
                 None => {
-                    return Err("layers are all, N, P, albedo, direct, indirect, lit, lit.<light> and id".to_owned());
+                    return Err(
+                        "layers are all, N, P, albedo, direct, indirect, lit, lit.<light> and id".to_owned()
+                    );
                 }
             },
         })

@@ -102,7 +102,11 @@ pub(super) fn window(text: &str) -> Result<Window, String> {
 /// A field of view.
 pub(super) fn degrees(text: &str) -> Result<f64, String> {
     let angle = text.parse::<f64>().map_err(|_| "must be a number of degrees".to_owned())?;
-    if angle > 0.0 && angle < 180.0 { Ok(angle) } else { Err("must be more than 0 and less than 180".to_owned()) }
+    if angle > 0.0 && angle < 180.0 {
+        Ok(angle)
+    } else {
+        Err("must be more than 0 and less than 180".to_owned())
+    }
 }
 
 /// An exposure.

@@ -94,7 +94,9 @@ impl Fingerprint {
     fn material(&mut self, material: &Material) {
         let Surface { model, diffuse, specular, shininess, emission, opacity } = material.surface;
         self.text(&format!("{model:?} {:?}", material.wrap));
-        [diffuse, specular, emission, Vec3::new(shininess, opacity, 0.0)].into_iter().for_each(|c| self.color(c));
+        [diffuse, specular, emission, Vec3::new(shininess, opacity, 0.0)]
+            .into_iter()
+            .for_each(|c| self.color(c));
         self.option(material.diffuse_map);
         self.option(material.opacity_map);
     }
@@ -123,7 +125,9 @@ impl Fingerprint {
                 falloff = f;
             }
             Light::Spot { position, direction, beam_rad, cutoff_rad, falloff: f, .. } => {
-                [position, direction, DVec3::new(beam_rad, cutoff_rad, 0.0)].into_iter().for_each(|v| self.vector(v));
+                [position, direction, DVec3::new(beam_rad, cutoff_rad, 0.0)]
+                    .into_iter()
+                    .for_each(|v| self.vector(v));
                 falloff = f;
             }
             Light::Rect { corner, edge_u, edge_v, samples, falloff: f, .. } => {

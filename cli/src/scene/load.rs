@@ -60,12 +60,11 @@ fn read_document(path: &Path) -> Result<(Document, Kind, PathBuf), InputError> {
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     match kind_of(path)? {
         Kind::Text(format) => {
-            let text = String::from_utf8(read_file(path)?)
-                .map_err(|error| {
-                    let at = error.utf8_error().valid_up_to();
-                    let line = error.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count() + 1;
-                    InputError::in_line(&name, error.as_bytes(), line, "not UTF-8 text")
-                })?;
+            let text = String::from_utf8(read_file(path)?).map_err(|error| {
+                let at = error.utf8_error().valid_up_to();
+                let line = error.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count() + 1;
+                InputError::in_line(&name, error.as_bytes(), line, "not UTF-8 text")
+            })?;
             Ok((Document::parse(&name, &text, format)?, Kind::Text(format), folder))
         }
         Kind::Mesh => {
@@ -87,7 +86,8 @@ fn kind_of(path: &Path) -> Result<Kind, InputError> {
         "obj" | "ply" => Ok(Kind::Mesh),
         "glb" | "gltf" => {
             let name = path.display().to_string();
-            Err(InputError::of_file(name, "glTF is not in this version yet").with_help("convert the model to OBJ"))
+            Err(InputError::of_file(name, "glTF is not in this version yet")
+                .with_help("convert the model to OBJ"))
         }
         _ => {
             let name = path.display().to_string();

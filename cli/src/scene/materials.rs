@@ -76,7 +76,10 @@ impl<'a> MaterialTable<'a> {
                 number = self.of_libraries(name, &libraries, textures, warnings)?;
             }
             if number.is_none() && !name.is_empty() {
-                warnings.push(format!("{}: material `{name}` is not defined; a grey one is used", path.display()));
+                warnings.push(format!(
+                    "{}: material `{name}` is not defined; a grey one is used",
+                    path.display()
+                ));
             }
             numbers.push(number.unwrap_or_else(|| self.default()));
         }
@@ -134,7 +137,9 @@ impl<'a> MaterialTable<'a> {
         textures: &mut TextureTable,
     ) -> Result<Material, InputError> {
         let mut texture = |reference: &Option<_>, opacity: bool| {
-            let Some(reference): &Option<super::description::TextureReference> = reference else { return Ok(None) };
+            let Some(reference): &Option<super::description::TextureReference> = reference else {
+                return Ok(None);
+            };
             let purpose = if opacity { Purpose::Opacity } else { Purpose::Color { srgb: reference.srgb } };
             load_texture(textures, self.description, self.folder, reference, purpose).map(Some)
         };
@@ -155,20 +160,30 @@ impl<'a> MaterialTable<'a> {
         warnings: &mut Vec<String>,
     ) -> Result<Option<u32>, InputError> {
         // The last definition counts, as when the files are read one after another.
-        let mut found = libraries.iter().flat_map(|library| library.materials.iter().map(move |m| (library, m)));
-        let Some((library, material)) = found.rfind(|(_, material)| material.name == name) else { return Ok(None) };
+        let mut found =
+            libraries.iter().flat_map(|library| library.materials.iter().map(move |m| (library, m)));
+        let Some((library, material)) = found.rfind(|(_, material)| material.name == name) else {
+            return Ok(None);
+        };
         let key = (library.path.clone(), name.to_owned());
         if let Some(&number) = self.of_mtl.get(&key) {
             return Ok(Some(number));
         }
         for ignored in &material.ignored {
             let file = library.path.display();
-            warnings.push(format!("{file}: `{ignored}` of material `{name}` is not in this version yet; ignored"));
+            warnings.push(format!(
+                "{file}: `{ignored}` of material `{name}` is not in this version yet; ignored"
+            ));
         }
         let material = Material {
             name: name.to_owned(),
             surface: surface(material),
-            diffuse_map: mtl_texture(library, &material.diffuse_map, Purpose::Color { srgb: true }, textures)?,
+            diffuse_map: mtl_texture(
+                library,
+                &material.diffuse_map,
+                Purpose::Color { srgb: true },
+                textures,
+            )?,
             opacity_map: mtl_texture(library, &material.opacity_map, Purpose::Opacity, textures)?,
             wrap: if material.clamp { Wrap::Clamp } else { Wrap::Repeat },
         };
@@ -180,7 +195,8 @@ impl<'a> MaterialTable<'a> {
 
 /// Lambert, and a highlight where the MTL asks for one: `illum` 2 or more (or none), with `Ks` and `Ns`.
 fn surface(material: &MtlMaterial) -> shade::Material {
-    let default_albedo = if material.diffuse_map.is_some() { 1.0 } else { super::description::DEFAULT_ALBEDO };
+    let default_albedo =
+        if material.diffuse_map.is_some() { 1.0 } else { super::description::DEFAULT_ALBEDO };
     let specular = material.specular.unwrap_or(Vec3::ZERO);
     let shininess = material.shininess.unwrap_or(0.0);
     let highlight = material.illumination.unwrap_or(2) >= 2 && specular != Vec3::ZERO && shininess > 0.0;
@@ -216,7 +232,11 @@ fn mtl_texture(
 }
 
 /// The MTL files of a mesh; one that is not there is a warning.
-fn read_libraries(file: &FileMesh, mesh: &Path, warnings: &mut Vec<String>) -> Result<Vec<Library>, InputError> {
+fn read_libraries(
+    file: &FileMesh,
+    mesh: &Path,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Library>, InputError> {
     let folder = mesh.parent().unwrap_or(Path::new(""));
     // By path, so that a library that is named in front of every group is read once.
     let mut libraries: BTreeMap<PathBuf, Library> = BTreeMap::new();

@@ -105,14 +105,21 @@ impl<'a> Builder<'a> {
     fn environment(&mut self) -> Result<Option<usize>, InputError> {
         let Some(file) = &self.description.environment else { return Ok(None) };
         let reference = TextureReference { file: file.clone(), srgb: true };
-        load_texture(&mut self.textures, self.description, self.folder, &reference, Purpose::Color { srgb: true })
-            .map(Some)
+        load_texture(
+            &mut self.textures,
+            self.description,
+            self.folder,
+            &reference,
+            Purpose::Color { srgb: true },
+        )
+        .map(Some)
     }
 
     fn add(&mut self, object: &ObjectDescription) -> Result<(), InputError> {
         let path = self.folder.join(&object.mesh.path);
         let file = self.file_mesh(&path, &object.mesh)?;
-        let materials = self.materials.resolve(object, &file, &path, &mut self.textures, &mut self.warnings)?;
+        let materials =
+            self.materials.resolve(object, &file, &path, &mut self.textures, &mut self.warnings)?;
         self.append(object, &file, &materials)
     }
 
@@ -140,17 +147,23 @@ impl<'a> Builder<'a> {
         })?;
         let mesh = read(&name, &bytes)?;
         if mesh.triangles.is_empty() {
-            let message = format!("the mesh has {} vertices but no faces", mesh.positions.len());
-            return Err(InputError::of_file(name, message).with_help("a mesh needs at least one triangle"));
+            return Err(InputError::of_file(name, "the mesh has no faces")
+                .with_help("a mesh needs at least one triangle"));
         }
         let mesh = Rc::new(mesh);
         self.meshes.insert(path.to_path_buf(), Rc::clone(&mesh));
         Ok(mesh)
     }
 
-    fn append(&mut self, object: &ObjectDescription, file: &FileMesh, materials: &[u32]) -> Result<(), InputError> {
+    fn append(
+        &mut self,
+        object: &ObjectDescription,
+        file: &FileMesh,
+        materials: &[u32],
+    ) -> Result<(), InputError> {
         let mesh = &mut self.mesh;
-        let total = mesh.positions.len().max(mesh.uvs.len()).max(mesh.normals.len()) + 3 * file.triangles.len();
+        let total =
+            mesh.positions.len().max(mesh.uvs.len()).max(mesh.normals.len()) + 3 * file.triangles.len();
         if total >= NONE as usize {
             let message = "the scene has more vertices than can be numbered in 32 bits";
             return Err(self.description.document.error(object.mesh.span, message));

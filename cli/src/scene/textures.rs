@@ -57,7 +57,8 @@ impl TextureTable {
 fn read(path: &Path, purpose: Purpose) -> Result<Texture, String> {
     let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
     let image = if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
-        let picture = image_io::read_exr_picture(&bytes).map_err(|error| format!("cannot be decoded: {error}"))?;
+        let picture =
+            image_io::read_exr_picture(&bytes).map_err(|error| format!("cannot be decoded: {error}"))?;
         let [width, height] = picture.size;
         let flat = picture.color.into_iter().flatten().collect();
         let buffer = image::ImageBuffer::from_raw(width, height, flat);

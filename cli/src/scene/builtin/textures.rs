@@ -16,7 +16,8 @@ fn texture(name: &str, width: u32, height: u32, color: impl Fn(u32, u32) -> [f32
         let [r, g, b] = color(x, y).map(byte);
         [r, g, b, u8::MAX]
     };
-    let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
+    let texels =
+        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
     Texture { width, height, texels: Texels::Srgb8(texels), path: PathBuf::from(name) }
 }
 
@@ -32,13 +33,12 @@ fn floor() -> Texture {
     })
 }
 
-/// Haze at the horizon, blue above; row 0 is the top.
+/// Haze: white at the horizon, nothing above; row 0 is the top.
 fn sky() -> Texture {
     const ROWS: u32 = 256;
     texture("sky texture", 1, ROWS, |_, y| {
         let height = 1.0 - (y as f32 + 0.5) / ROWS as f32;
-        let haze = (-6.0 * height).exp();
-        let mix = |horizon: f32, zenith: f32| horizon * haze + zenith * (1.0 - haze);
-        [mix(0.78, 0.16), mix(0.8, 0.33), mix(0.8, 0.62)]
+        let haze = (-9.0 * height).exp();
+        [haze, 0.93 * haze, 0.82 * haze]
     })
 }

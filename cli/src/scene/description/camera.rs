@@ -35,7 +35,8 @@ impl CameraDescription {
         let eye = place(&mut table, "eye")?;
         let target = place(&mut table, "target")?;
         let up = table.direction("up")?;
-        let fov = table.number_where("fov", "more than 0 and less than 180 (degrees)", |n| n > 0.0 && n < 180.0)?;
+        let fov =
+            table.number_where("fov", "more than 0 and less than 180 (degrees)", |n| n > 0.0 && n < 180.0)?;
         let height = table.number_where("height", "more than 0", |n| n > 0.0)?;
         let projection = match (fov, height) {
             (Some(_), Some(_)) => {

@@ -50,7 +50,8 @@ fn read_name(table: &mut Table<'_>, index: usize) -> Result<String, InputError> 
     let Some(name) = table.text("name")? else { return Ok(format!("light{index}")) };
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if name.is_empty() || !name.chars().all(allowed) {
-        let message = format!("`{}` names an image layer; use letters, digits, _ and -", table.name_of("name"));
+        let message =
+            format!("`{}` names an image layer; use letters, digits, _ and -", table.name_of("name"));
         return Err(table.error("name", message));
     }
     Ok(name.to_owned())
@@ -134,7 +135,9 @@ fn read_falloff(table: &mut Table<'_>) -> Result<Falloff, InputError> {
 
 fn read_resolution(table: &mut Table<'_>) -> Result<Resolution, InputError> {
     if table.is_number("resolution") {
-        return Ok(table.count("resolution", 1, LARGEST_RESOLUTION)?.map_or(Resolution::Auto, Resolution::Cells));
+        return Ok(table
+            .count("resolution", 1, LARGEST_RESOLUTION)?
+            .map_or(Resolution::Auto, Resolution::Cells));
     }
     Ok(table.choice("resolution", &[("auto", Resolution::Auto)])?.unwrap_or_default())
 }

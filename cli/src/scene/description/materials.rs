@@ -52,13 +52,23 @@ pub(super) fn read_all(root: &mut Table<'_>) -> Result<Vec<(String, MaterialDesc
 }
 
 fn read(mut table: Table<'_>) -> Result<MaterialDescription, InputError> {
-    table.not_yet(&["map_bump", "bump_map", "normal_map", "specular_map", "roughness", "metallic", "table"])?;
+    table.not_yet(&[
+        "map_bump",
+        "bump_map",
+        "normal_map",
+        "specular_map",
+        "roughness",
+        "metallic",
+        "table",
+    ])?;
     let model = match table.choice("model", &MODELS)? {
         None => Model::Lambert,
         Some(ModelName::Known(model)) => model,
         Some(ModelName::NotYet) => {
             let message = format!("`{}`: this model is not in this version yet", table.name_of("model"));
-            return Err(table.error("model", message).with_help("use \"lambert\", \"phong\" or \"blinn-phong\""));
+            return Err(table
+                .error("model", message)
+                .with_help("use \"lambert\", \"phong\" or \"blinn-phong\""));
         }
     };
     let srgb = table.choice("color_space", &[("srgb", true), ("linear", false)])?.unwrap_or(true);

@@ -11,8 +11,8 @@ pub use lights::LightDescription;
 pub use materials::{DEFAULT_ALBEDO, MaterialDescription, TextureReference};
 pub use objects::ObjectDescription;
 
-use super::text::{Document, Format, Span, Table};
 use super::Occlusion;
+use super::text::{Document, Format, Span, Table};
 use crate::input_error::InputError;
 use glam::Vec3;
 use pointillist_shade::Interpolation;
@@ -137,11 +137,15 @@ fn read_render(root: &mut Table<'_>) -> Result<Render, InputError> {
     let Some(mut table) = root.table("render")? else { return Ok((None, None, None)) };
     let allowed = |n: f64| [1.0, 2.0, 4.0].contains(&n);
     let subpixel = table.number_where("subpixel", "1, 2 or 4", allowed)?.map(|n| n as u32);
-    let occlusion = table
-        .choice("occlusion", &[("correlated", Occlusion::Correlated), ("paper", Occlusion::Paper)])?;
+    let occlusion =
+        table.choice("occlusion", &[("correlated", Occlusion::Correlated), ("paper", Occlusion::Paper)])?;
     let shading = table.choice(
         "shading",
-        &[("flat", Interpolation::Flat), ("gouraud", Interpolation::Gouraud), ("phong", Interpolation::Phong)],
+        &[
+            ("flat", Interpolation::Flat),
+            ("gouraud", Interpolation::Gouraud),
+            ("phong", Interpolation::Phong),
+        ],
     )?;
     table.finish()?;
     Ok((subpixel, occlusion, shading))

@@ -96,6 +96,10 @@ impl Document {
     pub fn excerpt(&self, span: Span) -> String {
         let text = self.origins[span.origin].text.get(span.start..span.end).unwrap_or_default();
         let line = text.lines().next().unwrap_or_default().trim();
-        if line.chars().count() > 40 { line.chars().take(37).chain("...".chars()).collect() } else { line.to_owned() }
+        if line.chars().count() > 40 {
+            line.chars().take(37).chain("...".chars()).collect()
+        } else {
+            line.to_owned()
+        }
     }
 }

@@ -75,7 +75,9 @@ fn toml_node(node: toml::Spanned<DeValue<'_>>, origin: usize) -> Node {
         DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(value) => Value::Bool(value),
         DeValue::Datetime(_) => Value::Other("a date"),
-        DeValue::Array(items) => Value::Array(items.into_iter().map(|item| toml_node(item, origin)).collect()),
+        DeValue::Array(items) => {
+            Value::Array(items.into_iter().map(|item| toml_node(item, origin)).collect())
+        }
         DeValue::Table(table) => toml_table(table, origin),
     };
     Node { value, span }

@@ -27,7 +27,9 @@ impl Document {
         let path = path.replace('[', ".").replace(']', "");
         let names: Vec<&str> = path.split('.').map(str::trim).collect();
         if names.iter().any(|name| name.is_empty()) {
-            return Err(self.error(path_span, "the key has an empty part").with_help("write --set camera.fov=40"));
+            return Err(self
+                .error(path_span, "the key has an empty part")
+                .with_help("write --set camera.fov=40"));
         }
         place(&mut self.root, &names, node, path_span).map_err(|message| self.error(path_span, message))
     }
@@ -46,7 +48,9 @@ impl Document {
 fn parse_value(text: &str, span: Span) -> Node {
     const PREFIX: &str = "v=";
     let literal = || Node { value: Value::Text(text.trim().to_owned()), span };
-    let Ok(mut document) = parse_toml("--set", &format!("{PREFIX}{text}"), span.origin) else { return literal() };
+    let Ok(mut document) = parse_toml("--set", &format!("{PREFIX}{text}"), span.origin) else {
+        return literal();
+    };
     let Value::Table(entries) = &mut document.value else { return literal() };
     // More than one entry: the text held a line break and further assignments.
     match (entries.pop(), entries.is_empty()) {
@@ -83,7 +87,8 @@ fn place(at: &mut Node, names: &[&str], value: Node, span: Span) -> Result<(), S
         Value::Array(items) => {
             let count = items.len();
             let item = name.parse::<usize>().ok().and_then(|index| items.get_mut(index));
-            let item = item.ok_or_else(|| format!("`{name}` is not one of the {count} list entries, from 0"))?;
+            let item =
+                item.ok_or_else(|| format!("`{name}` is not one of the {count} list entries, from 0"))?;
             place(item, rest, value, span)
         }
         Value::Table(entries) => {

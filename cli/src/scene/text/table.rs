@@ -25,7 +25,9 @@ impl<'a> Table<'a> {
     pub fn new(document: &'a Document, node: &'a Node, path: &str) -> Result<Self, InputError> {
         let Value::Table(entries) = &node.value else {
             let message = format!("`{path}` is {}; it must be a table", node.value.kind());
-            return Err(document.error(node.span, message).with_help(format!("write [{path}] and its keys below")));
+            return Err(document
+                .error(node.span, message)
+                .with_help(format!("write [{path}] and its keys below")));
         };
         Ok(Self { document, path: path.to_owned(), entries, span: node.span, known: Vec::new() })
     }
@@ -59,7 +61,9 @@ impl<'a> Table<'a> {
     /// The error that a needed key is not there.
     pub fn missing(&self, key: &str, example: &str) -> InputError {
         let owner = if self.path.is_empty() { "the scene".to_owned() } else { format!("`{}`", self.path) };
-        self.document.error(self.span, format!("{owner} needs `{key}`")).with_help(format!("add {key} = {example}"))
+        self.document
+            .error(self.span, format!("{owner} needs `{key}`"))
+            .with_help(format!("add {key} = {example}"))
     }
 
     fn wrong(&self, key: &str, node: &Node, wanted: &str) -> InputError {
@@ -88,7 +92,12 @@ impl<'a> Table<'a> {
     /// # Errors
     ///
     /// As the first sentence says; likewise below.
-    pub fn number_where(&mut self, key: &'static str, wanted: &str, allowed: impl Fn(f64) -> bool) -> Read<f64> {
+    pub fn number_where(
+        &mut self,
+        key: &'static str,
+        wanted: &str,
+        allowed: impl Fn(f64) -> bool,
+    ) -> Read<f64> {
         let Some(node) = self.get(key) else { return Ok(None) };
         let number = self.finite(key, node)?;
         if allowed(number) { Ok(Some(number)) } else { Err(self.out_of_range(key, node, wanted)) }
@@ -230,7 +239,11 @@ impl<'a> Table<'a> {
             return Err(self.wrong(key, node, "a list of tables").with_help(help));
         };
         let name = self.name_of(key);
-        items.iter().enumerate().map(|(i, item)| Table::new(self.document, item, &format!("{name}[{i}]"))).collect()
+        items
+            .iter()
+            .enumerate()
+            .map(|(i, item)| Table::new(self.document, item, &format!("{name}[{i}]")))
+            .collect()
     }
 
     /// The tables of a table whose keys are free names, as in `[material.clay]`.
@@ -272,7 +285,8 @@ impl<'a> Table<'a> {
     ///
     /// There is one.
     pub fn finish(self) -> Result<(), InputError> {
-        let Some((key, _)) = self.entries.iter().find(|(key, _)| !self.known.contains(&key.name.as_str())) else {
+        let Some((key, _)) = self.entries.iter().find(|(key, _)| !self.known.contains(&key.name.as_str()))
+        else {
             return Ok(());
         };
         let error = self.document.error(key.span, format!("unknown key `{}`", self.name_of(&key.name)));
@@ -296,8 +310,8 @@ impl<'a> Table<'a> {
 
 /// The word that was probably meant, if one is near enough.
 fn nearest<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
-    /// Found by trial: "colour" finds "color" and "fob" finds "fov", but "foo" finds nothing.
-    const NEAR: f64 = 0.75;
+    /// Found by trial: "colour" finds "color" and "fob" finds "fov", but "banana" finds nothing.
+    const NEAR: f64 = 0.65;
     let similarity = |word: &str| {
         let edits = strsim::normalized_damerau_levenshtein(&found.to_lowercase(), word);
         edits.max(strsim::jaro_winkler(&found.to_lowercase(), word) - 0.1)
