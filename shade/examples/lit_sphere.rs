@@ -37,7 +37,7 @@ fn main() -> std::io::Result<()> {
         }
     }
     let mut out = std::io::stdout().lock();
-    write!(out, "P6 {SIZE} {SIZE} 255\n")?;
+    writeln!(out, "P6 {SIZE} {SIZE} 255")?;
     out.write_all(&bytes)
 }
 

@@ -31,8 +31,7 @@ pub(super) fn run(options: &CompareOptions) -> Result<(), CliError> {
     })?;
     report.finish()?;
     match options.max_rmse {
-        // Written so that a NaN is beyond any limit.
-        Some(limit) if !(differences.rmse <= limit) || differences.nonfinite > 0 => {
+        Some(limit) if differences.rmse > limit || differences.nonfinite > 0 => {
             let (rmse, bad) = (differences.rmse, differences.nonfinite);
             let more = if bad > 0 { format!(", and {bad} numbers are not finite") } else { String::new() };
             Err(CliError::Beyond(format!("RMSE {rmse:.3e}; the limit is {limit:.3e}{more}")))

@@ -21,7 +21,7 @@ pub struct RenderOptions {
     /// The view.
     #[command(flatten)]
     pub camera: CameraOptions,
-    /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.<light>, id
+    /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.NAME, id
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub layers: Vec<LayerRequest>,
     /// For EXR: 32-bit colours in the place of 16-bit
@@ -125,7 +125,7 @@ impl FromStr for LayerRequest {
                 Some(light) => Self::Lit(Some(light.to_owned())),
                 None => {
                     return Err(
-                        "layers are all, N, P, albedo, direct, indirect, lit, lit.<light> and id".to_owned()
+                        "layers are all, N, P, albedo, direct, indirect, lit, lit.NAME and id".to_owned()
                     );
                 }
             },
