@@ -211,7 +211,7 @@ fn tell(report: &Report<'_>, options: &RenderOptions, output: &Path, window: Win
     if options.scene.is_none() {
         report.note(
             "This is the built-in scene. Next: `pointillist render model.obj`, another view with\n\
-             `pointillist render --eye 4,3,6 --fov 30`, and all options with `pointillist render --help`.",
+             `pointillist render --eye 3,2.5,6.5 --fov 30`, and all options with `pointillist render --help`.",
         );
     }
 }

@@ -108,8 +108,9 @@ impl Shape {
 
     /// A bent wall far behind everything, open towards the lights.
     fn sky(&mut self) {
-        const HEIGHT: f64 = 150.0;
-        const HALF_ANGLE: f64 = 1.25;
+        const HEIGHT: f64 = 110.0;
+        // Beyond atan(0.66 / 0.48) = 0.942 the sun of the scene file would shine on its back, and it would cast a shadow.
+        const HALF_ANGLE: f64 = 0.94;
         // The wall is seen from inside, so u runs the other way.
         self.surface([24, 1], |u, v| {
             let angle = HALF_ANGLE * (2.0 * u - 1.0);

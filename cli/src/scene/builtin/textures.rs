@@ -38,7 +38,7 @@ fn sky() -> Texture {
     const ROWS: u32 = 256;
     texture("sky texture", 1, ROWS, |_, y| {
         let height = 1.0 - (y as f32 + 0.5) / ROWS as f32;
-        let haze = (-9.0 * height).exp();
+        let haze = (-6.6 * height).exp();
         [haze, 0.93 * haze, 0.82 * haze]
     })
 }
