@@ -27,18 +27,21 @@ pub(crate) fn find_solids(
     opaque: impl Fn(usize) -> bool,
 ) -> (Vec<Solid>, Vec<u32>) {
     let welded = weld(positions);
-    let corner = |t: &[u32; 3], k: usize| welded[t[k] as usize];
     let mut components = Components::new(triangles.len());
     let mut open = vec![false; triangles.len()];
     let edges = edges_by_vertex(positions.len(), triangles, &welded);
     for v in 0..positions.len() {
-        pair_edges(&edges.of_vertex(v), &mut components, &mut open);
+        pair_edges(edges.of_vertex(v), &mut components, &mut open);
     }
     for (t, tri) in triangles.iter().enumerate() {
-        let (a, b, c) = (corner(tri, 0), corner(tri, 1), corner(tri, 2));
-        open[t] |= a == b || b == c || c == a || !opaque(t);
+        open[t] |= is_degenerate(tri.map(|c| welded[c as usize])) || !opaque(t);
     }
     collect_solids(positions, triangles, &mut components, &open)
+}
+
+/// Whether a triangle (of welded corners) has fewer than three.
+fn is_degenerate(v: [u32; 3]) -> bool {
+    v[0] == v[1] || v[1] == v[2] || v[2] == v[0]
 }
 
 /// Gives equal positions one number. OBJ files often repeat a vertex along texture seams.
@@ -86,6 +89,10 @@ fn edges_by_vertex(vertices: usize, triangles: &[[u32; 3]], welded: &[u32]) -> E
     let for_each = |visit: &mut dyn FnMut(u32, HalfEdge)| {
         for (t, tri) in triangles.iter().enumerate() {
             let v = tri.map(|c| welded[c as usize]);
+            // Without area, and nobody's neighbour: its other two edges pair up as if it were not there.
+            if is_degenerate(v) {
+                continue;
+            }
             for (a, b) in [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])] {
                 let code = (t as u64) * 2 + u64::from(a < b);
                 visit(a.min(b), HalfEdge { other: a.max(b), code });
@@ -97,7 +104,7 @@ fn edges_by_vertex(vertices: usize, triangles: &[[u32; 3]], welded: &[u32]) -> E
     for i in 1..first.len() {
         first[i] += first[i - 1];
     }
-    let mut edges = vec![HalfEdge { other: 0, code: 0 }; triangles.len() * 3];
+    let mut edges = vec![HalfEdge { other: 0, code: 0 }; first[first.len() - 1] as usize];
     for_each(&mut |v, edge| {
         let slot = &mut first[v as usize + 1];
         edges[*slot as usize] = edge;

@@ -14,6 +14,10 @@ pub struct Region {
     pub transmittance: f64,
 }
 
+/// Regions beyond which an occluder no longer divides but dims what it touches, by the share that it
+/// covers: dozens of translucent leaves in one cell are not worth thousands of splinters.
+const MOST_REGIONS: usize = 48;
+
 /// A polygon divided into convex regions, each behind the same set of occluders.
 ///
 /// Occluders may come in any order. Regions that nothing reaches any more are dropped, so that an
@@ -54,24 +58,24 @@ impl Regions {
         front: Option<HalfPlane>,
         mut opacity: impl FnMut(&ConvexPolygon) -> f64,
     ) {
-        let mut i = 0;
-        let mut end = self.list.len();
-        while i < end {
-            match self.overlap(i, occluder, front.as_ref()) {
-                None => i += 1,
-                Some(inside) => {
-                    let transmittance = self.list[i].transmittance;
-                    let passed = transmittance * (1.0 - opacity(&inside));
-                    // Order matters to nobody but to the last bit of a sum: keep it deterministic.
-                    self.list.remove(i);
-                    end -= 1;
-                    let negligible = self.negligible;
-                    let outside = self.outside.drain(..).filter(|p| p.area() > negligible);
-                    self.list.extend(outside.map(|polygon| Region { polygon, transmittance }));
-                    if passed > 0.0 {
-                        self.list.push(Region { polygon: inside, transmittance: passed });
-                    }
-                }
+        let crowded = self.list.len() > MOST_REGIONS;
+        // Backward, so that what is appended is not met again.
+        for i in (0..self.list.len()).rev() {
+            let Some(inside) = self.overlap(i, occluder, front.as_ref()) else { continue };
+            let Region { polygon, transmittance } = self.list[i];
+            let opacity = opacity(&inside);
+            if crowded {
+                let share = (inside.area() / polygon.area()).min(1.0);
+                self.list[i].transmittance *= 1.0 - opacity * share;
+                continue;
+            }
+            self.list.swap_remove(i);
+            let negligible = self.negligible;
+            let outside = self.outside.drain(..).filter(|p| p.area() > negligible);
+            self.list.extend(outside.map(|polygon| Region { polygon, transmittance }));
+            let passed = transmittance * (1.0 - opacity);
+            if passed > 0.0 {
+                self.list.push(Region { polygon: inside, transmittance: passed });
             }
         }
     }

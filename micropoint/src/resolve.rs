@@ -60,11 +60,13 @@ pub(crate) fn resolve_exactly(
     } else if order.is_empty() {
         dicer.counts.cells_empty += 1;
     } else {
-        dicer.counts.cells_compared += 1;
         let mut seen = 0.0;
+        let mut compared = false;
         for (i, &p) in order.iter().enumerate() {
             let part = *dicer.part(p);
-            let visible = if hide(dicer, regions, lens, corner, &order, i) {
+            let cut = hide(dicer, regions, lens, corner, &order, i);
+            compared |= cut;
+            let visible = if cut {
                 let opacity = f64::from(part.opacity);
                 let (mut weight, mut moment) = (0.0, DVec2::ZERO);
                 for r in regions.list() {
@@ -85,6 +87,8 @@ pub(crate) fn resolve_exactly(
                 break;
             }
         }
+        dicer.counts.cells_compared += u64::from(compared);
+        dicer.counts.cells_apart += u64::from(!compared);
     }
     dicer.recycle(order);
 }

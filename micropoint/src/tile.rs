@@ -92,7 +92,9 @@ pub struct TileCounts {
     pub cells_single: u64,
     /// See `cells_empty`.
     pub cells_tiled: u64,
-    /// Cells in which parts had to be compared pair by pair.
+    /// Cells whose parts lie side by side, or in which the nearest hides the others.
+    pub cells_apart: u64,
+    /// Cells in which parts had to be cut by others.
     pub cells_compared: u64,
     /// Visible micropoints.
     pub micropoints: u64,
@@ -111,6 +113,7 @@ impl std::ops::AddAssign for TileCounts {
         self.cells_empty += o.cells_empty;
         self.cells_single += o.cells_single;
         self.cells_tiled += o.cells_tiled;
+        self.cells_apart += o.cells_apart;
         self.cells_compared += o.cells_compared;
         self.micropoints += o.micropoints;
     }

@@ -1,8 +1,9 @@
 //! The correlated rule: a receiver minus everything that stands in its light.
 
 use crate::light::{Measure, Query};
-use crate::scratch::{Caster, Target, Work, limit};
-use pointillist_micropoint::{Face, Layer, are_disjoint, in_front};
+use crate::scratch::{Caster, Target, Work};
+use pointillist_dice::{ConvexPolygon, HalfPlane};
+use pointillist_micropoint::{Face, Front, Layer, in_front};
 use std::cmp::Ordering;
 
 /// Overlaps below this share of a receiver are rounding.
@@ -17,7 +18,9 @@ pub(crate) fn lit_fraction(
     measure: &Measure<'_>,
     work: &mut Work,
 ) -> f64 {
-    find_blockers(query, target, face, nearby, work);
+    if !find_blockers(query, target, face, nearby, work) {
+        return 0.0;
+    }
     if work.blockers.is_empty() {
         return 1.0;
     }
@@ -41,28 +44,71 @@ pub(crate) fn lit_fraction(
     if whole > 0.0 { (lit / whole).min(1.0) } else { 0.0 }
 }
 
-/// Collects the casters that overlap the target and stand before it.
-fn find_blockers(query: &Query<'_>, target: &Target, face: &Face, nearby: &[u32], work: &mut Work) {
+/// Collects the casters that overlap the target and stand before it. Returns false as soon as one of
+/// them hides it all: then nothing else matters, and the result is 0 whatever the order.
+fn find_blockers(query: &Query<'_>, target: &Target, face: &Face, nearby: &[u32], work: &mut Work) -> bool {
     work.blockers.clear();
     let (low, high) = target.bounds;
-    for &c in nearby {
+    // What hid the last target often hides the next.
+    let first = nearby.contains(&work.last_hider).then_some(work.last_hider);
+    for c in first.into_iter().chain(nearby.iter().copied().filter(|&c| Some(c) != first)) {
         let caster = &query.casters[c as usize];
         let overlaps = caster.bounds.0.cmplt(high).all() && caster.bounds.1.cmpgt(low).all();
         if !overlaps || caster.face.nearness.1 < target.nearness.0 || caster.face.id == face.id {
             continue;
         }
-        if are_disjoint(&caster.polygon, &target.polygon) {
+        let place = place(&caster.polygon, target);
+        if place == Place::Apart || target.polygon.has_separating_edge(caster.polygon.vertices()) {
             continue;
         }
         let upper = Layer { face: &caster.face, outline: &caster.polygon, nearness: caster.face.nearness };
         let lower = Layer { face, outline: &target.polygon, nearness: target.nearness };
-        if let Some(half) = limit(in_front(query.lens, glam::DVec2::ZERO, upper, lower, false)) {
-            work.blockers.push((c, half));
+        let front = in_front(query.lens, glam::DVec2::ZERO, upper, lower, false);
+        if front == Front::Everywhere && place == Place::Over && caster.opacity == Some(1.0) {
+            work.last_hider = c;
+            return false;
+        }
+        match front {
+            Front::Nowhere => {}
+            Front::Everywhere => work.blockers.push((c, None)),
+            Front::Within(half) => work.blockers.push((c, Some(half))),
         }
     }
+    true
 }
 
-/// Nearest to the light first, then by place; the triangle's number only between equals.
+/// How a caster's outline lies to a target.
+#[derive(PartialEq)]
+enum Place {
+    /// One of its edges separates them.
+    Apart,
+    /// It contains the target.
+    Over,
+    Other,
+}
+
+fn place(caster: &ConvexPolygon, target: &Target) -> Place {
+    let vertices = caster.vertices();
+    let mut previous = vertices[vertices.len() - 1];
+    let mut over = true;
+    for &v in vertices {
+        let half = HalfPlane::left_of(previous, v);
+        previous = v;
+        let mut most = f64::NEG_INFINITY;
+        for &p in target.polygon.vertices() {
+            let value = half.value(p);
+            over &= value >= 0.0;
+            most = most.max(value);
+        }
+        if most <= 0.0 {
+            return Place::Apart;
+        }
+    }
+    if over { Place::Over } else { Place::Other }
+}
+
+/// Opaque ones first: what they hide, no texture needs to be asked about. Then nearest to the light
+/// first, then by place; the triangle's number only between equals.
 pub(crate) fn compare(a: &Caster, b: &Caster) -> Ordering {
     let key = |c: &Caster| {
         let (low, high) = c.bounds;
@@ -71,5 +117,6 @@ pub(crate) fn compare(a: &Caster, b: &Caster) -> Ordering {
     let (ka, kb) = (key(a), key(b));
     let places = ka.iter().zip(&kb).map(|(x, y)| x.total_cmp(y));
     let by_place = places.fold(Ordering::Equal, Ordering::then);
-    by_place.then((a.face.surface, a.face.id).cmp(&(b.face.surface, b.face.id)))
+    let textured = a.opacity.is_none().cmp(&b.opacity.is_none());
+    textured.then(by_place).then((a.face.surface, a.face.id).cmp(&(b.face.surface, b.face.id)))
 }

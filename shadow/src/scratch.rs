@@ -3,7 +3,7 @@
 use crate::light::Resolution;
 use glam::DVec2;
 use pointillist_dice::ConvexPolygon;
-use pointillist_micropoint::{ClusterQueue, Face, Front, Lens, ProjectedVertex, Regions};
+use pointillist_micropoint::{ClusterQueue, Face, Lens, ProjectedVertex, Regions};
 
 /// Which side of a face the viewer sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,6 +87,8 @@ pub(crate) struct Work {
     pub(crate) blockers: Vec<(u32, Option<pointillist_dice::HalfPlane>)>,
     pub(crate) layers: Vec<crate::layers::Cast>,
     pub(crate) partial: u64,
+    /// The caster that hid the last target.
+    pub(crate) last_hider: u32,
 }
 
 /// What was done and what was not.
@@ -141,6 +143,8 @@ pub struct ShadowScratch {
     pub(crate) sums: Vec<Sum>,
     pub(crate) target_order: Vec<u32>,
     pub(crate) groups: Vec<Group>,
+    /// Indices of the groups that have targets.
+    occupied: Vec<u32>,
     columns: usize,
     rows: usize,
     cell: f64,
@@ -225,6 +229,9 @@ impl ShadowScratch {
             group.high = group.high.max(t.bounds.1);
             group.nearness = (group.nearness.0.min(t.nearness.0), group.nearness.1.max(t.nearness.1));
         }
+        let has_targets = |(i, g): (usize, &Group)| (g.end_target > 0).then_some(i as u32);
+        self.occupied.clear();
+        self.occupied.extend(self.groups.iter().enumerate().filter_map(has_targets));
         true
     }
 
@@ -254,16 +261,23 @@ impl ShadowScratch {
         self.open_groups = 0;
     }
 
-    /// The cells whose targets may overlap a rectangle.
-    fn cells_near(&self, low: DVec2, high: DVec2) -> Option<(std::ops::RangeInclusive<usize>, std::ops::RangeInclusive<usize>)> {
+    /// Calls `visit` with each group whose targets may overlap a rectangle, until it returns true.
+    ///
+    /// Small rectangles look at the cells they touch, large ones at all groups with targets: most
+    /// cells of a grid over scattered receivers are empty.
+    #[inline]
+    fn any_group_near(&self, low: DVec2, high: DVec2, mut visit: impl FnMut(u32) -> bool) -> bool {
         if !(low.cmple(self.high).all() && high.cmpge(self.low).all()) {
-            return None;
+            return false;
         }
         let index = |v: f64, first: f64, count: usize| (((v - first) / self.cell).max(0.0) as usize).min(count - 1);
         let (low, high) = (low - self.reach, high + self.reach);
-        let columns = index(low.x, self.low.x, self.columns)..=index(high.x, self.low.x, self.columns);
-        let rows = index(low.y, self.low.y, self.rows)..=index(high.y, self.low.y, self.rows);
-        Some((columns, rows))
+        let (x0, x1) = (index(low.x, self.low.x, self.columns), index(high.x, self.low.x, self.columns));
+        let (y0, y1) = (index(low.y, self.low.y, self.rows), index(high.y, self.low.y, self.rows));
+        if (x1 - x0 + 1) * (y1 - y0 + 1) > self.occupied.len() {
+            return self.occupied.iter().any(|&g| visit(g));
+        }
+        (y0..=y1).any(|y| (x0..=x1).any(|x| visit((y * self.columns + x) as u32)))
     }
 
     /// Whether a triangle that needs no clipping misses all targets.
@@ -289,38 +303,40 @@ impl ShadowScratch {
             high = high.max(v.grid);
             nearness = nearness.max(lens.nearness(v.local.z));
         }
-        let Some((columns, rows)) = self.cells_near(low, high) else { return false };
         let concerned = |g: &Group| g.end_target > 0 && !g.dark && g.nearness.0 <= nearness && g.overlaps(low, high);
-        rows.into_iter().any(|y| columns.clone().any(|x| concerned(&self.groups[y * self.columns + x])))
+        self.any_group_near(low, high, |g| concerned(&self.groups[g as usize]))
     }
 
     /// Links a caster to the groups that it may darken.
     pub(crate) fn link(&mut self, caster: Caster) {
         let (low, high) = caster.bounds;
-        let Some((columns, rows)) = self.cells_near(low, high) else { return };
         let index = self.casters.len() as u32;
-        let mut used = false;
-        for y in rows {
-            for x in columns.clone() {
-                let g = &mut self.groups[y * self.columns + x];
-                let behind = g.nearness.0 <= caster.face.nearness.1;
-                if g.end_target == 0 || g.dark || !behind || !g.overlaps(low, high) {
-                    continue;
-                }
-                let corners = ConvexPolygon::rectangle(g.low, g.high);
-                if caster.polygon.has_separating_edge(corners.vertices()) {
-                    continue;
-                }
-                if caster.opacity == Some(1.0) && darkens(&caster, &corners, g.nearness.1) {
-                    g.dark = true;
-                    self.open_groups -= 1;
-                    continue;
-                }
-                self.links.push((index, g.first_link));
-                g.first_link = self.links.len() as u32 - 1;
-                used = true;
+        let mut groups = std::mem::take(&mut self.groups);
+        let mut links = std::mem::take(&mut self.links);
+        let (mut used, mut darkened) = (false, 0);
+        self.any_group_near(low, high, |g| {
+            let group = &mut groups[g as usize];
+            let behind = group.nearness.0 <= caster.face.nearness.1;
+            if group.end_target == 0 || group.dark || !behind || !group.overlaps(low, high) {
+                return false;
             }
-        }
+            match covers(&caster, group) {
+                Cover::Nothing => {}
+                Cover::All => {
+                    group.dark = true;
+                    darkened += 1;
+                }
+                Cover::Some => {
+                    links.push((index, group.first_link));
+                    group.first_link = links.len() as u32 - 1;
+                    used = true;
+                }
+            }
+            false
+        });
+        self.groups = groups;
+        self.links = links;
+        self.open_groups -= darkened;
         if used {
             self.counts.casters += 1;
             self.casters.push(caster);
@@ -342,25 +358,31 @@ impl ShadowScratch {
     }
 }
 
-/// Whether an opaque caster covers a rectangle in front of everything at most `nearest` near. Then it
-/// also covers each target alone, and cutting would leave exactly nothing.
-fn darkens(caster: &Caster, corners: &ConvexPolygon, nearest: f64) -> bool {
-    let clearly_before = caster.face.nearness.0 > nearest + 1e-6 * nearest.abs();
-    let vertices = caster.polygon.vertices();
-    let mut previous = vertices[vertices.len() - 1];
-    clearly_before
-        && vertices.iter().all(|&v| {
-            let half = pointillist_dice::HalfPlane::left_of(previous, v);
-            previous = v;
-            corners.vertices().iter().all(|&c| half.value(c) >= 0.0)
-        })
+/// What a caster does to a group.
+enum Cover {
+    /// Its outline misses the group's rectangle.
+    Nothing,
+    Some,
+    /// It is opaque and covers the rectangle, in front of all its targets. Then it also covers each
+    /// target alone, and cutting would leave exactly nothing.
+    All,
 }
 
-/// Where a caster stands before a receiver, as the half-plane that limits it.
-pub(crate) fn limit(front: Front) -> Option<Option<pointillist_dice::HalfPlane>> {
-    match front {
-        Front::Nowhere => None,
-        Front::Everywhere => Some(None),
-        Front::Within(half) => Some(Some(half)),
+fn covers(caster: &Caster, group: &Group) -> Cover {
+    let vertices = caster.polygon.vertices();
+    let mut previous = vertices[vertices.len() - 1];
+    let mut all_inside = true;
+    for &v in vertices {
+        let half = pointillist_dice::HalfPlane::left_of(previous, v);
+        previous = v;
+        // The corners of the rectangle farthest along the normal, and farthest against it.
+        let along = DVec2::select(half.normal.cmpgt(DVec2::ZERO), group.high, group.low);
+        let against = group.low + group.high - along;
+        if half.value(along) < 0.0 {
+            return Cover::Nothing;
+        }
+        all_inside &= half.value(against) >= 0.0;
     }
+    let clearly_before = caster.face.nearness.0 > group.nearness.1 + 1e-6 * group.nearness.1.abs();
+    if all_inside && clearly_before && caster.opacity == Some(1.0) { Cover::All } else { Cover::Some }
 }
