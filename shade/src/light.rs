@@ -179,7 +179,7 @@ impl Light {
 /// A unit vector and the length, or zeros for a vector without direction. Safe from overflow and underflow.
 fn direction_and_length(v: DVec3) -> (DVec3, f64) {
     let largest = v.abs().max_element();
-    if largest == 0.0 || !largest.is_finite() {
+    if largest == 0.0 || !v.is_finite() {
         return (DVec3::ZERO, 0.0);
     }
     // Scaled first: the square of 1e200 is not a number we can use, nor is that of 1e-200.
@@ -206,6 +206,8 @@ fn cone(axis: DVec3, travel: DVec3, beam_rad: f64, cutoff_rad: f64) -> f64 {
 
 fn scaled(color: Vec3, strength: f64) -> Vec3 {
     let limit = f64::from(LARGEST_IRRADIANCE);
+    // An area that overflows, seen from a distance that does, is 0 · ∞: no light, rather than no number.
+    let strength = if strength.is_nan() { 0.0 } else { strength.min(f64::MAX) };
     let channel = |c: f32| (f64::from(c) * strength).clamp(-limit, limit) as f32;
     Vec3::new(channel(color.x), channel(color.y), channel(color.z))
 }
