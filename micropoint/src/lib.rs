@@ -42,6 +42,8 @@ mod closed;
 mod error;
 mod face;
 mod geometry;
+#[cfg(feature = "invariants")]
+pub mod invariants;
 mod lens;
 mod occlude;
 mod render;

@@ -3,7 +3,7 @@
 use crate::face::Face;
 use crate::lens::Lens;
 use glam::DVec2;
-use pointillist_dice::{ConvexPolygon, HalfPlane};
+use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
 
 /// A part of a polygon and the light that reaches it.
 #[derive(Clone, Copy, Debug)]
@@ -114,8 +114,8 @@ impl Regions {
 /// Whether two convex polygons have no common interior, within rounding.
 #[must_use]
 #[inline]
-pub fn are_disjoint(a: &ConvexPolygon, b: &ConvexPolygon) -> bool {
-    a.has_separating_edge(b.vertices()) || b.has_separating_edge(a.vertices())
+pub fn are_disjoint(a: &[DVec2], b: &[DVec2]) -> bool {
+    convex::has_separating_edge(a, b) || convex::has_separating_edge(b, a)
 }
 
 /// A polygon on a face, with its range of nearness.
@@ -123,8 +123,8 @@ pub fn are_disjoint(a: &ConvexPolygon, b: &ConvexPolygon) -> bool {
 pub struct Layer<'a> {
     /// The face it lies on.
     pub face: &'a Face,
-    /// Its outline; [`in_front`] says in which frame.
-    pub outline: &'a ConvexPolygon,
+    /// Its outline, convex and in positive order; [`in_front`] says in which frame.
+    pub outline: &'a [DVec2],
     /// Smallest and largest nearness over the outline.
     pub nearness: (f64, f64),
 }
@@ -158,9 +158,9 @@ pub fn in_front(
     if upper.nearness.0 >= lower.nearness.1 + tie {
         return Front::Everywhere;
     }
-    let mut common = *lower.outline;
-    let Some(&(mut previous)) = upper.outline.vertices().last() else { return Front::Nowhere };
-    for &v in upper.outline.vertices() {
+    let mut common = ConvexPolygon::from_vertices(lower.outline);
+    let Some(&(mut previous)) = upper.outline.last() else { return Front::Nowhere };
+    for &v in upper.outline {
         common = common.clipped(&HalfPlane::left_of(previous, v));
         previous = v;
     }
@@ -177,7 +177,7 @@ pub fn in_front(
     } else if least >= -tie {
         Front::Everywhere
     } else {
-        let anchor = lower.outline.vertices()[0];
+        let anchor = lower.outline[0];
         let offset = fu.at(anchor + corner) - fl.at(anchor + corner);
         Front::Within(HalfPlane { anchor, normal: fu.slope - fl.slope, offset })
     }

@@ -9,7 +9,7 @@ use crate::resolve::{Occlusion, Visible, resolve_by_layers, resolve_exactly};
 use crate::tile::{DiceJob, Dicer, TileCounts};
 use crate::view::{PixelRect, View};
 use glam::{DVec2, DVec3};
-use pointillist_dice::{CellWindow, ConvexPolygon};
+use pointillist_dice::CellWindow;
 
 /// How a picture is diced and resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,11 +181,11 @@ impl Tile {
         let first_fragment = self.fragments.len() as u32;
         let opacity = f64::from(part.opacity);
         match seen.pieces {
-            None => self.push_fragment(&dicer.polygon(part), corner, seen.weight * share),
+            None => self.push_fragment(dicer.outline(part), corner, seen.weight * share),
             Some(regions) => {
                 for r in regions {
                     let weight = r.polygon.area() * r.transmittance * opacity * share;
-                    self.push_fragment(&r.polygon, corner, weight);
+                    self.push_fragment(r.polygon.vertices(), corner, weight);
                 }
             }
         }
@@ -201,10 +201,10 @@ impl Tile {
         });
     }
 
-    fn push_fragment(&mut self, polygon: &ConvexPolygon, corner: DVec2, weight: f64) {
+    fn push_fragment(&mut self, outline: &[DVec2], corner: DVec2, weight: f64) {
         let first_vertex = self.vertices.len() as u32;
-        self.vertices.extend(polygon.vertices().iter().map(|&v| v + corner));
-        let vertex_count = polygon.vertices().len() as u32;
+        self.vertices.extend(outline.iter().map(|&v| v + corner));
+        let vertex_count = outline.len() as u32;
         self.fragments.push(Fragment { first_vertex, vertex_count, weight });
     }
 }

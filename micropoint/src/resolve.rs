@@ -4,6 +4,7 @@ use crate::lens::Lens;
 use crate::occlude::{Front, Layer, Regions, are_disjoint, in_front};
 use crate::tile::Dicer;
 use glam::DVec2;
+use pointillist_dice::ConvexPolygon;
 
 /// How parts in one cell hide one another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -97,7 +98,7 @@ pub(crate) fn resolve_exactly(
 /// regions are meaningless then.
 fn hide(dicer: &Dicer, regions: &mut Regions, lens: &Lens, corner: DVec2, order: &[u32], i: usize) -> bool {
     let part = dicer.part(order[i]);
-    let polygon = dicer.polygon(part);
+    let polygon = dicer.outline(part);
     let mut touched = false;
     for (j, &o) in order.iter().enumerate() {
         let other = dicer.part(o);
@@ -108,13 +109,16 @@ fn hide(dicer: &Dicer, regions: &mut Regions, lens: &Lens, corner: DVec2, order:
         if j == i {
             continue;
         }
-        let outline = dicer.polygon(other);
-        if are_disjoint(&polygon, &outline) {
+        if !part.bounds.overlap(&other.bounds) {
+            continue;
+        }
+        let outline = dicer.outline(other);
+        if are_disjoint(polygon, outline) {
             continue;
         }
         let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
-        let upper = Layer { face: fo, outline: &outline, nearness: other.nearness };
-        let lower = Layer { face: fp, outline: &polygon, nearness: part.nearness };
+        let upper = Layer { face: fo, outline, nearness: other.nearness };
+        let lower = Layer { face: fp, outline: polygon, nearness: part.nearness };
         // Coincident parts hide one another in their sorting order.
         let front = match in_front(lens, corner, upper, lower, j < i) {
             Front::Nowhere => continue,
@@ -122,11 +126,11 @@ fn hide(dicer: &Dicer, regions: &mut Regions, lens: &Lens, corner: DVec2, order:
             Front::Within(half) => Some(half),
         };
         if !touched {
-            regions.start(polygon, NEGLIGIBLE_AREA);
+            regions.start(ConvexPolygon::from_vertices(polygon), NEGLIGIBLE_AREA);
             touched = true;
         }
         let opacity = f64::from(other.opacity);
-        regions.attenuate(outline.vertices(), front, |_| opacity);
+        regions.attenuate(outline, front, |_| opacity);
         if regions.is_hidden() {
             break;
         }

@@ -5,7 +5,7 @@ use crate::geometry::{ClusterQueue, Geometry, HiddenSides};
 use crate::lens::{Lens, LensKind};
 use crate::occlude::are_disjoint;
 use crate::volume::ViewVolume;
-use glam::{DVec2, DVec3, IVec2};
+use glam::{DVec2, DVec3, IVec2, Vec2};
 use pointillist_dice::{CellWindow, ConvexPolygon, Cut, convex, cut};
 use std::cmp::Ordering;
 
@@ -29,10 +29,38 @@ pub(crate) struct Part {
     pub(crate) area: f64,
     /// Centroid relative to the cell.
     pub(crate) centroid: DVec2,
+    pub(crate) bounds: Extent,
     /// Smallest and largest nearness.
     pub(crate) nearness: (f64, f64),
     pub(crate) opacity: f32,
 }
+
+/// Bounds of a part within its cell, in f32 and rounded outward.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extent {
+    low: Vec2,
+    high: Vec2,
+}
+
+impl Extent {
+    const CELL: Self = Self { low: Vec2::ZERO, high: Vec2::ONE };
+
+    fn of(outline: &[DVec2]) -> Self {
+        let (low, high) = convex::bounds(outline);
+        // A cell is 1 wide: this is half a unit in the last place of its far corner.
+        let slack = Vec2::splat(f32::EPSILON);
+        Self { low: low.as_vec2() - slack, high: high.as_vec2() + slack }
+    }
+
+    /// Whether two parts may have a common interior.
+    #[inline]
+    pub(crate) fn overlap(&self, other: &Self) -> bool {
+        self.low.cmplt(other.high).all() && other.low.cmplt(self.high).all()
+    }
+}
+
+/// Outline of a whole cell.
+const CELL: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
 
 /// State of one cell.
 #[derive(Clone, Copy, Debug)]
@@ -291,8 +319,7 @@ impl Dicer {
             return;
         }
         let opacity = opacity.unwrap_or_else(|| {
-            let square = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
-            mean_opacity(job, face, corner, square.vertices())
+            mean_opacity(job, face, corner, &CELL)
         });
         let part = Part {
             next: NONE,
@@ -301,6 +328,7 @@ impl Dicer {
             vertex_count: 0,
             area: 1.0,
             centroid: DVec2::splat(0.5),
+            bounds: Extent::CELL,
             nearness,
             opacity,
         };
@@ -342,6 +370,7 @@ impl Dicer {
             vertex_count: local.len() as u32,
             area,
             centroid,
+            bounds: Extent::of(local),
             nearness,
             opacity,
         };
@@ -396,8 +425,11 @@ impl Dicer {
             if part.opacity < 1.0 {
                 break;
             }
-            let polygon = self.polygon(part);
-            let disjoint = |&o: &u32| are_disjoint(&polygon, &self.polygon(&self.parts[o as usize]));
+            let outline = self.outline(part);
+            let disjoint = |&o: &u32| {
+                let other = &self.parts[o as usize];
+                !part.bounds.overlap(&other.bounds) || are_disjoint(outline, self.outline(other))
+            };
             if !order[..i].iter().all(disjoint) {
                 break;
             }
@@ -487,12 +519,13 @@ impl Dicer {
     }
 
     /// A part's outline relative to its cell.
-    pub(crate) fn polygon(&self, part: &Part) -> ConvexPolygon {
+    #[inline]
+    pub(crate) fn outline(&self, part: &Part) -> &[DVec2] {
         if part.vertex_count == 0 {
-            return ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
+            return &CELL;
         }
         let first = part.first_vertex as usize;
-        ConvexPolygon::from_vertices(&self.vertices[first..first + part.vertex_count as usize])
+        &self.vertices[first..first + part.vertex_count as usize]
     }
 
     /// How many of a cell's parts, nearest first, are known to tile it and to hide the others.

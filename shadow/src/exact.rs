@@ -2,7 +2,8 @@
 
 use crate::light::{Measure, Query};
 use crate::scratch::{Caster, Target, Work};
-use pointillist_dice::{ConvexPolygon, HalfPlane};
+use glam::DVec2;
+use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
 use pointillist_micropoint::{Face, Front, Layer, in_front};
 use std::cmp::Ordering;
 
@@ -13,12 +14,12 @@ const NEGLIGIBLE: f64 = 1e-9;
 pub(crate) fn lit_fraction(
     query: &Query<'_>,
     target: &Target,
-    face: &Face,
-    nearby: &[u32],
+    outline: &[DVec2],
     measure: &Measure<'_>,
+    nearby: &[u32],
     work: &mut Work,
 ) -> f64 {
-    if !find_blockers(query, target, face, nearby, work) {
+    if !find_blockers(query, target, outline, measure.face, nearby, work) {
         return 0.0;
     }
     if work.blockers.is_empty() {
@@ -27,7 +28,7 @@ pub(crate) fn lit_fraction(
     // The result must not depend on the order in which casters were found.
     work.blockers.sort_unstable_by(|a, b| compare(&query.casters[a.0 as usize], &query.casters[b.0 as usize]));
     work.partial += 1;
-    work.regions.start(target.polygon, NEGLIGIBLE * target.area);
+    work.regions.start(ConvexPolygon::from_vertices(outline), NEGLIGIBLE * target.area);
     for &(c, limit) in &work.blockers {
         let caster = &query.casters[c as usize];
         work.regions.attenuate(caster.polygon.vertices(), limit, |p| query.opacity(caster, p));
@@ -35,7 +36,7 @@ pub(crate) fn lit_fraction(
             return 0.0;
         }
     }
-    let whole = target.area * measure.at(target.polygon.area_and_centroid().1);
+    let whole = target.area * measure.at(convex::area_and_centroid(outline).1);
     let mut lit = 0.0;
     for region in work.regions.list() {
         let (area, centroid) = region.polygon.area_and_centroid();
@@ -46,7 +47,14 @@ pub(crate) fn lit_fraction(
 
 /// Collects the casters that overlap the target and stand before it. Returns false as soon as one of
 /// them hides it all: then nothing else matters, and the result is 0 whatever the order.
-fn find_blockers(query: &Query<'_>, target: &Target, face: &Face, nearby: &[u32], work: &mut Work) -> bool {
+fn find_blockers(
+    query: &Query<'_>,
+    target: &Target,
+    outline: &[DVec2],
+    face: &Face,
+    nearby: &[u32],
+    work: &mut Work,
+) -> bool {
     work.blockers.clear();
     let (low, high) = target.bounds;
     // What hid the last target often hides the next.
@@ -57,13 +65,13 @@ fn find_blockers(query: &Query<'_>, target: &Target, face: &Face, nearby: &[u32]
         if !overlaps || caster.face.nearness.1 < target.nearness.0 || caster.face.id == face.id {
             continue;
         }
-        let place = place(&caster.polygon, target);
-        if place == Place::Apart || target.polygon.has_separating_edge(caster.polygon.vertices()) {
+        let place = place(&caster.polygon, outline);
+        if place == Place::Apart || convex::has_separating_edge(outline, caster.polygon.vertices()) {
             continue;
         }
-        let upper = Layer { face: &caster.face, outline: &caster.polygon, nearness: caster.face.nearness };
-        let lower = Layer { face, outline: &target.polygon, nearness: target.nearness };
-        let front = in_front(query.lens, glam::DVec2::ZERO, upper, lower, false);
+        let upper = Layer { face: &caster.face, outline: caster.polygon.vertices(), nearness: caster.face.nearness };
+        let lower = Layer { face, outline, nearness: target.nearness };
+        let front = in_front(query.lens, DVec2::ZERO, upper, lower, false);
         if front == Front::Everywhere && place == Place::Over && caster.opacity == Some(1.0) {
             work.last_hider = c;
             return false;
@@ -87,7 +95,7 @@ enum Place {
     Other,
 }
 
-fn place(caster: &ConvexPolygon, target: &Target) -> Place {
+fn place(caster: &ConvexPolygon, target: &[DVec2]) -> Place {
     let vertices = caster.vertices();
     let mut previous = vertices[vertices.len() - 1];
     let mut over = true;
@@ -95,7 +103,7 @@ fn place(caster: &ConvexPolygon, target: &Target) -> Place {
         let half = HalfPlane::left_of(previous, v);
         previous = v;
         let mut most = f64::NEG_INFINITY;
-        for &p in target.polygon.vertices() {
+        for &p in target {
             let value = half.value(p);
             over &= value >= 0.0;
             most = most.max(value);

@@ -27,6 +27,7 @@ const MOST_CELLS: f64 = 256.0;
 pub(crate) fn lit_fraction(
     query: &Query<'_>,
     target: &Target,
+    outline: &[DVec2],
     face: &Face,
     nearby: &[u32],
     cell: Option<f64>,
@@ -39,7 +40,7 @@ pub(crate) fn lit_fraction(
     };
     work.partial += 1;
     let mut cells = Vec::new();
-    cut_by_cells(&target.polygon, size, |cell, piece| cells.push((cell, *piece)));
+    cut_by_cells(outline, size, |cell, piece| cells.push((cell, *piece)));
     let (mut lit, mut total) = (0.0, 0.0);
     for (cell, piece) in &cells {
         let area = piece.area();
@@ -50,8 +51,8 @@ pub(crate) fn lit_fraction(
 }
 
 /// Cuts a polygon of the light grid by cells of the given size; pieces come back in grid units.
-fn cut_by_cells(polygon: &ConvexPolygon, size: f64, mut visit: impl FnMut(IVec2, &ConvexPolygon)) {
-    let scaled: Vec<DVec2> = polygon.vertices().iter().map(|&v| v / size).collect();
+fn cut_by_cells(polygon: &[DVec2], size: f64, mut visit: impl FnMut(IVec2, &ConvexPolygon)) {
+    let scaled: Vec<DVec2> = polygon.iter().map(|&v| v / size).collect();
     let window = CellWindow { x0: -(1 << 30), y0: -(1 << 30), x1: 1 << 30, y1: 1 << 30 };
     let limit = pointillist_dice::MAX_CUT_VERTICES;
     cut(&scaled[..scaled.len().min(limit)], window, |part| match part {

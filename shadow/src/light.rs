@@ -4,7 +4,7 @@ use crate::error::ShadowError;
 use crate::exact;
 use crate::layers;
 use crate::receiver::{Receivers, Viewer};
-use crate::scratch::{Caster, LitFace, ShadowScratch, Side, Target};
+use crate::scratch::{Caster, LitFace, ShadowScratch, Side, Sum, Target, Work};
 use crate::screen::{Emitter, Screens};
 use glam::{DVec2, DVec3};
 use pointillist_dice::{ConvexPolygon, convex};
@@ -94,7 +94,7 @@ impl<'a> ShadowLight<'a> {
             }
         }
         lit.clear();
-        lit.extend(scratch.sums.iter().map(|s| if s.total > 0.0 { (s.lit / s.total).clamp(0.0, 1.0) } else { 0.0 }));
+        lit.extend(scratch.sums.iter().map(Sum::fraction));
     }
 
     /// Receivers on lit sides, on the screens that see them.
@@ -119,11 +119,11 @@ impl<'a> ShadowLight<'a> {
             if let Some(screen) = std::iter::once(known).chain(0..count).find(sees_all) {
                 scratch.last_screen = screen as u8;
                 let lens = &self.screens.lenses[screen];
-                let outline = corners.iter().map(|&c| lens.project(lens.local_vector(c + offset)));
-                self.push_target(index, r.face, face, screen, outline, scratch);
+                let outline = corners.iter().map(|&c| placed(lens, lens.local_vector(c + offset)));
+                scratch.push_target((index as u32, r.face), screen, false, outline);
             } else {
                 for screen in 0..count {
-                    self.push_clipped(index, r.face, face, screen, corners, offset, scratch);
+                    self.push_clipped((index as u32, r.face), screen, corners, offset, scratch);
                 }
             }
         }
@@ -143,9 +143,7 @@ impl<'a> ShadowLight<'a> {
     #[cold]
     fn push_clipped(
         &self,
-        receiver: usize,
-        face_index: u32,
-        face: &Face,
+        receiver: (u32, u32),
         screen: usize,
         corners: &[DVec3],
         offset: DVec3,
@@ -169,44 +167,8 @@ impl<'a> ShadowLight<'a> {
             ring = clipped;
         }
         if ring.len() >= 3 && ring.iter().all(|p| p.z > 0.0) {
-            self.push_target(receiver, face_index, face, screen, ring.iter().map(|&p| lens.project(p)), scratch);
+            scratch.push_target(receiver, screen, true, ring.iter().map(|&p| placed(lens, p)));
         }
-    }
-
-    fn push_target(
-        &self,
-        receiver: usize,
-        face_index: u32,
-        face: &Face,
-        screen: usize,
-        outline: impl Iterator<Item = DVec2>,
-        scratch: &mut ShadowScratch,
-    ) {
-        let mut polygon = ConvexPolygon::EMPTY;
-        outline.for_each(|p| polygon.push(p));
-        let area = polygon.area();
-        if area < 0.0 {
-            let mut reversed = ConvexPolygon::EMPTY;
-            polygon.vertices().iter().rev().for_each(|&p| reversed.push(p));
-            polygon = reversed;
-        }
-        let lit_face = scratch.lit_face(face_index, screen, || self.face_on_screen(face, screen));
-        let plane_face = &scratch.lit_faces[lit_face as usize].face;
-        let mut nearness = (f64::INFINITY, f64::NEG_INFINITY);
-        for &v in polygon.vertices() {
-            let q = plane_face.nearness_at(v);
-            nearness = (nearness.0.min(q), nearness.1.max(q));
-        }
-        let bounds = polygon.bounds();
-        scratch.targets.push(Target {
-            receiver: receiver as u32,
-            screen: screen as u8,
-            lit_face,
-            bounds,
-            nearness,
-            area: area.abs(),
-            polygon,
-        });
     }
 
     /// The receiver's own triangle as the light sees it: casters are compared with its plane.
@@ -274,48 +236,70 @@ impl<'a> ShadowLight<'a> {
     }
 
     fn resolve_groups(&self, screen: usize, viewer: Viewer<'_>, scratch: &mut ShadowScratch) {
-        let lens = &self.screens.lenses[screen];
         let mut work = std::mem::take(&mut scratch.work);
         let mut nearby = std::mem::take(&mut scratch.nearby);
         for g in 0..scratch.groups.len() {
             let group = scratch.groups[g];
             scratch.casters_of(&group, &mut nearby);
             for t in group.first_target..group.end_target {
-                let target = &scratch.targets[scratch.target_order[t as usize] as usize];
-                let lit_face = &scratch.lit_faces[target.lit_face as usize];
-                let measure = Measure { lens, viewer: viewer.lens, face: &lit_face.face };
-                let total = target.area * measure.at(convex::area_and_centroid(target.polygon.vertices()).1);
-                let fraction = if group.dark {
-                    scratch.counts.dark_by_group += 1;
-                    0.0
-                } else if nearby.is_empty() {
-                    scratch.counts.lit_by_group += 1;
-                    1.0
-                } else {
-                    let query = Query { lens, geometry: self.geometry, opacity: self.opacity, casters: &scratch.casters };
-                    match self.options.occlusion {
-                        Occlusion::Correlated => {
-                            exact::lit_fraction(&query, target, &lit_face.face, &nearby, &measure, &mut work)
-                        }
-                        Occlusion::Paper => {
-                            let cell = match self.options.resolution {
-                                Resolution::Auto => None,
-                                Resolution::Cells(n) => Some(self.screens.size / f64::from(n)),
-                            };
-                            layers::lit_fraction(&query, target, &lit_face.face, &nearby, cell, &mut work)
-                        }
-                    }
+                let target = scratch.targets[scratch.target_order[t as usize] as usize];
+                let settled = if group.dark { Some(0.0) } else { nearby.is_empty().then_some(1.0) };
+                scratch.counts.dark_by_group += u64::from(group.dark);
+                scratch.counts.lit_by_group += u64::from(!group.dark && nearby.is_empty());
+                let (lit, total) = match settled {
+                    // A receiver on one screen needs no weight, and keeps a plain 0 or 1.
+                    Some(fraction) if !target.shared => (fraction, 1.0),
+                    _ => self.resolve(screen, viewer, &target, settled, &nearby, scratch, &mut work),
                 };
                 let sum = &mut scratch.sums[target.receiver as usize];
-                // A receiver on one screen keeps a fraction of 0 or 1 to the last bit.
-                let total = if total > 0.0 && total.is_finite() { total } else { f64::MIN_POSITIVE };
+                sum.lit += lit;
                 sum.total += total;
-                sum.lit += total * fraction;
             }
         }
         scratch.work = work;
         scratch.nearby = nearby;
     }
+
+    /// Lit and whole share of a target; `settled` is its lit fraction if that is known already.
+    fn resolve(
+        &self,
+        screen: usize,
+        viewer: Viewer<'_>,
+        target: &Target,
+        settled: Option<f64>,
+        nearby: &[u32],
+        scratch: &mut ShadowScratch,
+        work: &mut Work,
+    ) -> (f64, f64) {
+        let lens = &self.screens.lenses[screen];
+        let index = scratch.lit_face(target.face, screen, || {
+            self.face_on_screen(&viewer.faces[target.face as usize], screen)
+        });
+        let face = &scratch.lit_faces[index as usize].face;
+        let outline = scratch.outline(target);
+        let measure = Measure { lens, viewer: viewer.lens, face };
+        let query = Query { lens, geometry: self.geometry, opacity: self.opacity, casters: &scratch.casters };
+        let fraction = settled.unwrap_or_else(|| match (self.options.occlusion, self.options.resolution) {
+            (Occlusion::Correlated, _) => exact::lit_fraction(&query, target, outline, &measure, nearby, work),
+            (Occlusion::Paper, Resolution::Auto) => {
+                layers::lit_fraction(&query, target, outline, face, nearby, None, work)
+            }
+            (Occlusion::Paper, Resolution::Cells(n)) => {
+                let cell = self.screens.size / f64::from(n);
+                layers::lit_fraction(&query, target, outline, face, nearby, Some(cell), work)
+            }
+        });
+        if !target.shared {
+            return (fraction, 1.0);
+        }
+        let total = target.area * measure.at(convex::area_and_centroid(outline).1);
+        (total * fraction, total)
+    }
+}
+
+/// A point of a lens's frame on its grid, with its nearness.
+fn placed(lens: &Lens, local: DVec3) -> (DVec2, f64) {
+    (lens.project(local), lens.nearness(local.z))
 }
 
 /// What casters are looked up with.
@@ -345,7 +329,7 @@ impl Query<'_> {
 pub(crate) struct Measure<'a> {
     lens: &'a Lens,
     viewer: &'a Lens,
-    face: &'a Face,
+    pub(crate) face: &'a Face,
 }
 
 impl Measure<'_> {

@@ -2,7 +2,7 @@
 
 use crate::light::Resolution;
 use glam::DVec2;
-use pointillist_dice::ConvexPolygon;
+use pointillist_dice::{ConvexPolygon, convex};
 use pointillist_micropoint::{ClusterQueue, Face, Lens, ProjectedVertex, Regions};
 
 /// Which side of a face the viewer sees.
@@ -14,15 +14,19 @@ pub(crate) enum Side {
 }
 
 /// A receiver on a light screen.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
     pub(crate) receiver: u32,
     pub(crate) screen: u8,
-    pub(crate) lit_face: u32,
+    /// The viewer's face.
+    pub(crate) face: u32,
+    first_vertex: u32,
+    vertex_count: u32,
     pub(crate) bounds: (DVec2, DVec2),
     pub(crate) nearness: (f64, f64),
     pub(crate) area: f64,
-    pub(crate) polygon: ConvexPolygon,
+    /// The receiver lies on more than one screen: parts must be weighed against each other.
+    pub(crate) shared: bool,
 }
 
 /// A receiver's face in the frame of one screen.
@@ -78,6 +82,12 @@ const NO_LINK: u32 = u32::MAX;
 pub(crate) struct Sum {
     pub(crate) lit: f64,
     pub(crate) total: f64,
+}
+
+impl Sum {
+    pub(crate) fn fraction(&self) -> f64 {
+        if self.total > 0.0 { (self.lit / self.total).clamp(0.0, 1.0) } else { 0.0 }
+    }
 }
 
 /// Memory of the resolve rules.
@@ -137,6 +147,7 @@ pub struct ShadowScratch {
     pub(crate) counts: ShadowCounts,
     pub(crate) sides: Vec<Side>,
     pub(crate) targets: Vec<Target>,
+    target_vertices: Vec<DVec2>,
     pub(crate) lit_faces: Vec<LitFace>,
     lit_face_of: Vec<u32>,
     pub(crate) last_screen: u8,
@@ -179,8 +190,47 @@ impl ShadowScratch {
         self.lit_face_of.resize(faces, NO_LINK);
         self.lit_faces.clear();
         self.targets.clear();
+        self.target_vertices.clear();
         self.sums.clear();
         self.sums.resize(receivers, Sum::default());
+    }
+
+    /// Adds a target; its outline in either winding, with the nearness of each corner.
+    pub(crate) fn push_target(
+        &mut self,
+        (receiver, face): (u32, u32),
+        screen: usize,
+        shared: bool,
+        outline: impl Iterator<Item = (DVec2, f64)>,
+    ) {
+        let first = self.target_vertices.len();
+        let mut nearness = (f64::INFINITY, f64::NEG_INFINITY);
+        for (v, q) in outline {
+            self.target_vertices.push(v);
+            nearness = (nearness.0.min(q), nearness.1.max(q));
+        }
+        let outline = &mut self.target_vertices[first..];
+        let area = convex::area(outline);
+        if area < 0.0 {
+            outline.reverse();
+        }
+        self.targets.push(Target {
+            receiver,
+            screen: screen as u8,
+            face,
+            first_vertex: first as u32,
+            vertex_count: outline.len() as u32,
+            bounds: convex::bounds(outline),
+            nearness,
+            area: area.abs(),
+            shared,
+        });
+    }
+
+    /// Outline of a target on its screen, in positive order.
+    #[inline]
+    pub(crate) fn outline(&self, target: &Target) -> &[DVec2] {
+        &self.target_vertices[target.first_vertex as usize..][..target.vertex_count as usize]
     }
 
     /// The index of a face in the frame of a screen, made when first needed.
