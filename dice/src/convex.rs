@@ -238,6 +238,29 @@ pub fn bounds(points: &[DVec2]) -> (DVec2, DVec2) {
 /// area that can be seen.
 const SEPARATION_SLACK: f64 = 2e-12;
 
+/// Edges this much shorter than their polygon have a direction that may be mostly rounding: coordinates are
+/// good to about 1e-16, so what lies a polygon's size away is displaced by 1e-12 at the least.
+const SHORT_EDGE: f64 = 1e-4;
+
+/// The half-planes to the left of the edges of a convex ring (positive order), from the last edge on.
+///
+/// Each holds the whole ring. Cuts leave vertices that nearly coincide, and the line through two such
+/// vertices can run anywhere, right through the ring too; it is moved outward then.
+pub fn half_planes(ring: &[DVec2]) -> impl Iterator<Item = HalfPlane> + '_ {
+    let (low, high) = bounds(ring);
+    let short = SHORT_EDGE * (high - low).max_element();
+    let mut previous = ring.last().copied().unwrap_or_default();
+    ring.iter().map(move |&v| {
+        let mut half = HalfPlane::left_of(previous, v);
+        previous = v;
+        if half.normal.abs().max_element() < short {
+            let least = ring.iter().map(|&p| half.value(p)).fold(0.0, f64::min);
+            half.offset = -least;
+        }
+        half
+    })
+}
+
 /// Whether some edge of the convex ring `a` (positive order) has every point of `b` on or beyond it.
 #[must_use]
 #[inline]
@@ -250,7 +273,11 @@ pub fn has_separating_edge(a: &[DVec2], b: &[DVec2]) -> bool {
         let d = q - p;
         let length = d.x.abs() + d.y.abs();
         let slack = SEPARATION_SLACK * length;
-        if length > 0.0 && b.iter().all(|&v| d.perp_dot(v - p) <= slack) {
+        if length > 0.0
+            && b.iter().all(|&v| d.perp_dot(v - p) <= slack)
+            // The line through two vertices that nearly coincide may run through `a` itself.
+            && a.iter().all(|&v| d.perp_dot(v - p) >= -slack)
+        {
             return true;
         }
         p = q;
@@ -291,6 +318,23 @@ mod tests {
         let (a, b) = square().divided(&diagonal);
         assert!(a.has_separating_edge(b.vertices()) || b.has_separating_edge(a.vertices()));
         assert!(!a.has_separating_edge(square().vertices()));
+    }
+
+    #[test]
+    fn an_edge_made_of_rounding_neither_separates_nor_cuts() {
+        // The first and last vertex differ by rounding only; the line through them crosses the polygon.
+        let ring = [
+            dvec2(0.426_607_057_261_941_6, 0.737_807_213_366_724_8),
+            dvec2(0.068_551_934_182_716_77, 1.0),
+            dvec2(0.0, 1.0),
+            dvec2(0.0, 0.614_429_619_265_079_1),
+            dvec2(0.426_607_057_261_941_5, 0.737_807_213_366_724_8),
+        ];
+        let inside = [dvec2(0.1, 0.7), dvec2(0.2, 0.7), dvec2(0.1, 0.8)];
+        assert!(!has_separating_edge(&ring, &inside) && !has_separating_edge(&inside, &ring));
+        for half in half_planes(&ring) {
+            assert!(ring.iter().chain(&inside).all(|&v| half.value(v) >= -1e-16), "{half:?}");
+        }
     }
 
     #[test]

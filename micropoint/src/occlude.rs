@@ -88,13 +88,7 @@ impl Regions {
             return None;
         }
         let mut inside = *region;
-        let mut previous = *occluder.last()?;
-        let edges = occluder.iter().map(|&v| {
-            let half = HalfPlane::left_of(previous, v);
-            previous = v;
-            half
-        });
-        for half in edges.chain(front.copied()) {
+        for half in convex::half_planes(occluder).chain(front.copied()) {
             if inside.vertices().iter().all(|&v| half.value(v) >= 0.0) {
                 continue;
             }
@@ -159,10 +153,8 @@ pub fn in_front(
         return Front::Everywhere;
     }
     let mut common = ConvexPolygon::from_vertices(lower.outline);
-    let Some(&(mut previous)) = upper.outline.last() else { return Front::Nowhere };
-    for &v in upper.outline {
-        common = common.clipped(&HalfPlane::left_of(previous, v));
-        previous = v;
+    for half in convex::half_planes(upper.outline) {
+        common = common.clipped(&half);
     }
     let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
     for &v in common.vertices() {

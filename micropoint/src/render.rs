@@ -260,14 +260,53 @@ impl<'a> Renderer<'a> {
         &self.lens
     }
 
+    /// Renders a rectangle tile by tile and hands each to `visit`, together with the state of the thread
+    /// that made it. Tiles come in any order, and from all cores with the feature `rayon`.
+    ///
+    /// # Errors
+    /// [`MicropointError::BadTileSize`] unless `size` is 4 to 64 pixels.
+    pub fn for_each_tile<S: Default>(
+        &self,
+        rect: PixelRect,
+        size: u32,
+        visit: impl Fn(&mut S, &Tile) + Sync,
+    ) -> Result<(), MicropointError> {
+        if !(4..=64).contains(&size) {
+            return Err(MicropointError::BadTileSize(size));
+        }
+        let tiles: Vec<PixelRect> = rect.intersection(&self.picture()).tiles(size).collect();
+        let render = |(tile, state): &mut (Tile, S), rect: &PixelRect| {
+            self.render(*rect, tile);
+            visit(state, tile);
+        };
+        let start = <(Tile, S)>::default;
+        #[cfg(feature = "rayon")]
+        {
+            use rayon::prelude::*;
+            tiles.par_iter().for_each_init(start, render);
+        }
+        #[cfg(not(feature = "rayon"))]
+        {
+            let mut state = start();
+            tiles.iter().for_each(|rect| render(&mut state, rect));
+        }
+        Ok(())
+    }
+
     /// Finds the visible micropoints of some pixels. What a pixel gets does not depend on the
     /// rectangle it is rendered in.
+    /// Pixels outside the picture do not exist and see nothing.
     pub fn render(&self, rect: PixelRect, tile: &mut Tile) {
+        let rect = rect.within(self.picture());
         tile.rect = Some(rect);
         tile.lens = Some(self.lens);
         tile.points.clear();
         tile.fragments.clear();
         tile.vertices.clear();
+        if rect.width() == 0 || rect.height() == 0 {
+            tile.dicer.counts = TileCounts::default();
+            return;
+        }
         let cells = self.options.cells_per_pixel;
         let window = CellWindow {
             x0: (rect.x0 * cells) as i32,

@@ -180,6 +180,9 @@ impl Dicer {
     /// Dices everything that may be visible in the window.
     pub(crate) fn dice(&mut self, job: &DiceJob<'_>, window: CellWindow) {
         self.reset(window);
+        if self.cells.is_empty() {
+            return;
+        }
         let low = DVec2::new(f64::from(window.x0), f64::from(window.y0));
         let high = DVec2::new(f64::from(window.x1), f64::from(window.y1));
         let volume = ViewVolume::new(job.lens, &GridRect { low, high });
@@ -411,9 +414,10 @@ impl Dicer {
     /// Only disjoint parts are considered: the common case of a mesh whose triangles are about as
     /// large as cells. Whatever else there is gets sorted out when the tile is resolved.
     fn try_to_close(&mut self, cell: usize, lens: &Lens) {
-        self.cells[cell].next_try = self.cells[cell].opaque_area + 0.5;
         const MOST: usize = 24;
+        let summed = self.cells[cell].opaque_area;
         if self.cells[cell].count as usize > MOST {
+            self.cells[cell].next_try = summed + 1.0;
             return;
         }
         let order = self.sorted_parts(cell);
@@ -445,6 +449,8 @@ impl Dicer {
             let slope = self.faces[part.face as usize].plane.slope;
             part.nearness.1 + lens.tie(part.nearness.1, slope) < nearness
         };
+        // Whatever broke the prefix off must come to lie behind it, so that only new parts can add to it.
+        self.cells[cell].next_try = if tiling > 0 { summed + 0.5 } else { summed + 1.0 - area - COVERED };
         if tiling > 0 && order[tiling..].iter().all(hidden) {
             self.cells[cell].tiling = tiling as u32;
             self.cells[cell].tiling_count = self.cells[cell].count;

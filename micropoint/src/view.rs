@@ -53,6 +53,18 @@ impl View {
         let Some(forward) = (target - eye).try_normalize() else {
             return bad("eye and target coincide");
         };
+        Self::with_axes(eye, forward, up, projection, width, height)
+    }
+
+    fn with_axes(
+        eye: DVec3,
+        forward: DVec3,
+        up: DVec3,
+        projection: Projection,
+        width: u32,
+        height: u32,
+    ) -> Result<Self, MicropointError> {
+        let bad = |reason| Err(MicropointError::BadView { reason });
         let Some(right) = forward.cross(up.normalize_or_zero()).try_normalize() else {
             return bad("up is zero or parallel to the view direction");
         };
@@ -86,9 +98,8 @@ impl View {
             return Err(MicropointError::BadView { reason: "the view matrix is not rigid" });
         }
         let world_from_view = view_from_world.inverse();
-        let eye = world_from_view.translation;
-        let forward = -world_from_view.matrix3.z_axis;
-        Self::look_at(eye, eye + forward, world_from_view.matrix3.y_axis, projection, width, height)
+        let (eye, axes) = (world_from_view.translation, world_from_view.matrix3);
+        Self::with_axes(eye, -axes.z_axis, axes.y_axis, projection, width, height)
     }
 
     /// The eye in the world.
@@ -176,17 +187,32 @@ impl PixelRect {
         self.y1.saturating_sub(self.y0)
     }
 
+    /// What both rectangles hold.
+    #[must_use]
+    pub fn within(&self, other: PixelRect) -> Self {
+        let (x0, y0) = (self.x0.max(other.x0), self.y0.max(other.y0));
+        Self { x0, y0, x1: self.x1.min(other.x1).max(x0), y1: self.y1.min(other.y1).max(y0) }
+    }
+
+    /// What this rectangle has in common with another.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        let (x0, y0) = (self.x0.max(other.x0), self.y0.max(other.y0));
+        Self { x0, y0, x1: self.x1.min(other.x1).max(x0), y1: self.y1.min(other.y1).max(y0) }
+    }
+
     /// The tiles of this rectangle, row by row. Tiles are aligned to the whole picture, so that a
-    /// crop is made of the same tiles.
+    /// crop is made of the same tiles. A size of 0 counts as 1.
     pub fn tiles(&self, size: u32) -> impl Iterator<Item = PixelRect> + use<> {
         let rect = *self;
+        let size = size.max(1);
         let first = move |v: u32| v / size * size;
         (first(rect.y0)..rect.y1).step_by(size as usize).flat_map(move |y| {
             (first(rect.x0)..rect.x1).step_by(size as usize).map(move |x| PixelRect {
                 x0: x.max(rect.x0),
                 y0: y.max(rect.y0),
-                x1: (x + size).min(rect.x1),
-                y1: (y + size).min(rect.y1),
+                x1: x.saturating_add(size).min(rect.x1),
+                y1: y.saturating_add(size).min(rect.y1),
             })
         })
     }

@@ -3,7 +3,7 @@
 use crate::light::{Measure, Query};
 use crate::scratch::{Caster, Target, Work};
 use glam::DVec2;
-use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
+use pointillist_dice::{ConvexPolygon, convex};
 use pointillist_micropoint::{Face, Front, Layer, in_front};
 use std::cmp::Ordering;
 
@@ -96,12 +96,8 @@ enum Place {
 }
 
 fn place(caster: &ConvexPolygon, target: &[DVec2]) -> Place {
-    let vertices = caster.vertices();
-    let mut previous = vertices[vertices.len() - 1];
     let mut over = true;
-    for &v in vertices {
-        let half = HalfPlane::left_of(previous, v);
-        previous = v;
+    for half in convex::half_planes(caster.vertices()) {
         let mut most = f64::NEG_INFINITY;
         for &p in target {
             let value = half.value(p);

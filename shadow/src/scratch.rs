@@ -419,12 +419,8 @@ enum Cover {
 }
 
 fn covers(caster: &Caster, group: &Group) -> Cover {
-    let vertices = caster.polygon.vertices();
-    let mut previous = vertices[vertices.len() - 1];
     let mut all_inside = true;
-    for &v in vertices {
-        let half = pointillist_dice::HalfPlane::left_of(previous, v);
-        previous = v;
+    for half in pointillist_dice::convex::half_planes(caster.polygon.vertices()) {
         // The corners of the rectangle farthest along the normal, and farthest against it.
         let along = DVec2::select(half.normal.cmpgt(DVec2::ZERO), group.high, group.low);
         let against = group.low + group.high - along;
