@@ -19,7 +19,6 @@ use pointillist_micropoint::{Geometry, MicropointError, MicropointOptions, Pixel
 use pointillist_shade::Source;
 use pointillist_shadow as shadow;
 use pointillist_shadow::{Emitter, ShadowCounts, ShadowError, ShadowLight, ShadowOptions};
-use rayon::prelude::*;
 use shading::{Shader, ShaderScratch};
 use std::sync::Mutex;
 use surfaces::Surfaces;
@@ -62,20 +61,18 @@ pub fn render(scene: &Scene, job: &RenderJob, progress: &Progress, stats: &Stats
     let shader = Shader::new(scene, &surfaces, &lights, &view);
     let canvas = Mutex::new(Canvas::new(scene, job));
     let totals = Mutex::new((TileCounts::default(), ShadowCounts::default()));
-    let tiles: Vec<PixelRect> = pixel_rect(job.window).tiles(TILE_SIZE).collect();
-    progress.begin("render", tiles.len() as u64);
+    let rect = pixel_rect(job.window);
+    progress.begin("render", rect.tiles(TILE_SIZE).count() as u64);
     let start = std::time::Instant::now();
-    tiles.par_iter().for_each_init(Scratch::default, |scratch, &rect| {
-        let mut clock = ThreadClock::start();
-        renderer.render(rect, &mut scratch.tile);
-        clock.book(stats, "visibility");
-        let pixels = shader.shade(&scratch.tile, &background, &job.layers, &mut scratch.shader, &mut clock, stats);
-        lock(&canvas).put(rect, pixels);
+    renderer.for_each_tile(rect, TILE_SIZE, |scratch: &mut Scratch, tile| {
+        scratch.clock.book(stats, "visibility");
+        let pixels = shader.shade(tile, &background, &job.layers, &mut scratch.shader, &mut scratch.clock, stats);
+        lock(&canvas).put(tile.rect(), pixels);
         let mut totals = lock(&totals);
-        totals.0 += scratch.tile.counts();
+        totals.0 += tile.counts();
         totals.1 += scratch.shader.take_counts();
         progress.advance(1);
-    });
+    })?;
     stats.add_wall("tiles", start.elapsed());
     progress.finish();
     let (tile_counts, shadow_counts) = *lock(&totals);
@@ -84,10 +81,15 @@ pub fn render(scene: &Scene, job: &RenderJob, progress: &Progress, stats: &Stats
 }
 
 /// Per-thread memory.
-#[derive(Default)]
 struct Scratch {
-    tile: micropoint::Tile,
+    clock: ThreadClock,
     shader: ShaderScratch,
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self { clock: ThreadClock::start(), shader: ShaderScratch::default() }
+    }
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
