@@ -148,14 +148,31 @@ pub fn cut(polygon: &[DVec2], window: CellWindow, mut visit: impl FnMut(Cut<'_>)
         visit(Cut::Piece { cell: IVec2::new(columns.start, rows.start), polygon: &whole });
         return;
     }
-    let mut edges = [Edge::NONE; MAX_CUT_VERTICES];
+    // Nearly all polygons are triangles; clearing room for twelve edges would cost as much as one cut.
+    if n <= 4 {
+        cut_rows::<4>(polygon, rows, columns, &mut visit);
+    } else {
+        cut_rows::<MAX_CUT_VERTICES>(polygon, rows, columns, &mut visit);
+    }
+}
+
+/// Cuts a polygon of at most `N` vertices row by row.
+#[inline]
+fn cut_rows<const N: usize>(
+    polygon: &[DVec2],
+    rows: Range<i32>,
+    columns: Range<i32>,
+    visit: &mut impl FnMut(Cut<'_>),
+) {
+    let n = polygon.len();
+    let mut edges = [Edge::NONE; N];
     for i in 0..n {
         edges[i] = Edge::new(polygon[i], polygon[if i + 1 == n { 0 } else { i + 1 }]);
     }
     for row in rows {
         let slab = clip_to_row(polygon, &edges[..n], row);
         if slab.len >= 3 {
-            walk_row(&slab, &edges, row, columns.clone(), &mut visit);
+            walk_row(&slab, &edges[..n], row, columns.clone(), visit);
         }
     }
 }
@@ -205,7 +222,7 @@ fn clip_to_row(polygon: &[DVec2], edges: &[Edge], row: i32) -> Slab {
 #[inline]
 fn walk_row(
     slab: &Slab,
-    edges: &[Edge; MAX_CUT_VERTICES],
+    edges: &[Edge],
     row: i32,
     columns: Range<i32>,
     visit: &mut impl FnMut(Cut<'_>),
@@ -242,7 +259,7 @@ fn covered_columns(vertices: &[DVec2], row: i32) -> Range<i32> {
     if left < right { left.ceil() as i32..right.floor() as i32 } else { 0..0 }
 }
 
-fn clip_to_column(slab: &Slab, edges: &[Edge; MAX_CUT_VERTICES], row: i32, column: i32) -> ConvexPolygon {
+fn clip_to_column(slab: &Slab, edges: &[Edge], row: i32, column: i32) -> ConvexPolygon {
     let (left, right) = (f64::from(column), f64::from(column + 1));
     let (top, bottom) = (f64::from(row), f64::from(row + 1));
     let crossing = |edge: Option<u8>, from: DVec2, x: f64| {

@@ -212,7 +212,7 @@ fn clip_outline(
         // sign · (grid coordinate − line) ≥ 0, multiplied by depth where there is one.
         sign * (axis.dot(p) - if perspective { line * p.z } else { line })
     };
-    let (x, y) = (DVec3::X * lens.scale.x, DVec3::Y * lens.scale.y);
+    let (x, y) = (DVec3::X * lens.scale, DVec3::Y * lens.scale);
     let near = if perspective { 2.0 * NEAR * size } else { 0.0 };
     let mut ring = [DVec3::ZERO; 8];
     ring[..3].copy_from_slice(&corners);

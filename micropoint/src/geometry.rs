@@ -2,6 +2,7 @@
 
 use crate::closed::{OPEN, Solid, find_solids, solid_angle};
 use crate::error::MicropointError;
+use crate::lens::{Lens, LensKind};
 use glam::DVec3;
 
 /// How a surface lets light through; the rest of a material is the shader's business.
@@ -51,6 +52,17 @@ pub struct Cluster {
     vertex_count: u32,
     first_triangle: u32,
     triangle_count: u32,
+    /// If all triangles bound one solid: it, and a cone that holds their outward normals.
+    facing: Option<Facing>,
+}
+
+/// The normals of a cluster.
+#[derive(Clone, Copy, Debug)]
+struct Facing {
+    solid: u32,
+    axis: DVec3,
+    /// Sine of the cone's half-angle, which is less than a right angle.
+    spread: f64,
 }
 
 /// An axis-aligned box.
@@ -188,7 +200,28 @@ impl Geometry {
             vertex_count: (self.vertices.len() - first_vertex) as u32,
             first_triangle: first_triangle as u32,
             triangle_count: ids.len() as u32,
+            facing: None,
         });
+        let facing = self.facing(self.clusters.len() - 1);
+        self.clusters[facing.0].facing = facing.1;
+    }
+
+    fn facing(&self, index: usize) -> (usize, Option<Facing>) {
+        let (_, vertices, triangles) = self.cluster(index as u32);
+        let solid = triangles[0].solid;
+        if solid == OPEN || triangles.iter().any(|t| t.solid != solid) {
+            return (index, None);
+        }
+        let outward = f64::from(self.solids[solid as usize].orientation);
+        let normal = |t: &Triangle| {
+            let [a, b, c] = t.corners.map(|c| vertices[usize::from(c)]);
+            ((b - a).cross(c - a) * outward).normalize_or_zero()
+        };
+        let axis = triangles.iter().map(normal).sum::<DVec3>().normalize_or_zero();
+        let least = triangles.iter().map(|t| normal(t).dot(axis)).fold(1.0, f64::min);
+        // Rounding of the normals, generously.
+        let least = least - 1e-6;
+        (index, (least > 0.1).then(|| Facing { solid, axis, spread: (1.0 - least * least).sqrt() }))
     }
 
     fn build_levels(&mut self) {
@@ -252,6 +285,30 @@ impl Geometry {
     pub fn corners(&self, cluster: u32, index: u32) -> [DVec3; 3] {
         let (_, vertices, triangles) = self.cluster(cluster);
         triangles[index as usize].corners.map(|c| vertices[usize::from(c)])
+    }
+
+    /// Whether all of a cluster is hidden from a viewer because it is the side of a solid that the viewer
+    /// never sees.
+    #[must_use]
+    pub fn hides_cluster(&self, cluster: u32, lens: &Lens, hidden: &HiddenSides) -> bool {
+        let c = &self.clusters[cluster as usize];
+        let Some(facing) = c.facing else { return false };
+        let side = hidden.0.get(facing.solid as usize).copied().unwrap_or(0);
+        if side == 0 {
+            return false;
+        }
+        // `hidden` names the orientation whose backs are culled; its opposite culls the fronts.
+        let same = side == self.solids[facing.solid as usize].orientation;
+        let axis = if same { facing.axis } else { -facing.axis };
+        match lens.kind {
+            LensKind::Orthographic => axis.dot(lens.forward) > facing.spread,
+            LensKind::Perspective => {
+                // For every point p and normal n of the cluster, n·(p − eye) > 0.
+                let centre = 0.5 * (c.bounds.low + c.bounds.high) - lens.origin;
+                let radius = 0.5 * (c.bounds.high - c.bounds.low).length();
+                axis.dot(centre) > facing.spread * centre.length() + radius
+            }
+        }
     }
 
     /// What a viewer at `origin` (a point; or far away against `direction`) never sees of closed

@@ -322,7 +322,7 @@ impl Bounded {
         let v = v.map(|p| lens.local(p));
         let n = (v[1] - v[0]).cross(v[2] - v[0]);
         // In coordinates relative to the centre, in units of cells.
-        let grid = |l: DVec3| DVec3::new(l.x / lens.scale.x, l.y / lens.scale.y, l.z);
+        let grid = |l: DVec3| DVec3::new(l.x / lens.scale, l.y / lens.scale, l.z);
         let (edges, nearness) = match lens.kind {
             LensKind::Perspective => {
                 let k = n.dot(v[0]);

@@ -1,5 +1,6 @@
 //! From the world to a grid of cells and back: one kind of lens for cameras and for lights.
 
+use crate::geometry::Bounds;
 use glam::{DVec2, DVec3};
 
 /// How depth turns into the grid.
@@ -28,8 +29,8 @@ pub struct Lens {
     pub down: DVec3,
     /// Unit vector of the view direction; world.
     pub forward: DVec3,
-    /// Cells per unit of x/depth (perspective) or per world unit (orthographic).
-    pub scale: DVec2,
+    /// Cells per unit of x/depth (perspective) or per world unit (orthographic), on both axes.
+    pub scale: f64,
     /// Grid position of the view axis.
     pub centre: DVec2,
     /// Largest distance from the origin that matters: what rounding of an orthographic depth is
@@ -78,7 +79,7 @@ impl Lens {
     pub fn project(&self, local: DVec3) -> DVec2 {
         let p = DVec2::new(local.x, local.y);
         match self.kind {
-            LensKind::Perspective => p / local.z * self.scale + self.centre,
+            LensKind::Perspective => p * (self.scale / local.z) + self.centre,
             LensKind::Orthographic => p * self.scale + self.centre,
         }
     }
@@ -104,10 +105,14 @@ impl Lens {
     #[must_use]
     #[inline]
     pub fn unproject(&self, grid: DVec2, nearness: f64) -> DVec3 {
-        let p = (grid - self.centre) / self.scale;
+        let p = grid - self.centre;
         match self.kind {
-            LensKind::Perspective => DVec3::new(p.x, p.y, 1.0) / nearness,
-            LensKind::Orthographic => DVec3::new(p.x, p.y, -nearness),
+            LensKind::Perspective => {
+                let depth = 1.0 / nearness;
+                let unit = depth / self.scale;
+                DVec3::new(p.x * unit, p.y * unit, depth)
+            }
+            LensKind::Orthographic => DVec3::new(p.x / self.scale, p.y / self.scale, -nearness),
         }
     }
 
@@ -131,9 +136,10 @@ impl Lens {
             LensKind::Perspective => (n, n.dot(v[0])),
             LensKind::Orthographic => (DVec3::new(n.x, n.y, -n.dot(v[0])), n.z),
         };
+        let inverse = 1.0 / divisor;
         let plane = Plane {
-            at_centre: numerator.z / divisor,
-            slope: DVec2::new(numerator.x, numerator.y) / (divisor * self.scale),
+            at_centre: numerator.z * inverse,
+            slope: DVec2::new(numerator.x, numerator.y) * (inverse / self.scale),
             centre: self.centre,
         };
         if plane.at_centre.is_finite() && plane.slope.is_finite() {
@@ -141,6 +147,29 @@ impl Lens {
         } else {
             let mean_depth = (v[0].z + v[1].z + v[2].z) / 3.0;
             Plane { at_centre: self.nearness(mean_depth), slope: DVec2::ZERO, centre: self.centre }
+        }
+    }
+
+    /// A rectangle of the grid that holds the image of a box, and the largest nearness in it; `None` if
+    /// the box reaches behind the lens.
+    #[must_use]
+    pub fn shadow_of_box(&self, bounds: &Bounds) -> Option<(DVec2, DVec2, f64)> {
+        let x = bounds.extent_along(self.origin, self.right);
+        let y = bounds.extent_along(self.origin, self.down);
+        let z = bounds.extent_along(self.origin, self.forward);
+        let (low, high) = (DVec2::new(x.0, y.0), DVec2::new(x.1, y.1));
+        match self.kind {
+            LensKind::Orthographic => {
+                Some((low * self.scale + self.centre, high * self.scale + self.centre, -z.0))
+            }
+            LensKind::Perspective if z.0 > 0.0 => {
+                // Each side is farthest from the axis at the near or at the far end of the box.
+                let (near, far) = (self.scale / z.0, self.scale / z.1);
+                let low = (low * near).min(low * far) + self.centre;
+                let high = (high * near).max(high * far) + self.centre;
+                Some((low, high, 1.0 / z.0))
+            }
+            LensKind::Perspective => None,
         }
     }
 
@@ -177,7 +206,7 @@ mod tests {
             right: DVec3::X,
             down: DVec3::NEG_Y,
             forward: DVec3::NEG_Z,
-            scale: dvec2(200.0, 210.0),
+            scale: 200.0,
             centre: dvec2(128.0, 100.0),
             reach: 10.0,
         };

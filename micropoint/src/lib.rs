@@ -59,7 +59,7 @@ pub use face::{
 };
 pub use geometry::{Bounds, Cluster, ClusterQueue, Geometry, HiddenSides, Surface, Triangle};
 pub use lens::{Lens, LensKind, Plane, TIE};
-pub use occlude::{Front, Layer, Region, Regions, are_disjoint, in_front};
+pub use occlude::{Blocker, Front, Layer, Occluders, Region, Regions, are_disjoint, contains, in_front};
 pub use render::{Fragment, Micropoint, MicropointOptions, Renderer, Tile};
 pub use resolve::Occlusion;
 pub use texel::{TexelCorner, TexelSums, TexelWrap};

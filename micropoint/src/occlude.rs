@@ -15,8 +15,29 @@ pub struct Region {
 }
 
 /// Regions beyond which an occluder no longer divides but dims what it touches, by the share that it
-/// covers: dozens of translucent leaves in one cell are not worth thousands of splinters.
-const MOST_REGIONS: usize = 48;
+/// covers. Reached only where hundreds of occluders overlap in a spot that halving does not separate.
+const MOST_REGIONS: usize = 256;
+
+/// Occluders that are worth dividing a polygon for at once. With more, the polygon is halved first:
+/// each half meets fewer, and the splinters of one do not get cut by the occluders of the other.
+const FEW: usize = 12;
+
+/// How often a polygon is halved. A half that still meets most of the occluders counts as four: long
+/// slivers side by side are better cut one after the other.
+const MOST_HALVINGS: u32 = 12;
+
+/// What stands before a polygon, by numbers that the caller gives meaning to.
+pub trait Occluders {
+    /// Outline of an occluder: convex, positive order.
+    fn outline(&self, number: u32) -> &[DVec2];
+    /// Whether nothing passes through it anywhere.
+    fn is_opaque(&self, number: u32) -> bool;
+    /// Its mean opacity over a polygon inside it.
+    fn opacity(&self, number: u32, over: &ConvexPolygon) -> f64;
+}
+
+/// An occluder and, if it is in front of the polygon in part only, where.
+pub type Blocker = (u32, Option<HalfPlane>);
 
 /// A polygon divided into convex regions, each behind the same set of occluders.
 ///
@@ -25,8 +46,12 @@ const MOST_REGIONS: usize = 48;
 #[derive(Debug, Default)]
 pub struct Regions {
     list: Vec<Region>,
+    /// Where the polygon being divided begins in `list`.
+    base: usize,
     outside: Vec<ConvexPolygon>,
     negligible: f64,
+    /// Stack of the occluders of each half.
+    stack: Vec<Blocker>,
 }
 
 impl Regions {
@@ -34,8 +59,78 @@ impl Regions {
     /// region: an overlap that small is taken for a touch, a remainder that small for nothing.
     pub fn start(&mut self, polygon: ConvexPolygon, negligible: f64) {
         self.list.clear();
+        self.base = 0;
         self.list.push(Region { polygon, transmittance: 1.0 });
         self.negligible = negligible;
+    }
+
+    /// Finds what is left of a polygon behind all of its blockers; see [`Regions::start`] for
+    /// `negligible`. The same blockers in the same order give the same regions, bit for bit.
+    pub fn hide(
+        &mut self,
+        polygon: ConvexPolygon,
+        negligible: f64,
+        blockers: &[Blocker],
+        occluders: &impl Occluders,
+    ) {
+        self.list.clear();
+        self.negligible = negligible;
+        self.stack.clear();
+        self.stack.extend_from_slice(blockers);
+        self.hide_part(polygon, 0, 0, occluders);
+    }
+
+    /// Adds what is left of a part of the polygon behind the blockers from `first` on the stack.
+    fn hide_part(&mut self, polygon: ConvexPolygon, first: usize, halvings: u32, occluders: &impl Occluders) {
+        let end = self.stack.len();
+        let count = end - first;
+        if count <= FEW || halvings >= MOST_HALVINGS {
+            self.base = self.list.len();
+            self.list.push(Region { polygon, transmittance: 1.0 });
+            for i in first..end {
+                let (number, front) = self.stack[i];
+                self.attenuate(occluders.outline(number), front, |p| occluders.opacity(number, p));
+                if self.list.len() == self.base {
+                    break;
+                }
+            }
+            return;
+        }
+        let (low, high) = polygon.bounds();
+        let middle = 0.5 * (low + high);
+        let wide = high.x - low.x >= high.y - low.y;
+        let normal = if wide { DVec2::X } else { DVec2::Y };
+        let (above, below) = polygon.divided(&HalfPlane { anchor: middle, normal, offset: 0.0 });
+        for half in [below, above] {
+            if half.area() > self.negligible && self.push_blockers_of(&half, first..end, occluders) {
+                let few = 4 * (self.stack.len() - end) <= 3 * count;
+                self.hide_part(half, end, halvings + if few { 1 } else { 4 }, occluders);
+            }
+            self.stack.truncate(end);
+        }
+    }
+
+    /// Pushes the blockers that touch a half. Returns false if one of them hides it.
+    fn push_blockers_of(
+        &mut self,
+        half: &ConvexPolygon,
+        range: std::ops::Range<usize>,
+        occluders: &impl Occluders,
+    ) -> bool {
+        let (low, high) = half.bounds();
+        for i in range {
+            let (number, front) = self.stack[i];
+            let outline = occluders.outline(number);
+            let (olow, ohigh) = convex::bounds(outline);
+            if !(olow.cmplt(high).all() && ohigh.cmpgt(low).all()) || are_disjoint(half.vertices(), outline) {
+                continue;
+            }
+            if front.is_none() && occluders.is_opaque(number) && contains(outline, half.vertices()) {
+                return false;
+            }
+            self.stack.push((number, front));
+        }
+        true
     }
 
     /// The regions that some light reaches.
@@ -58,9 +153,9 @@ impl Regions {
         front: Option<HalfPlane>,
         mut opacity: impl FnMut(&ConvexPolygon) -> f64,
     ) {
-        let crowded = self.list.len() > MOST_REGIONS;
+        let crowded = self.list.len() - self.base > MOST_REGIONS;
         // Backward, so that what is appended is not met again.
-        for i in (0..self.list.len()).rev() {
+        for i in (self.base..self.list.len()).rev() {
             let Some(inside) = self.overlap(i, occluder, front.as_ref()) else { continue };
             let Region { polygon, transmittance } = self.list[i];
             let opacity = opacity(&inside);
@@ -110,6 +205,17 @@ impl Regions {
 #[inline]
 pub fn are_disjoint(a: &[DVec2], b: &[DVec2]) -> bool {
     convex::has_separating_edge(a, b) || convex::has_separating_edge(b, a)
+}
+
+/// Whether every point lies inside a convex outline.
+#[must_use]
+pub fn contains(outline: &[DVec2], points: &[DVec2]) -> bool {
+    let Some(&(mut previous)) = outline.last() else { return false };
+    outline.iter().all(|&v| {
+        let half = HalfPlane::left_of(previous, v);
+        previous = v;
+        points.iter().all(|&p| half.value(p) >= 0.0)
+    })
 }
 
 /// A polygon on a face, with its range of nearness.
@@ -214,6 +320,40 @@ mod tests {
         assert!((area(&regions) - 0.25).abs() < 1e-15);
         regions.attenuate(cell.vertices(), None, |_| 1.0);
         assert!(regions.is_hidden());
+    }
+
+    struct Tiles(Vec<[DVec2; 3]>);
+
+    impl Occluders for Tiles {
+        fn outline(&self, number: u32) -> &[DVec2] {
+            &self.0[number as usize]
+        }
+        fn is_opaque(&self, _: u32) -> bool {
+            true
+        }
+        fn opacity(&self, _: u32, _: &ConvexPolygon) -> f64 {
+            1.0
+        }
+    }
+
+    #[test]
+    fn a_thousand_small_occluders_hide_exactly_what_they_cover() {
+        let n = 24;
+        let mut tiles = Vec::new();
+        for i in 0..n * n {
+            let low = dvec2(f64::from(i % n), f64::from(i / n)) / f64::from(n);
+            let (e, f) = (DVec2::X / f64::from(n), DVec2::Y / f64::from(n));
+            tiles.push([low, low + e, low + f]);
+            // One column is left half open.
+            if i % n != 7 {
+                tiles.push([low + e, low + e + f, low + f]);
+            }
+        }
+        let blockers: Vec<Blocker> = (0..tiles.len() as u32).map(|i| (i, None)).collect();
+        let mut regions = Regions::default();
+        let cell = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
+        regions.hide(cell, 1e-12, &blockers, &Tiles(tiles));
+        assert!((area(&regions) - 0.5 / f64::from(n)).abs() < 1e-9);
     }
 
     #[test]

@@ -4,8 +4,7 @@ use crate::error::MicropointError;
 use crate::face::{Face, GridRect, SurfacePoint, TexturedOpacity};
 use crate::geometry::{Geometry, HiddenSides};
 use crate::lens::Lens;
-use crate::occlude::Regions;
-use crate::resolve::{Occlusion, Visible, resolve_by_layers, resolve_exactly};
+use crate::resolve::{Occlusion, ResolveScratch, Visible, resolve_by_layers, resolve_exactly};
 use crate::tile::{DiceJob, Dicer, TileCounts};
 use crate::view::{PixelRect, View};
 use glam::{DVec2, DVec3};
@@ -103,7 +102,7 @@ pub struct Fragment {
 #[derive(Debug, Default)]
 pub struct Tile {
     dicer: Dicer,
-    regions: Regions,
+    resolve: ResolveScratch,
     rect: Option<PixelRect>,
     lens: Option<Lens>,
     points: Vec<Micropoint>,
@@ -194,7 +193,8 @@ impl Tile {
             y: pixel.1,
             face: part.face,
             weight: seen.weight * share,
-            grid: seen.centroid + corner,
+            // Rounding may put the centroid of a sliver outside it.
+            grid: seen.centroid.clamp(DVec2::ZERO, DVec2::ONE) + corner,
             nearness: part.nearness,
             first_fragment,
             fragment_count: self.fragments.len() as u32 - first_fragment,
@@ -315,7 +315,7 @@ impl<'a> Renderer<'a> {
             y1: (rect.y1 * cells) as i32,
         };
         let mut dicer = std::mem::take(&mut tile.dicer);
-        let mut regions = std::mem::take(&mut tile.regions);
+        let mut resolve = std::mem::take(&mut tile.resolve);
         let (geometry, lens, opacity) = (self.geometry, &self.lens, self.opacity);
         dicer.dice(&DiceJob { geometry, lens, rect: &self.rect, hidden: &self.hidden, opacity }, window);
         let columns = (window.x1 - window.x0) as usize;
@@ -328,13 +328,13 @@ impl<'a> Renderer<'a> {
             let emit = |dicer: &Dicer, seen: Visible<'_>| tile.push(dicer, &seen, corner, pixel, share);
             match self.options.occlusion {
                 Occlusion::Correlated => {
-                    resolve_exactly(&mut dicer, &mut regions, &self.lens, cell, corner, emit);
+                    resolve_exactly(&mut dicer, &mut resolve, &self.lens, cell, corner, emit);
                 }
                 Occlusion::Paper => resolve_by_layers(&mut dicer, cell, emit),
             }
         }
         dicer.counts.micropoints = tile.points.len() as u64;
         tile.dicer = dicer;
-        tile.regions = regions;
+        tile.resolve = resolve;
     }
 }

@@ -1,7 +1,7 @@
 //! From the parts in a cell to what is seen of them.
 
 use crate::lens::Lens;
-use crate::occlude::{Front, Layer, Regions, are_disjoint, in_front};
+use crate::occlude::{Blocker, Front, Layer, Occluders, Regions, are_disjoint, in_front};
 use crate::tile::Dicer;
 use glam::DVec2;
 use pointillist_dice::ConvexPolygon;
@@ -40,7 +40,7 @@ const TOUCH: f64 = 1e-7;
 /// Resolves one cell under the exact rule.
 pub(crate) fn resolve_exactly(
     dicer: &mut Dicer,
-    regions: &mut Regions,
+    scratch: &mut ResolveScratch,
     lens: &Lens,
     cell: usize,
     corner: DVec2,
@@ -65,12 +65,12 @@ pub(crate) fn resolve_exactly(
         let mut compared = false;
         for (i, &p) in order.iter().enumerate() {
             let part = *dicer.part(p);
-            let cut = hide(dicer, regions, lens, corner, &order, i);
+            let cut = hide(dicer, scratch, lens, corner, &order, i);
             compared |= cut;
             let visible = if cut {
                 let opacity = f64::from(part.opacity);
                 let (mut weight, mut moment) = (0.0, DVec2::ZERO);
-                for r in regions.list() {
+                for r in scratch.regions.list() {
                     let (area, centroid) = r.polygon.area_and_centroid();
                     weight += area * r.transmittance * opacity;
                     moment += centroid * (area * r.transmittance * opacity);
@@ -78,7 +78,7 @@ pub(crate) fn resolve_exactly(
                 if weight <= 0.0 {
                     continue;
                 }
-                Visible { part: p, weight, centroid: moment / weight, pieces: Some(regions.list()) }
+                Visible { part: p, weight, centroid: moment / weight, pieces: Some(scratch.regions.list()) }
             } else {
                 whole(dicer, p)
             };
@@ -94,48 +94,61 @@ pub(crate) fn resolve_exactly(
     dicer.recycle(order);
 }
 
+/// Memory of [`resolve_exactly`].
+#[derive(Debug, Default)]
+pub(crate) struct ResolveScratch {
+    regions: Regions,
+    blockers: Vec<Blocker>,
+}
+
+/// The parts of a tile as occluders of each other.
+struct Parts<'a>(&'a Dicer);
+
+impl Occluders for Parts<'_> {
+    fn outline(&self, number: u32) -> &[DVec2] {
+        self.0.outline(self.0.part(number))
+    }
+
+    fn is_opaque(&self, number: u32) -> bool {
+        self.0.part(number).opacity >= 1.0
+    }
+
+    fn opacity(&self, number: u32, _: &ConvexPolygon) -> f64 {
+        f64::from(self.0.part(number).opacity)
+    }
+}
+
 /// Cuts part `order[i]` by the parts in front of it. Returns false if none of them touches it; the
 /// regions are meaningless then.
-fn hide(dicer: &Dicer, regions: &mut Regions, lens: &Lens, corner: DVec2, order: &[u32], i: usize) -> bool {
+fn hide(dicer: &Dicer, scratch: &mut ResolveScratch, lens: &Lens, corner: DVec2, order: &[u32], i: usize) -> bool {
     let part = dicer.part(order[i]);
-    let polygon = dicer.outline(part);
-    let mut touched = false;
+    let outline = dicer.outline(part);
+    scratch.blockers.clear();
     for (j, &o) in order.iter().enumerate() {
         let other = dicer.part(o);
         if other.nearness.1 < part.nearness.0 {
             // The parts are sorted by their nearest point: all that follow lie behind.
             break;
         }
-        if j == i {
-            continue;
-        }
-        if !part.bounds.overlap(&other.bounds) {
-            continue;
-        }
-        let outline = dicer.outline(other);
-        if are_disjoint(polygon, outline) {
+        if j == i || !part.bounds.overlap(&other.bounds) || are_disjoint(outline, dicer.outline(other)) {
             continue;
         }
         let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
-        let upper = Layer { face: fo, outline, nearness: other.nearness };
-        let lower = Layer { face: fp, outline: polygon, nearness: part.nearness };
+        let upper = Layer { face: fo, outline: dicer.outline(other), nearness: other.nearness };
+        let lower = Layer { face: fp, outline, nearness: part.nearness };
         // Coincident parts hide one another in their sorting order.
-        let front = match in_front(lens, corner, upper, lower, j < i) {
-            Front::Nowhere => continue,
-            Front::Everywhere => None,
-            Front::Within(half) => Some(half),
-        };
-        if !touched {
-            regions.start(ConvexPolygon::from_vertices(polygon), NEGLIGIBLE_AREA);
-            touched = true;
-        }
-        let opacity = f64::from(other.opacity);
-        regions.attenuate(outline, front, |_| opacity);
-        if regions.is_hidden() {
-            break;
+        match in_front(lens, corner, upper, lower, j < i) {
+            Front::Nowhere => {}
+            Front::Everywhere => scratch.blockers.push((o, None)),
+            Front::Within(half) => scratch.blockers.push((o, Some(half))),
         }
     }
-    touched
+    if scratch.blockers.is_empty() {
+        return false;
+    }
+    let polygon = ConvexPolygon::from_vertices(outline);
+    scratch.regions.hide(polygon, NEGLIGIBLE_AREA, &scratch.blockers, &Parts(dicer));
+    true
 }
 
 /// Resolves one cell under the paper's rule.

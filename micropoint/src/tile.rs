@@ -230,6 +230,10 @@ impl Dicer {
 
     fn dice_cluster(&mut self, job: &DiceJob<'_>, cluster: u32) {
         let (_, vertices, triangles) = job.geometry.cluster(cluster);
+        if job.geometry.hides_cluster(cluster, job.lens, job.hidden) {
+            self.counts.clusters_skipped += 1;
+            return;
+        }
         self.counts.clusters += 1;
         let mut projected = std::mem::take(&mut self.projected);
         projected.clear();
@@ -414,7 +418,7 @@ impl Dicer {
     /// Only disjoint parts are considered: the common case of a mesh whose triangles are about as
     /// large as cells. Whatever else there is gets sorted out when the tile is resolved.
     fn try_to_close(&mut self, cell: usize, lens: &Lens) {
-        const MOST: usize = 24;
+        const MOST: usize = 128;
         let summed = self.cells[cell].opaque_area;
         if self.cells[cell].count as usize > MOST {
             self.cells[cell].next_try = summed + 1.0;

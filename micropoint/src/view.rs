@@ -141,7 +141,7 @@ impl View {
             down: -self.up,
             forward: self.forward,
             // Pixels are square: the width follows from the height.
-            scale: DVec2::splat(0.5 * size.y / half_height),
+            scale: 0.5 * size.y / half_height,
             centre: 0.5 * size,
             reach: 1.0,
         }

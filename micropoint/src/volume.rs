@@ -21,7 +21,7 @@ impl ViewVolume {
             LensKind::Perspective => (sign * (axis - lens.forward * line), 0.0),
             LensKind::Orthographic => (sign * axis, -sign * line),
         };
-        let (x, y) = (lens.right * lens.scale.x, lens.down * lens.scale.y);
+        let (x, y) = (lens.right * lens.scale, lens.down * lens.scale);
         Self {
             origin: lens.origin,
             forward: lens.forward,

@@ -4,7 +4,7 @@ use crate::light::{Measure, Query};
 use crate::scratch::{Caster, Target, Work};
 use glam::DVec2;
 use pointillist_dice::{ConvexPolygon, convex};
-use pointillist_micropoint::{Face, Front, Layer, in_front};
+use pointillist_micropoint::{Face, Front, Layer, Occluders, in_front};
 use std::cmp::Ordering;
 
 /// Overlaps below this share of a receiver are rounding.
@@ -28,13 +28,10 @@ pub(crate) fn lit_fraction(
     // The result must not depend on the order in which casters were found.
     work.blockers.sort_unstable_by(|a, b| compare(&query.casters[a.0 as usize], &query.casters[b.0 as usize]));
     work.partial += 1;
-    work.regions.start(ConvexPolygon::from_vertices(outline), NEGLIGIBLE * target.area);
-    for &(c, limit) in &work.blockers {
-        let caster = &query.casters[c as usize];
-        work.regions.attenuate(caster.polygon.vertices(), limit, |p| query.opacity(caster, p));
-        if work.regions.is_hidden() {
-            return 0.0;
-        }
+    let polygon = ConvexPolygon::from_vertices(outline);
+    work.regions.hide(polygon, NEGLIGIBLE * target.area, &work.blockers, query);
+    if work.regions.is_hidden() {
+        return 0.0;
     }
     let whole = target.area * measure.at(convex::area_and_centroid(outline).1);
     let mut lit = 0.0;
@@ -109,6 +106,20 @@ fn place(caster: &ConvexPolygon, target: &[DVec2]) -> Place {
         }
     }
     if over { Place::Over } else { Place::Other }
+}
+
+impl Occluders for Query<'_> {
+    fn outline(&self, number: u32) -> &[DVec2] {
+        self.casters[number as usize].polygon.vertices()
+    }
+
+    fn is_opaque(&self, number: u32) -> bool {
+        self.casters[number as usize].opacity == Some(1.0)
+    }
+
+    fn opacity(&self, number: u32, over: &ConvexPolygon) -> f64 {
+        self.opacity(&self.casters[number as usize], over)
+    }
 }
 
 /// Opaque ones first: what they hide, no texture needs to be asked about. Then nearest to the light

@@ -206,31 +206,32 @@ impl<'a> ShadowLight<'a> {
     }
 
     fn link_cluster(&self, lens: &Lens, cluster: u32, scratch: &mut ShadowScratch) {
-        let (_, vertices, triangles) = self.geometry.cluster(cluster);
+        let (bounds, vertices, triangles) = self.geometry.cluster(cluster);
+        let hidden = &self.screens.hidden;
+        if self.geometry.hides_cluster(cluster, lens, hidden) || !scratch.concerns_any_group(lens, bounds) {
+            scratch.counts.clusters_skipped += 1;
+            return;
+        }
         scratch.counts.clusters += 1;
         let mut projected = std::mem::take(&mut scratch.projected);
         projected.clear();
         projected.extend(vertices.iter().map(|&v| ProjectedVertex::new(lens, v)));
-        if scratch.concerns_any_group(lens, &projected) {
-            for (i, t) in triangles.iter().enumerate() {
-                let v = t.corners.map(|c| &projected[usize::from(c)]);
-                let surface = &self.geometry.surfaces()[t.surface as usize];
-                if surface.opacity <= 0.0 || scratch.misses_targets(v) {
-                    scratch.counts.casters_culled += 1;
-                    continue;
-                }
-                let (rect, hidden) = (&self.screens.rect, &self.screens.hidden);
-                match set_up_face(lens, rect, t, (cluster, i as u32), v, surface, hidden, true) {
-                    None => scratch.counts.casters_culled += 1,
-                    Some((face, outline)) => {
-                        let polygon = ConvexPolygon::from_vertices(outline.vertices());
-                        let opacity = if surface.textured_opacity { None } else { Some(f64::from(surface.opacity)) };
-                        scratch.link(Caster { face, bounds: polygon.bounds(), polygon, opacity });
-                    }
+        for (i, t) in triangles.iter().enumerate() {
+            let v = t.corners.map(|c| &projected[usize::from(c)]);
+            let surface = &self.geometry.surfaces()[t.surface as usize];
+            if surface.opacity <= 0.0 || scratch.misses_targets(v) {
+                scratch.counts.casters_culled += 1;
+                continue;
+            }
+            let rect = &self.screens.rect;
+            match set_up_face(lens, rect, t, (cluster, i as u32), v, surface, hidden, true) {
+                None => scratch.counts.casters_culled += 1,
+                Some((face, outline)) => {
+                    let polygon = ConvexPolygon::from_vertices(outline.vertices());
+                    let opacity = if surface.textured_opacity { None } else { Some(f64::from(surface.opacity)) };
+                    scratch.link(Caster { face, bounds: polygon.bounds(), polygon, opacity });
                 }
             }
-        } else {
-            scratch.counts.casters_culled += triangles.len() as u64;
         }
         scratch.projected = projected;
     }

@@ -3,7 +3,7 @@
 use crate::light::Resolution;
 use glam::DVec2;
 use pointillist_dice::{ConvexPolygon, convex};
-use pointillist_micropoint::{ClusterQueue, Face, Lens, ProjectedVertex, Regions};
+use pointillist_micropoint::{Blocker, Bounds, ClusterQueue, Face, Lens, ProjectedVertex, Regions};
 
 /// Which side of a face the viewer sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +70,10 @@ impl Group {
         dark: false,
     };
 
+    fn is_empty(&self) -> bool {
+        self.first_target == self.end_target
+    }
+
     fn overlaps(&self, low: DVec2, high: DVec2) -> bool {
         self.low.cmple(high).all() && self.high.cmpge(low).all()
     }
@@ -94,7 +98,7 @@ impl Sum {
 #[derive(Debug, Default)]
 pub(crate) struct Work {
     pub(crate) regions: Regions,
-    pub(crate) blockers: Vec<(u32, Option<pointillist_dice::HalfPlane>)>,
+    pub(crate) blockers: Vec<Blocker>,
     pub(crate) layers: Vec<crate::layers::Cast>,
     pub(crate) partial: u64,
     /// The caster that hid the last target.
@@ -158,7 +162,8 @@ pub struct ShadowScratch {
     occupied: Vec<u32>,
     columns: usize,
     rows: usize,
-    cell: f64,
+    cell_of: Vec<u32>,
+    cells_per_unit: f64,
     /// Half the largest target: how far a target reaches beyond the cell of its centre.
     reach: f64,
     pub(crate) low: DVec2,
@@ -256,30 +261,37 @@ impl ShadowScratch {
             return false;
         }
         self.lay_out_grid(resolution, size);
-        let cell_of = |t: &Target| {
-            let centre = (0.5 * (t.bounds.0 + t.bounds.1) - self.low) / self.cell;
-            let column = (centre.x as usize).min(self.columns - 1);
-            (centre.y as usize).min(self.rows - 1) * self.columns + column
-        };
-        let targets = &self.targets;
-        self.target_order.sort_unstable_by_key(|&i| (cell_of(&targets[i as usize]), i));
         self.groups.clear();
         self.groups.resize(self.columns * self.rows, Group::EMPTY);
-        for (position, &i) in self.target_order.iter().enumerate() {
-            let t = &targets[i as usize];
-            let centre = (0.5 * (t.bounds.0 + t.bounds.1) - self.low) / self.cell;
+        self.cell_of.clear();
+        for &i in &self.target_order {
+            let t = &self.targets[i as usize];
+            let centre = (0.5 * (t.bounds.0 + t.bounds.1) - self.low) * self.cells_per_unit;
             let column = (centre.x as usize).min(self.columns - 1);
-            let group = &mut self.groups[(centre.y as usize).min(self.rows - 1) * self.columns + column];
-            if group.end_target == 0 {
-                group.first_target = position as u32;
-                self.open_groups += 1;
-            }
-            group.end_target = position as u32 + 1;
+            let cell = (centre.y as usize).min(self.rows - 1) * self.columns + column;
+            self.cell_of.push(cell as u32);
+            let group = &mut self.groups[cell];
+            group.end_target += 1;
             group.low = group.low.min(t.bounds.0);
             group.high = group.high.max(t.bounds.1);
             group.nearness = (group.nearness.0.min(t.nearness.0), group.nearness.1.max(t.nearness.1));
         }
-        let has_targets = |(i, g): (usize, &Group)| (g.end_target > 0).then_some(i as u32);
+        // A counting sort: the ends of the groups become their starts while targets are put in place.
+        let mut end = 0;
+        for group in &mut self.groups {
+            self.open_groups += usize::from(group.end_target > 0);
+            group.first_target = end;
+            end += group.end_target;
+            group.end_target = group.first_target;
+        }
+        let unsorted = std::mem::take(&mut self.target_order);
+        self.target_order.resize(unsorted.len(), 0);
+        for (&i, &cell) in unsorted.iter().zip(&self.cell_of) {
+            let group = &mut self.groups[cell as usize];
+            self.target_order[group.end_target as usize] = i;
+            group.end_target += 1;
+        }
+        let has_targets = |(i, g): (usize, &Group)| (!g.is_empty()).then_some(i as u32);
         self.occupied.clear();
         self.occupied.extend(self.groups.iter().enumerate().filter_map(has_targets));
         true
@@ -304,8 +316,8 @@ impl ShadowScratch {
             Resolution::Cells(n) => size / f64::from(n),
         };
         let longest = (high - low).max_element();
-        self.cell = cell.max(longest / MOST_CELLS).max(f64::MIN_POSITIVE);
-        let cells = |length: f64| ((length / self.cell).ceil() as usize).clamp(1, MOST_CELLS as usize);
+        self.cells_per_unit = 1.0 / cell.max(longest / MOST_CELLS).max(f64::MIN_POSITIVE);
+        let cells = |length: f64| ((length * self.cells_per_unit).ceil() as usize).clamp(1, MOST_CELLS as usize);
         (self.columns, self.rows) = (cells(high.x - low.x), cells(high.y - low.y));
         (self.low, self.high, self.reach) = (low, high, reach);
         self.open_groups = 0;
@@ -320,7 +332,7 @@ impl ShadowScratch {
         if !(low.cmple(self.high).all() && high.cmpge(self.low).all()) {
             return false;
         }
-        let index = |v: f64, first: f64, count: usize| (((v - first) / self.cell).max(0.0) as usize).min(count - 1);
+        let index = |v: f64, first: f64, count: usize| (((v - first) * self.cells_per_unit).max(0.0) as usize).min(count - 1);
         let (low, high) = (low - self.reach, high + self.reach);
         let (x0, x1) = (index(low.x, self.low.x, self.columns), index(high.x, self.low.x, self.columns));
         let (y0, y1) = (index(low.y, self.low.y, self.rows), index(high.y, self.low.y, self.rows));
@@ -341,19 +353,10 @@ impl ShadowScratch {
         !(low.cmplt(self.high).all() && high.cmpgt(self.low).all())
     }
 
-    /// Whether some open group lies behind a cluster.
-    pub(crate) fn concerns_any_group(&self, lens: &Lens, vertices: &[ProjectedVertex]) -> bool {
-        if vertices.iter().any(|v| !v.in_front) {
-            return true;
-        }
-        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let mut nearness = f64::NEG_INFINITY;
-        for v in vertices {
-            low = low.min(v.grid);
-            high = high.max(v.grid);
-            nearness = nearness.max(lens.nearness(v.local.z));
-        }
-        let concerned = |g: &Group| g.end_target > 0 && !g.dark && g.nearness.0 <= nearness && g.overlaps(low, high);
+    /// Whether some open group may lie behind a box.
+    pub(crate) fn concerns_any_group(&self, lens: &Lens, bounds: &Bounds) -> bool {
+        let Some((low, high, nearness)) = lens.shadow_of_box(bounds) else { return true };
+        let concerned = |g: &Group| !g.is_empty() && !g.dark && g.nearness.0 <= nearness && g.overlaps(low, high);
         self.any_group_near(low, high, |g| concerned(&self.groups[g as usize]))
     }
 
@@ -367,7 +370,7 @@ impl ShadowScratch {
         self.any_group_near(low, high, |g| {
             let group = &mut groups[g as usize];
             let behind = group.nearness.0 <= caster.face.nearness.1;
-            if group.end_target == 0 || group.dark || !behind || !group.overlaps(low, high) {
+            if group.is_empty() || group.dark || !behind || !group.overlaps(low, high) {
                 return false;
             }
             match covers(&caster, group) {

@@ -64,7 +64,7 @@ impl Screens {
             right,
             down,
             forward,
-            scale: DVec2::splat(half),
+            scale: half,
             centre: DVec2::ZERO,
             reach: 1.0,
         };
@@ -89,7 +89,7 @@ impl Screens {
             right,
             down,
             forward,
-            scale: DVec2::splat(SCREEN_UNITS / diagonal),
+            scale: SCREEN_UNITS / diagonal,
             centre: DVec2::ZERO,
             reach: 2.0 * diagonal,
         };
