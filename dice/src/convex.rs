@@ -153,7 +153,20 @@ impl ConvexPolygon {
     #[must_use]
     #[inline]
     pub fn clipped(&self, half: &HalfPlane) -> Self {
-        self.divided(half).0
+        let mut inside = Self::EMPTY;
+        let Some(&(mut p)) = self.vertices().last() else { return inside };
+        let mut side_p = half.value(p);
+        for &q in self.vertices() {
+            let side_q = half.value(q);
+            if side_p * side_q < 0.0 {
+                inside.push(p + (q - p) * (side_p / (side_p - side_q)));
+            }
+            if side_q >= 0.0 {
+                inside.push(q);
+            }
+            (p, side_p) = (q, side_q);
+        }
+        inside
     }
 
     /// The parts inside and outside the half-plane. Both share the cut's end points bit for bit.

@@ -1,7 +1,7 @@
 //! The correlated rule: a receiver minus everything that stands in its light.
 
 use crate::light::{Measure, Query};
-use crate::scratch::{Caster, Target, Work};
+use crate::scratch::{Caster, Nearby, Target, Work};
 use glam::DVec2;
 use pointillist_dice::{ConvexPolygon, convex};
 use pointillist_micropoint::{Face, Front, Layer, Occluders, in_front};
@@ -16,7 +16,7 @@ pub(crate) fn lit_fraction(
     target: &Target,
     outline: &[DVec2],
     measure: &Measure<'_>,
-    nearby: &[u32],
+    nearby: &[Nearby],
     work: &mut Work,
 ) -> f64 {
     if !find_blockers(query, target, outline, measure.face, nearby, work) {
@@ -49,19 +49,20 @@ fn find_blockers(
     target: &Target,
     outline: &[DVec2],
     face: &Face,
-    nearby: &[u32],
+    nearby: &[Nearby],
     work: &mut Work,
 ) -> bool {
     work.blockers.clear();
     let (low, high) = target.bounds;
     // What hid the last target often hides the next.
-    let first = nearby.contains(&work.last_hider).then_some(work.last_hider);
-    for c in first.into_iter().chain(nearby.iter().copied().filter(|&c| Some(c) != first)) {
-        let caster = &query.casters[c as usize];
-        let overlaps = caster.bounds.0.cmplt(high).all() && caster.bounds.1.cmpgt(low).all();
-        if !overlaps || caster.face.nearness.1 < target.nearness.0 || caster.face.id == face.id {
+    let last = nearby.iter().position(|n| n.index == work.last_hider);
+    let rest = nearby.iter().enumerate().filter(|(i, _)| Some(*i) != last).map(|(_, n)| n);
+    for near in last.map(|i| &nearby[i]).into_iter().chain(rest) {
+        let overlaps = near.bounds.0.cmplt(high).all() && near.bounds.1.cmpgt(low).all();
+        if !overlaps || near.nearest < target.nearness.0 || near.id == face.id {
             continue;
         }
+        let (c, caster) = (near.index, &query.casters[near.index as usize]);
         let place = place(&caster.polygon, outline);
         if place == Place::Apart || convex::has_separating_edge(outline, caster.polygon.vertices()) {
             continue;

@@ -1,7 +1,7 @@
 //! The paper's rule (§4.2.5): in each light cell, opacity adds up from the light outward.
 
 use crate::light::Query;
-use crate::scratch::{Target, Work};
+use crate::scratch::{Nearby, Target, Work};
 use glam::{DVec2, IVec2};
 use pointillist_dice::{CellWindow, ConvexPolygon, Cut, HalfPlane, cut};
 use pointillist_micropoint::Face;
@@ -29,7 +29,7 @@ pub(crate) fn lit_fraction(
     target: &Target,
     outline: &[DVec2],
     face: &Face,
-    nearby: &[u32],
+    nearby: &[Nearby],
     cell: Option<f64>,
     work: &mut Work,
 ) -> f64 {
@@ -78,18 +78,18 @@ fn transmittance(
     piece: &ConvexPolygon,
     cell: IVec2,
     size: f64,
-    nearby: &[u32],
+    nearby: &[Nearby],
     work: &mut Work,
 ) -> f64 {
     let low = cell.as_dvec2() * size;
     let square = ConvexPolygon::rectangle(low, low + size);
     work.layers.clear();
-    for &c in nearby {
-        let caster = &query.casters[c as usize];
-        let overlaps = caster.bounds.0.cmplt(low + size).all() && caster.bounds.1.cmpgt(low).all();
-        if !overlaps || caster.face.id == face.id {
+    for near in nearby {
+        let overlaps = near.bounds.0.cmplt(low + size).all() && near.bounds.1.cmpgt(low).all();
+        if !overlaps || near.id == face.id {
             continue;
         }
+        let caster = &query.casters[near.index as usize];
         let inside = clipped_to(&caster.polygon, &square);
         let area = inside.area();
         if inside.is_empty() || area <= 0.0 {

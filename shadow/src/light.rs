@@ -4,7 +4,7 @@ use crate::error::ShadowError;
 use crate::exact;
 use crate::layers;
 use crate::receiver::{Receivers, Viewer};
-use crate::scratch::{Caster, LitFace, ShadowScratch, Side, Sum, Target, Work};
+use crate::scratch::{Caster, LitFace, Nearby, ShadowScratch, Side, Sum, Target, Work};
 use crate::screen::{Emitter, Screens};
 use glam::{DVec2, DVec3};
 use pointillist_dice::{ConvexPolygon, convex};
@@ -268,7 +268,7 @@ impl<'a> ShadowLight<'a> {
         viewer: Viewer<'_>,
         target: &Target,
         settled: Option<f64>,
-        nearby: &[u32],
+        nearby: &[Nearby],
         scratch: &mut ShadowScratch,
         work: &mut Work,
     ) -> (f64, f64) {

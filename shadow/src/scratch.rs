@@ -46,6 +46,17 @@ pub(crate) struct Caster {
     pub(crate) opacity: Option<f64>,
 }
 
+/// What decides about most casters of a group, side by side in memory.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearby {
+    pub(crate) bounds: (DVec2, DVec2),
+    /// Largest nearness.
+    pub(crate) nearest: f64,
+    /// The caster's triangle.
+    pub(crate) id: u32,
+    pub(crate) index: u32,
+}
+
 /// A cell of the local light grid: targets that lie close together.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Group {
@@ -174,7 +185,7 @@ pub struct ShadowScratch {
     links: Vec<(u32, u32)>,
     pub(crate) queue: ClusterQueue,
     pub(crate) projected: Vec<ProjectedVertex>,
-    pub(crate) nearby: Vec<u32>,
+    pub(crate) nearby: Vec<Nearby>,
     pub(crate) work: Work,
 }
 
@@ -398,16 +409,17 @@ impl ShadowScratch {
         }
     }
 
-    /// The casters of a group, in the order in which they were linked.
-    pub(crate) fn casters_of(&self, group: &Group, nearby: &mut Vec<u32>) {
+    /// The casters of a group.
+    pub(crate) fn casters_of(&self, group: &Group, nearby: &mut Vec<Nearby>) {
         nearby.clear();
         let mut link = group.first_link;
         while link != NO_LINK {
-            let (caster, next) = self.links[link as usize];
-            nearby.push(caster);
+            let (index, next) = self.links[link as usize];
+            let caster = &self.casters[index as usize];
+            let (bounds, nearest, id) = (caster.bounds, caster.face.nearness.1, caster.face.id);
+            nearby.push(Nearby { bounds, nearest, id, index });
             link = next;
         }
-        nearby.reverse();
     }
 }
 
