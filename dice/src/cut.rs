@@ -220,13 +220,7 @@ fn clip_to_row(polygon: &[DVec2], edges: &[Edge], row: i32) -> Slab {
 
 /// Walks a row's polygon from left to right.
 #[inline]
-fn walk_row(
-    slab: &Slab,
-    edges: &[Edge],
-    row: i32,
-    columns: Range<i32>,
-    visit: &mut impl FnMut(Cut<'_>),
-) {
+fn walk_row(slab: &Slab, edges: &[Edge], row: i32, columns: Range<i32>, visit: &mut impl FnMut(Cut<'_>)) {
     let vertices = &slab.vertices[..slab.len];
     let (lo, hi) = crate::convex::bounds(vertices);
     let touched = cells_between(lo.x, hi.x, columns);

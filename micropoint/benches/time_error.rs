@@ -6,19 +6,25 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{DVec3, dvec3};
 use pointillist_micropoint::invariants::{Soup, picture_of, shares};
-use pointillist_micropoint::{Geometry, MicropointOptions, Occlusion, PlainOpacity, Projection, Renderer, Tile, View};
+use pointillist_micropoint::{
+    Geometry, MicropointOptions, Occlusion, PlainOpacity, Projection, Renderer, Tile, View,
+};
 
 fn scene() -> Soup {
     let mut soup = Soup::default();
     let (ball, ground) = (soup.surface(1.0), soup.surface(1.0));
     soup.sphere(dvec3(0.1, 0.2, 0.0), 1.0, 24, 48, ball);
-    soup.polygon(&[dvec3(-9.0, -1.0, 3.0), dvec3(9.0, -1.0, 3.0), dvec3(9.0, 2.0, -40.0), dvec3(-9.0, 2.0, -40.0)], ground);
+    soup.polygon(
+        &[dvec3(-9.0, -1.0, 3.0), dvec3(9.0, -1.0, 3.0), dvec3(9.0, 2.0, -40.0), dvec3(-9.0, 2.0, -40.0)],
+        ground,
+    );
     soup
 }
 
 fn renderer(geometry: &Geometry, size: u32, options: MicropointOptions) -> Renderer<'_> {
     let camera = Projection::Perspective { fov_y_rad: 0.9 };
-    let view = View::look_at(dvec3(0.3, 0.5, 4.0), DVec3::ZERO, DVec3::Y, camera, size, size).expect("the view is valid");
+    let view = View::look_at(dvec3(0.3, 0.5, 4.0), DVec3::ZERO, DVec3::Y, camera, size, size)
+        .expect("the view is valid");
     Renderer::new(geometry, &PlainOpacity, view, options).expect("the options are valid")
 }
 
@@ -36,11 +42,15 @@ fn time_error(c: &mut Criterion) {
         let reference = ground(&geometry, size, MicropointOptions::DEFAULT.with_cells_per_pixel(4));
         for (name, occlusion) in [("correlated", Occlusion::Correlated), ("paper", Occlusion::Paper)] {
             for cells in [1, 2] {
-                let options = MicropointOptions::DEFAULT.with_occlusion(occlusion).with_cells_per_pixel(cells);
+                let options =
+                    MicropointOptions::DEFAULT.with_occlusion(occlusion).with_cells_per_pixel(cells);
                 let got = ground(&geometry, size, options);
                 let squares: f64 = got.iter().zip(&reference).map(|(a, b)| (a - b) * (a - b)).sum();
                 let error = (squares / got.len() as f64).sqrt();
-                let id = BenchmarkId::new(format!("{name} {cells}×{cells} cells"), format!("{size} px, error {error:.1e}"));
+                let id = BenchmarkId::new(
+                    format!("{name} {cells}×{cells} cells"),
+                    format!("{size} px, error {error:.1e}"),
+                );
                 let renderer = renderer(&geometry, size, options);
                 let mut tile = Tile::default();
                 c.benchmark_group("render").bench_function(id, |b| {

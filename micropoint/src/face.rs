@@ -37,7 +37,12 @@ impl Face {
     pub fn point(&self, lens: &Lens, grid: DVec2) -> SurfacePoint {
         let nearness = self.nearness_at(grid);
         let rational = if lens.kind == LensKind::Perspective { nearness } else { 1.0 };
-        SurfacePoint { grid, nearness, rational, barycentric: self.barycentric(lens.unproject(grid, nearness)) }
+        SurfacePoint {
+            grid,
+            nearness,
+            rational,
+            barycentric: self.barycentric(lens.unproject(grid, nearness)),
+        }
     }
 
     /// Barycentric coordinates of a point of the plane (lens frame), kept within the triangle.
@@ -45,12 +50,9 @@ impl Face {
     pub fn barycentric(&self, p: DVec3) -> DVec3 {
         let [a, b, c] = self.corners;
         let n = (b - a).cross(c - a);
-        let weights = DVec3::new(
-            n.dot((b - p).cross(c - p)),
-            n.dot((c - p).cross(a - p)),
-            n.dot((a - p).cross(b - p)),
-        )
-        .max(DVec3::ZERO);
+        let weights =
+            DVec3::new(n.dot((b - p).cross(c - p)), n.dot((c - p).cross(a - p)), n.dot((a - p).cross(b - p)))
+                .max(DVec3::ZERO);
         let sum = weights.element_sum();
         if sum > 0.0 && sum.is_finite() { weights / sum } else { DVec3::splat(1.0 / 3.0) }
     }
@@ -144,22 +146,31 @@ impl Outline {
     }
 }
 
+/// How a lens takes in triangles.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup<'a> {
+    /// The lens.
+    pub lens: &'a Lens,
+    /// What faces that reach behind the lens are clipped to.
+    pub rect: &'a GridRect,
+    /// Sides of solids to leave out.
+    pub hidden: &'a HiddenSides,
+    /// Whether the backs of single-sided surfaces count: not for a viewer, but they still cast shadow.
+    pub keeps_backs: bool,
+}
+
 /// Sets up a triangle for a lens: culls it, clips it if it reaches behind the lens, and gives the
 /// face with its outline. `None` if there is nothing to see.
-///
-/// `keep_both_sides` switches off the culling of single-sided surfaces (they still cast shadow).
 #[must_use]
 #[inline]
 pub fn set_up_face(
-    lens: &Lens,
-    rect: &GridRect,
+    setup: &Setup<'_>,
     triangle: &Triangle,
     source: (u32, u32),
     v: [&ProjectedVertex; 3],
     surface: &Surface,
-    hidden: &HiddenSides,
-    keep_both_sides: bool,
 ) -> Option<(Face, Outline)> {
+    let Setup { lens, rect, hidden, keeps_backs } = *setup;
     let corners = [v[0].local, v[1].local, v[2].local];
     let front = match v.iter().all(|p| p.in_front) {
         // The frame (right, down, forward) turns counter-clockwise into negative area.
@@ -180,7 +191,7 @@ pub fn set_up_face(
     };
     let solid = hidden.0.get(triangle.solid as usize).copied().unwrap_or(0);
     let outward_front = if solid >= 0 { front } else { !front };
-    if (solid != 0 && !outward_front) || (!front && !surface.two_sided && !keep_both_sides) {
+    if (solid != 0 && !outward_front) || (!front && !surface.two_sided && !keeps_backs) {
         return None;
     }
     let (outline, nearness) = if v.iter().all(|p| p.in_front) {

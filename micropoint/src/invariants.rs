@@ -83,7 +83,9 @@ impl Soup {
         let mut triangles = vec![];
         for (r, c) in (0..rows).flat_map(|r| (0..columns).map(move |c| (r, c))) {
             let (a, b, d, e) = (at(r, c), at(r + 1, c), at(r + 1, c + 1), at(r, c + 1));
-            triangles.extend([[a, b, d], [a, d, e]].iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]));
+            triangles.extend(
+                [[a, b, d], [a, d, e]].iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]),
+            );
         }
         self.mesh(&positions, &triangles, surface);
     }
@@ -182,9 +184,7 @@ fn check(holds: bool, message: impl FnOnce() -> String) -> Result<(), String> {
 }
 
 fn bits_differ(a: &Seen, b: &Seen) -> bool {
-    let bits = |s: &Seen| {
-        [s.weight, s.grid.x, s.grid.y, s.nearness.0, s.nearness.1].map(f64::to_bits)
-    };
+    let bits = |s: &Seen| [s.weight, s.grid.x, s.grid.y, s.nearness.0, s.nearness.1].map(f64::to_bits);
     (a.triangle, a.surface) != (b.triangle, b.surface) || bits(a) != bits(b)
 }
 
@@ -218,9 +218,8 @@ pub fn weights_are_shares(soup: &Soup, view: View, options: MicropointOptions) -
         check(p.weight >= 0.0 && p.weight <= 1.0 + SUM_TOLERANCE, || format!("weight, {}", place()))?;
         check(p.nearness.0 <= p.nearness.1, || format!("nearness, {}", place()))?;
         let low = DVec2::new(f64::from(p.x), f64::from(p.y)) * cells;
-        let inside = |v: DVec2| {
-            v.cmpge(low - 1e-9 * cells).all() && v.cmple(low + cells * (1.0 + 1e-9)).all()
-        };
+        let inside =
+            |v: DVec2| v.cmpge(low - 1e-9 * cells).all() && v.cmple(low + cells * (1.0 + 1e-9)).all();
         check(inside(p.grid), || format!("centroid, {}", place()))?;
         let fragments = tile.fragments(p);
         let sum: f64 = fragments.iter().map(|f| f.weight).sum();
@@ -286,7 +285,8 @@ pub fn triangle_order_does_not_matter(
     let (Some(mut expected), Some(mut got)) = pictures else { return Ok(()) };
     // Triangles are named by the first one that is equal.
     let key = |t: u32| {
-        let mut corners = soup.triangles[t as usize].map(|v| soup.positions[v as usize].to_array().map(f64::to_bits));
+        let mut corners =
+            soup.triangles[t as usize].map(|v| soup.positions[v as usize].to_array().map(f64::to_bits));
         corners.sort_unstable();
         (corners, soup.surface_of[t as usize])
     };
@@ -407,7 +407,9 @@ fn add_line(strips: &[Strip], half_width: f64, thickness: f64, row: &mut [Vec<f6
     let mut ends: Vec<f64> = (0..=row.len()).map(|x| x as f64 - half_width).collect();
     for (i, a) in strips.iter().enumerate() {
         ends.extend([a.from, a.to]);
-        ends.extend(strips[..i].iter().map(|b| (b.nearness.0 - a.nearness.0) / (a.nearness.1 - b.nearness.1)));
+        ends.extend(
+            strips[..i].iter().map(|b| (b.nearness.0 - a.nearness.0) / (a.nearness.1 - b.nearness.1)),
+        );
     }
     ends.retain(|x| x.abs() <= half_width);
     ends.sort_by(f64::total_cmp);
@@ -434,10 +436,13 @@ fn add_line(strips: &[Strip], half_width: f64, thickness: f64, row: &mut [Vec<f6
 /// # Errors
 /// The pixel that differs most.
 pub fn shares_agree(a: &[Vec<f64>], b: &[Vec<f64>], tolerance: f64) -> Result<(), String> {
-    let difference = |(p, q): (&Vec<f64>, &Vec<f64>)| p.iter().zip(q).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+    let difference =
+        |(p, q): (&Vec<f64>, &Vec<f64>)| p.iter().zip(q).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
     let worst = a.iter().zip(b).map(difference).enumerate().max_by(|x, y| x.1.total_cmp(&y.1));
     match worst {
-        Some((i, d)) if d > tolerance || d.is_nan() => Err(format!("pixel {i} is off by {d:.3e}: {:?} and {:?}", a[i], b[i])),
+        Some((i, d)) if d > tolerance || d.is_nan() => {
+            Err(format!("pixel {i} is off by {d:.3e}: {:?} and {:?}", a[i], b[i]))
+        }
         _ => Ok(()),
     }
 }
@@ -456,7 +461,12 @@ pub fn shares_are_exact(soup: &Soup, view: View, tolerance: f64) -> Result<(), S
 ///
 /// # Errors
 /// The pixel through which most can be seen.
-pub fn nothing_shows_through(soup: &Soup, view: View, options: MicropointOptions, tolerance: f64) -> Result<(), String> {
+pub fn nothing_shows_through(
+    soup: &Soup,
+    view: View,
+    options: MicropointOptions,
+    tolerance: f64,
+) -> Result<(), String> {
     let Some(seen) = picture(soup, view, options) else { return Ok(()) };
     for (i, pixel) in seen.iter().enumerate() {
         let sum: f64 = pixel.iter().map(|s| s.weight).sum();

@@ -55,7 +55,7 @@ mod volume;
 
 pub use error::MicropointError;
 pub use face::{
-    Face, GridRect, Outline, PlainOpacity, ProjectedVertex, SurfacePoint, TexturedOpacity, set_up_face,
+    Face, GridRect, Outline, PlainOpacity, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity, set_up_face,
 };
 pub use geometry::{Bounds, Cluster, ClusterQueue, Geometry, HiddenSides, Surface, Triangle};
 pub use lens::{Lens, LensKind, Plane, TIE};
@@ -64,5 +64,5 @@ pub use render::{Fragment, Micropoint, MicropointOptions, Renderer, Tile};
 pub use resolve::Occlusion;
 pub use texel::{TexelCorner, TexelSums, TexelWrap};
 pub use tile::TileCounts;
-pub use volume::ViewVolume;
 pub use view::{PixelRect, Projection, View};
+pub use volume::ViewVolume;

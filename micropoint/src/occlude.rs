@@ -18,6 +18,10 @@ pub struct Region {
 /// covers. Reached only where hundreds of occluders overlap in a spot that halving does not separate.
 const MOST_REGIONS: usize = 256;
 
+/// The same for translucent occluders, whose overlaps matter less: a mean opacity is spread evenly over
+/// its region as it is.
+const MOST_TRANSLUCENT_REGIONS: usize = 24;
+
 /// Occluders that are worth dividing a polygon for at once. With more, the polygon is halved first:
 /// each half meets fewer, and the splinters of one do not get cut by the occluders of the other.
 const FEW: usize = 12;
@@ -89,7 +93,8 @@ impl Regions {
             self.list.push(Region { polygon, transmittance: 1.0 });
             for i in first..end {
                 let (number, front) = self.stack[i];
-                self.attenuate(occluders.outline(number), front, |p| occluders.opacity(number, p));
+                let most = if occluders.is_opaque(number) { MOST_REGIONS } else { MOST_TRANSLUCENT_REGIONS };
+                self.attenuate_up_to(most, occluders.outline(number), front, |p| occluders.opacity(number, p));
                 if self.list.len() == self.base {
                     break;
                 }
@@ -151,14 +156,29 @@ impl Regions {
         &mut self,
         occluder: &[DVec2],
         front: Option<HalfPlane>,
+        opacity: impl FnMut(&ConvexPolygon) -> f64,
+    ) {
+        self.attenuate_up_to(MOST_REGIONS, occluder, front, opacity);
+    }
+
+    /// As [`Regions::attenuate`]; with more than `most` regions none is divided any more.
+    fn attenuate_up_to(
+        &mut self,
+        most: usize,
+        occluder: &[DVec2],
+        front: Option<HalfPlane>,
         mut opacity: impl FnMut(&ConvexPolygon) -> f64,
     ) {
-        let crowded = self.list.len() - self.base > MOST_REGIONS;
+        let crowded = self.list.len() - self.base > most;
         // Backward, so that what is appended is not met again.
         for i in (self.base..self.list.len()).rev() {
             let Some(inside) = self.overlap(i, occluder, front.as_ref()) else { continue };
             let Region { polygon, transmittance } = self.list[i];
             let opacity = opacity(&inside);
+            if opacity <= 0.0 {
+                // A hole in a mask: not worth a cut.
+                continue;
+            }
             if crowded {
                 let share = (inside.area() / polygon.area()).min(1.0);
                 self.list[i].transmittance *= 1.0 - opacity * share;

@@ -120,7 +120,14 @@ impl Occluders for Parts<'_> {
 
 /// Cuts part `order[i]` by the parts in front of it. Returns false if none of them touches it; the
 /// regions are meaningless then.
-fn hide(dicer: &Dicer, scratch: &mut ResolveScratch, lens: &Lens, corner: DVec2, order: &[u32], i: usize) -> bool {
+fn hide(
+    dicer: &Dicer,
+    scratch: &mut ResolveScratch,
+    lens: &Lens,
+    corner: DVec2,
+    order: &[u32],
+    i: usize,
+) -> bool {
     let part = dicer.part(order[i]);
     let outline = dicer.outline(part);
     scratch.blockers.clear();
@@ -136,8 +143,9 @@ fn hide(dicer: &Dicer, scratch: &mut ResolveScratch, lens: &Lens, corner: DVec2,
         let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
         let upper = Layer { face: fo, outline: dicer.outline(other), nearness: other.nearness };
         let lower = Layer { face: fp, outline, nearness: part.nearness };
-        // Coincident parts hide one another in their sorting order.
-        match in_front(lens, corner, upper, lower, j < i) {
+        // Which of two coincident surfaces is seen must not change from cell to cell.
+        let first = (fo.surface, fo.id) < (fp.surface, fp.id);
+        match in_front(lens, corner, upper, lower, first) {
             Front::Nowhere => {}
             Front::Everywhere => scratch.blockers.push((o, None)),
             Front::Within(half) => scratch.blockers.push((o, Some(half))),
@@ -152,11 +160,7 @@ fn hide(dicer: &Dicer, scratch: &mut ResolveScratch, lens: &Lens, corner: DVec2,
 }
 
 /// Resolves one cell under the paper's rule.
-pub(crate) fn resolve_by_layers(
-    dicer: &mut Dicer,
-    cell: usize,
-    mut emit: impl FnMut(&Dicer, Visible<'_>),
-) {
+pub(crate) fn resolve_by_layers(dicer: &mut Dicer, cell: usize, mut emit: impl FnMut(&Dicer, Visible<'_>)) {
     let order = dicer.sorted_parts(cell);
     let mut transmittance = 1.0;
     let mut start = 0;

@@ -51,6 +51,10 @@ const MOST_ROWS: f64 = 128.0;
 /// Texels up to which perspective is followed texel by texel.
 const FEW_TEXELS: f64 = 48.0;
 
+/// Extent in texels beyond which an outline is not followed any more: a polygon that sees this many texels, and the
+/// whole texture several times, sees their mean, and following it row by row would take seconds, or years.
+const MOST_TEXELS: f64 = (1 << 16) as f64;
+
 /// Ratio of depths over a polygon up to which perspective does not matter: weights then vary by 0.3 %
 /// from their mean, and the border of two texels would have to run right through the polygon for a
 /// quarter of that to show.
@@ -100,7 +104,8 @@ impl<const N: usize> TexelSums<N> {
                 rows.push(sum);
             }
         }
-        let mut sums = Self { width: width as usize, height: height as usize, wrap, unit, levels: vec![rows] };
+        let mut sums =
+            Self { width: width as usize, height: height as usize, wrap, unit, levels: vec![rows] };
         sums.add_coarse_levels();
         Ok(sums)
     }
@@ -151,9 +156,9 @@ impl<const N: usize> TexelSums<N> {
     /// into strips of nearly equal depth. Corners that are not finite give the texel at the origin.
     #[must_use]
     pub fn mean(&self, corners: &[TexelCorner]) -> [f64; N] {
-        let (low, high) = corners.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), c| {
-            (l.min(c.texel), h.max(c.texel))
-        });
+        let (low, high) = corners
+            .iter()
+            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), c| (l.min(c.texel), h.max(c.texel)));
         // Beyond this, neighbouring texels can hardly be told apart in f64.
         const LARGEST: f64 = 1e12;
         if !(low.is_finite() && high.is_finite() && low.abs().max(high.abs()).max_element() < LARGEST) {
@@ -162,20 +167,38 @@ impl<const N: usize> TexelSums<N> {
         if low.floor() == high.floor() {
             return self.texel(low.x, low.y);
         }
+        if (high - low).max_element() > MOST_TEXELS.max(4.0 * self.width.max(self.height) as f64) {
+            return match self.wrap {
+                TexelWrap::Clamp => self.texel(0.5 * (low.x + high.x), 0.5 * (low.y + high.y)),
+                TexelWrap::Repeat | TexelWrap::Mirror => self.whole_mean(),
+            };
+        }
         let texels = (high.ceil() - low.floor()).max(DVec2::ONE);
         let few = texels.x * texels.y <= FEW_TEXELS;
         let rationals = corners.iter().map(|c| c.rational);
         let (least, most) = rationals.fold((f64::INFINITY, 0.0_f64), |(l, h), q| (l.min(q), h.max(q)));
         let ratio = if least > 0.0 { most / least } else { f64::INFINITY };
-        if ratio > NO_PERSPECTIVE && few && least > 0.0 {
-            if let Some(mean) = self.mean_by_texels(corners) {
-                return mean;
-            }
+        if ratio > NO_PERSPECTIVE
+            && few
+            && least > 0.0
+            && let Some(mean) = self.mean_by_texels(corners)
+        {
+            return mean;
         }
         if ratio > LITTLE_PERSPECTIVE && !few {
             return self.mean_by_strips(corners, least.max(most * 1e-6), most);
         }
         self.mean_in_texels(corners)
+    }
+
+    /// The mean of all texels.
+    fn whole_mean(&self) -> [f64; N] {
+        let mut sum = [0.0; N];
+        for row in 0..self.height {
+            let total = self.row_sum(0, row, self.width as f64);
+            sum.iter_mut().zip(total).for_each(|(s, t)| *s += t);
+        }
+        sum.map(|s| s * self.unit / (self.width * self.height) as f64)
     }
 
     /// The mean weighted by area in the texture: right where there is no perspective.
@@ -284,7 +307,8 @@ impl<const N: usize> TexelSums<N> {
                 combine(periods, at(((column - periods * width) as usize).min(self.width)))
             }
             TexelWrap::Clamp => {
-                let (edge, beyond) = if column < 0.0 { (0, column) } else { (self.width - 1, column - width) };
+                let (edge, beyond) =
+                    if column < 0.0 { (0, column) } else { (self.width - 1, column - width) };
                 let (lo, hi) = (at(edge), at(edge + 1));
                 let base = if column < 0.0 { [0.0; N] } else { total };
                 std::array::from_fn(|c| base[c] + beyond * (hi[c] - lo[c]))
@@ -417,8 +441,11 @@ fn divide(corners: &[TexelCorner], border: f64) -> (Vec<TexelCorner>, Vec<TexelC
             let t = va / (va - vb);
             let rational = a.rational + (b.rational - a.rational) * t;
             let (ta, tb) = (a.texel * a.rational, b.texel * b.rational);
-            let crossing =
-                TexelCorner { grid: a.grid.lerp(b.grid, t), rational, texel: (ta + (tb - ta) * t) / rational };
+            let crossing = TexelCorner {
+                grid: a.grid.lerp(b.grid, t),
+                rational,
+                texel: (ta + (tb - ta) * t) / rational,
+            };
             near.push(crossing);
             far.push(crossing);
         }
@@ -438,9 +465,7 @@ struct GridFromTexels {
 impl GridFromTexels {
     fn new(corners: &[TexelCorner]) -> Option<Self> {
         let a = corners.first()?;
-        let wide = |i: usize| {
-            (corners[i].texel - a.texel).perp_dot(corners[i + 1].texel - a.texel).abs()
-        };
+        let wide = |i: usize| (corners[i].texel - a.texel).perp_dot(corners[i + 1].texel - a.texel).abs();
         let best = (1..corners.len().checked_sub(1)?).max_by(|&i, &j| wide(i).total_cmp(&wide(j)))?;
         let (b, c) = (&corners[best], &corners[best + 1]);
         let lifted = |k: &TexelCorner| (k.grid - a.grid).extend(1.0) / k.rational;
@@ -519,7 +544,8 @@ mod tests {
 
     #[test]
     fn coarse_levels_agree_with_fine_ones() {
-        let sums = TexelSums::<1>::new(64, 300, TexelWrap::Repeat, |x, y| [((x * 31 + y * y) % 17) as f32]).unwrap();
+        let sums =
+            TexelSums::<1>::new(64, 300, TexelWrap::Repeat, |x, y| [((x * 31 + y * y) % 17) as f32]).unwrap();
         let ring = [dvec2(3.2, -500.3), dvec2(9.9, -500.3), dvec2(17.7, 900.4), dvec2(11.0, 900.4)];
         let mut fine = [0.0];
         for i in 0..4 {
@@ -539,9 +565,11 @@ mod tests {
             rational: 1.0 / depth,
             texel: dvec2(x, y),
         };
-        let quad = [corner(0.0, 0.0, 1.0), corner(2.0, 0.0, 4.0), corner(2.0, 1.0, 4.0), corner(0.0, 1.0, 1.0)];
+        let quad =
+            [corner(0.0, 0.0, 1.0), corner(2.0, 0.0, 4.0), corner(2.0, 1.0, 4.0), corner(0.0, 1.0, 1.0)];
         let far = {
-            let ring = [corner(1.0, 0.0, 2.5), corner(2.0, 0.0, 4.0), corner(2.0, 1.0, 4.0), corner(1.0, 1.0, 2.5)];
+            let ring =
+                [corner(1.0, 0.0, 2.5), corner(2.0, 0.0, 4.0), corner(2.0, 1.0, 4.0), corner(1.0, 1.0, 2.5)];
             convex::area(&ring.map(|c| c.grid)) / convex::area(&quad.map(|c| c.grid))
         };
         assert!((sums.mean(&quad)[0] - far).abs() < 1e-9);

@@ -1,6 +1,6 @@
 //! The bucket of cells that one thread finishes: faces diced into parts, nearest first.
 
-use crate::face::{Face, GridRect, ProjectedVertex, SurfacePoint, TexturedOpacity, set_up_face};
+use crate::face::{Face, GridRect, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity, set_up_face};
 use crate::geometry::{ClusterQueue, Geometry, HiddenSides};
 use crate::lens::{Lens, LensKind};
 use crate::occlude::are_disjoint;
@@ -235,6 +235,8 @@ impl Dicer {
             return;
         }
         self.counts.clusters += 1;
+        let (lens, rect, hidden) = (job.lens, job.rect, job.hidden);
+        let setup = Setup { lens, rect, hidden, keeps_backs: false };
         let mut projected = std::mem::take(&mut self.projected);
         projected.clear();
         projected.extend(vertices.iter().map(|&v| ProjectedVertex::new(job.lens, v)));
@@ -246,7 +248,7 @@ impl Dicer {
                 self.counts.triangles_culled += 1;
                 continue;
             }
-            match set_up_face(job.lens, job.rect, t, source, v, surface, job.hidden, false) {
+            match set_up_face(&setup, t, source, v, surface) {
                 None => self.counts.triangles_culled += 1,
                 Some((face, outline)) => {
                     let opacity = if surface.textured_opacity { None } else { Some(surface.opacity) };
@@ -266,7 +268,10 @@ impl Dicer {
         let w = self.window();
         let low = v[0].grid.min(v[1].grid).min(v[2].grid);
         let high = v[0].grid.max(v[1].grid).max(v[2].grid);
-        low.x >= f64::from(w.x1) || low.y >= f64::from(w.y1) || high.x <= f64::from(w.x0) || high.y <= f64::from(w.y0)
+        low.x >= f64::from(w.x1)
+            || low.y >= f64::from(w.y1)
+            || high.x <= f64::from(w.x0)
+            || high.y <= f64::from(w.y0)
     }
 
     fn dice_face(&mut self, job: &DiceJob<'_>, face: Face, outline: &[DVec2], opacity: Option<f32>) {
@@ -314,7 +319,14 @@ impl Dicer {
         (cell.y - w.y0) as usize * (w.x1 - w.x0) as usize + (cell.x - w.x0) as usize
     }
 
-    fn add_whole_cell(&mut self, job: &DiceJob<'_>, face: &Face, index: u32, cell: IVec2, opacity: Option<f32>) {
+    fn add_whole_cell(
+        &mut self,
+        job: &DiceJob<'_>,
+        face: &Face,
+        index: u32,
+        cell: IVec2,
+        opacity: Option<f32>,
+    ) {
         self.counts.span_cells += 1;
         let corner = cell.as_dvec2();
         let middle = face.plane.at(corner + 0.5);
@@ -325,9 +337,7 @@ impl Dicer {
         if self.refuses(job.lens, i, face, nearness.1) {
             return;
         }
-        let opacity = opacity.unwrap_or_else(|| {
-            mean_opacity(job, face, corner, &CELL)
-        });
+        let opacity = opacity.unwrap_or_else(|| mean_opacity(job, face, corner, &CELL));
         let part = Part {
             next: NONE,
             face: index,
@@ -550,7 +560,9 @@ impl Dicer {
 }
 
 fn mean_opacity(job: &DiceJob<'_>, face: &Face, corner: DVec2, local: &[DVec2]) -> f32 {
-    let mut points = [SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO }; convex::MAX_VERTICES];
+    let mut points =
+        [SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO };
+            convex::MAX_VERTICES];
     for (to, &v) in points.iter_mut().zip(local) {
         *to = face.point(job.lens, v + corner);
     }

@@ -153,9 +153,7 @@ impl View {
         let lens = self.lens(1);
         let p = (pixel - lens.centre) / lens.scale;
         match lens.kind {
-            LensKind::Perspective => {
-                (self.eye, self.forward + lens.right * p.x + lens.down * p.y)
-            }
+            LensKind::Perspective => (self.eye, self.forward + lens.right * p.x + lens.down * p.y),
             LensKind::Orthographic => (self.eye + lens.right * p.x + lens.down * p.y, self.forward),
         }
     }

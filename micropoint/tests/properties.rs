@@ -35,13 +35,11 @@ fn generic_point() -> BoxedStrategy<DVec3> {
 
 /// Views from outside and from among the triangles.
 fn view() -> BoxedStrategy<View> {
-    let perspective = (generic_point(), 0.2..4.0, generic_point(), 0.2..2.2f64, 1..12u32, 1..12u32).prop_filter_map(
-        "eye and target differ",
-        |(direction, distance, target, fov_y_rad, w, h)| {
+    let perspective = (generic_point(), 0.2..4.0, generic_point(), 0.2..2.2f64, 1..12u32, 1..12u32)
+        .prop_filter_map("eye and target differ", |(direction, distance, target, fov_y_rad, w, h)| {
             let eye = direction.try_normalize()? * distance;
             View::look_at(eye, target, DVec3::Y, Projection::Perspective { fov_y_rad }, w, h).ok()
-        },
-    );
+        });
     let orthographic = (generic_point(), 0.5..4.0f64, 1..12u32, 1..12u32).prop_filter_map(
         "there is a direction",
         |(direction, height, w, h)| {
@@ -113,9 +111,11 @@ fn few_triangles() -> BoxedStrategy<Soup> {
 }
 
 fn options() -> impl Strategy<Value = MicropointOptions> {
-    (prop_oneof![Just(1u32), Just(2), Just(4)], any::<bool>(), any::<bool>()).prop_map(|(cells, paper, cull)| {
-        (if paper { PAPER } else { EXACT }).with_cells_per_pixel(cells).with_cull_solids(cull)
-    })
+    (prop_oneof![Just(1u32), Just(2), Just(4)], any::<bool>(), any::<bool>()).prop_map(
+        |(cells, paper, cull)| {
+            (if paper { PAPER } else { EXACT }).with_cells_per_pixel(cells).with_cull_solids(cull)
+        },
+    )
 }
 
 /// Failures become tests in `regressions.rs`; seeds are not kept.
@@ -312,7 +312,9 @@ proptest! {
 
 /// The view of the mapped scene; `None` if it cannot be told.
 fn mapped_view(v: &View, map: &impl Fn(DVec3) -> DVec3, scale: f64) -> Option<View> {
-    let (o, d) = v.ray(dvec2(f64::from(v.width()), f64::from(v.height())) * 0.5 + dvec2(0.0, -0.5 * f64::from(v.height())));
+    let (o, d) = v.ray(
+        dvec2(f64::from(v.width()), f64::from(v.height())) * 0.5 + dvec2(0.0, -0.5 * f64::from(v.height())),
+    );
     let perspective = v.ray(DVec2::ZERO).1 != v.ray(DVec2::ONE).1;
     // The ray through the middle of the upper border leans, or starts, upward.
     let (projection, up) = if perspective {
@@ -352,7 +354,10 @@ fn one_two_and_eight_threads_give_the_same_picture() {
     let (ball, glass, ground) = (s.surface(1.0), s.surface(0.3), s.surface(1.0));
     s.sphere(dvec3(0.1, 0.2, 0.0), 1.0, 14, 20, ball);
     s.polygon(&[dvec3(-2.0, -1.0, 1.5), dvec3(1.0, -0.5, 1.5), dvec3(0.5, 1.5, 0.0)], glass);
-    s.polygon(&[dvec3(-9.0, -1.0, 3.0), dvec3(9.0, -1.0, 3.0), dvec3(9.0, -1.0, -40.0), dvec3(-9.0, -1.0, -40.0)], ground);
+    s.polygon(
+        &[dvec3(-9.0, -1.0, 3.0), dvec3(9.0, -1.0, 3.0), dvec3(9.0, -1.0, -40.0), dvec3(-9.0, -1.0, -40.0)],
+        ground,
+    );
     let v = perspective(dvec3(0.3, 0.5, 4.0), DVec3::ZERO, 0.9, 60, 44);
     for options in [EXACT, PAPER, EXACT.with_cells_per_pixel(2)] {
         let expected = picture(&s, v, options).unwrap();
@@ -368,7 +373,8 @@ fn interpenetrating_planes_split_along_their_line() {
     // z = x and z = −x, seen along −Z: the nearer one is the first for x > 0. The line runs through the middle of a pixel.
     let mut s = Soup::default();
     let (a, b) = (s.surface(1.0), s.surface(1.0));
-    let plane = |k: f64| [(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0)].map(|(x, y)| dvec3(x, y, k * x));
+    let plane =
+        |k: f64| [(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0)].map(|(x, y)| dvec3(x, y, k * x));
     s.polygon(&plane(1.0), a);
     s.polygon(&plane(-1.0), b);
     let got = shares(&picture(&s, flat_view(5, 3), EXACT).unwrap(), 2);
@@ -386,7 +392,10 @@ fn what_lies_behind_an_orthographic_view_is_not_seen() {
     s.polygon(&[dvec3(-9.0, -9.0, 101.0), dvec3(9.0, -9.0, 101.0), dvec3(0.0, 9.0, 101.0)], surface);
     assert!(picture(&s, flat_view(4, 4), EXACT).unwrap().iter().all(Vec::is_empty));
     // From −Z to 200, through the plane of the eye: the half in front is seen.
-    s.polygon(&[dvec3(-9.0, -9.0, 50.0), dvec3(9.0, -9.0, 50.0), dvec3(9.0, 9.0, 150.0), dvec3(-9.0, 9.0, 150.0)], surface);
+    s.polygon(
+        &[dvec3(-9.0, -9.0, 50.0), dvec3(9.0, -9.0, 50.0), dvec3(9.0, 9.0, 150.0), dvec3(-9.0, 9.0, 150.0)],
+        surface,
+    );
     let got = shares(&picture(&s, flat_view(4, 4), EXACT).unwrap(), 1);
     for (i, p) in got.iter().enumerate() {
         assert!((p[0] - f64::from(u8::from(i >= 8))).abs() < 1e-9, "{got:?}");
@@ -426,7 +435,10 @@ fn the_nearest_plane_of_a_stack_hides_the_rest_at_every_distance() {
 fn geometry_that_nobody_sees_is_never_diced() {
     let mut s = Soup::default();
     let surface = s.surface(1.0);
-    s.polygon(&[dvec3(-99.0, -99.0, 0.0), dvec3(99.0, -99.0, 0.0), dvec3(99.0, 99.0, 0.0), dvec3(-99.0, 99.0, 0.0)], surface);
+    s.polygon(
+        &[dvec3(-99.0, -99.0, 0.0), dvec3(99.0, -99.0, 0.0), dvec3(99.0, 99.0, 0.0), dvec3(-99.0, 99.0, 0.0)],
+        surface,
+    );
     for i in 0..20 {
         s.sphere(dvec3(f64::from(i % 5) - 2.0, f64::from(i / 5) - 2.0, -3.0), 0.5, 8, 12, surface);
     }

@@ -26,7 +26,8 @@ pub(crate) fn lit_fraction(
         return 1.0;
     }
     // The result must not depend on the order in which casters were found.
-    work.blockers.sort_unstable_by(|a, b| compare(&query.casters[a.0 as usize], &query.casters[b.0 as usize]));
+    work.blockers
+        .sort_unstable_by(|a, b| compare(&query.casters[a.0 as usize], &query.casters[b.0 as usize]));
     work.partial += 1;
     let polygon = ConvexPolygon::from_vertices(outline);
     work.regions.hide(polygon, NEGLIGIBLE * target.area, &work.blockers, query);
@@ -67,12 +68,20 @@ fn find_blockers(
         if place == Place::Apart || convex::has_separating_edge(outline, caster.polygon.vertices()) {
             continue;
         }
-        let upper = Layer { face: &caster.face, outline: caster.polygon.vertices(), nearness: caster.face.nearness };
+        let upper =
+            Layer { face: &caster.face, outline: caster.polygon.vertices(), nearness: caster.face.nearness };
         let lower = Layer { face, outline, nearness: target.nearness };
         let front = in_front(query.lens, DVec2::ZERO, upper, lower, false);
-        if front == Front::Everywhere && place == Place::Over && caster.opacity == Some(1.0) {
-            work.last_hider = c;
-            return false;
+        if front == Front::Everywhere && place == Place::Over {
+            // A receiver is small, so a mask mostly shows it nothing but holes or nothing but leaf.
+            let opacity = query.opacity(caster, outline);
+            if opacity >= 1.0 {
+                work.last_hider = c;
+                return false;
+            }
+            if opacity <= 0.0 {
+                continue;
+            }
         }
         match front {
             Front::Nowhere => {}
@@ -119,7 +128,7 @@ impl Occluders for Query<'_> {
     }
 
     fn opacity(&self, number: u32, over: &ConvexPolygon) -> f64 {
-        self.opacity(&self.casters[number as usize], over)
+        self.opacity(&self.casters[number as usize], over.vertices())
     }
 }
 

@@ -96,7 +96,7 @@ fn transmittance(
             continue;
         }
         let nearness = range(&caster.face, &inside);
-        let opacity = area / (size * size) * query.opacity(caster, &inside);
+        let opacity = area / (size * size) * query.opacity(caster, inside.vertices());
         work.layers.push(Cast { nearness, opacity });
     }
     let key = |c: &Cast| (-c.nearness.1, -c.nearness.0, c.opacity);

@@ -21,6 +21,8 @@
 
 mod error;
 mod exact;
+#[cfg(feature = "invariants")]
+pub mod invariants;
 mod layers;
 mod light;
 mod receiver;

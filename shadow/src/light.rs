@@ -9,7 +9,8 @@ use crate::screen::{Emitter, Screens};
 use glam::{DVec2, DVec3};
 use pointillist_dice::{ConvexPolygon, convex};
 use pointillist_micropoint::{
-    Face, Geometry, GridRect, Lens, LensKind, Occlusion, ProjectedVertex, TexturedOpacity, ViewVolume, set_up_face,
+    Face, Geometry, GridRect, Lens, LensKind, Occlusion, ProjectedVertex, Setup, SurfacePoint,
+    TexturedOpacity, ViewVolume, set_up_face,
 };
 
 /// How fine the light grid is.
@@ -83,7 +84,13 @@ impl<'a> ShadowLight<'a> {
     ///
     /// A receiver that shows the viewer a side turned away from the light gets 0. What a receiver gets
     /// depends on the receiver, the viewer and the scene only, not on its companions.
-    pub fn lit(&self, viewer: Viewer<'_>, receivers: &Receivers, scratch: &mut ShadowScratch, lit: &mut Vec<f64>) {
+    pub fn lit(
+        &self,
+        viewer: Viewer<'_>,
+        receivers: &Receivers,
+        scratch: &mut ShadowScratch,
+        lit: &mut Vec<f64>,
+    ) {
         scratch.begin(receivers.len(), viewer.faces.len());
         self.collect_targets(viewer, receivers, scratch);
         for screen in 0..self.screens.lenses.len() {
@@ -151,7 +158,12 @@ impl<'a> ShadowLight<'a> {
     ) {
         let lens = &self.screens.lenses[screen];
         let mut ring: Vec<DVec3> = corners.iter().map(|&c| lens.local_vector(c + offset)).collect();
-        let sides = [DVec3::new(1.0, 0.0, 1.0), DVec3::new(-1.0, 0.0, 1.0), DVec3::new(0.0, 1.0, 1.0), DVec3::new(0.0, -1.0, 1.0)];
+        let sides = [
+            DVec3::new(1.0, 0.0, 1.0),
+            DVec3::new(-1.0, 0.0, 1.0),
+            DVec3::new(0.0, 1.0, 1.0),
+            DVec3::new(0.0, -1.0, 1.0),
+        ];
         for normal in sides {
             let mut clipped = Vec::with_capacity(ring.len() + 1);
             for (i, &a) in ring.iter().enumerate() {
@@ -213,6 +225,7 @@ impl<'a> ShadowLight<'a> {
             return;
         }
         scratch.counts.clusters += 1;
+        let setup = Setup { lens, rect: &self.screens.rect, hidden, keeps_backs: true };
         let mut projected = std::mem::take(&mut scratch.projected);
         projected.clear();
         projected.extend(vertices.iter().map(|&v| ProjectedVertex::new(lens, v)));
@@ -223,12 +236,12 @@ impl<'a> ShadowLight<'a> {
                 scratch.counts.casters_culled += 1;
                 continue;
             }
-            let rect = &self.screens.rect;
-            match set_up_face(lens, rect, t, (cluster, i as u32), v, surface, hidden, true) {
+            match set_up_face(&setup, t, (cluster, i as u32), v, surface) {
                 None => scratch.counts.casters_culled += 1,
                 Some((face, outline)) => {
                     let polygon = ConvexPolygon::from_vertices(outline.vertices());
-                    let opacity = if surface.textured_opacity { None } else { Some(f64::from(surface.opacity)) };
+                    let opacity =
+                        if surface.textured_opacity { None } else { Some(f64::from(surface.opacity)) };
                     scratch.link(Caster { face, bounds: polygon.bounds(), polygon, opacity });
                 }
             }
@@ -250,7 +263,7 @@ impl<'a> ShadowLight<'a> {
                 let (lit, total) = match settled {
                     // A receiver on one screen needs no weight, and keeps a plain 0 or 1.
                     Some(fraction) if !target.shared => (fraction, 1.0),
-                    _ => self.resolve(screen, viewer, &target, settled, &nearby, scratch, &mut work),
+                    _ => self.resolve((screen, viewer), &target, settled, &nearby, scratch, &mut work),
                 };
                 let sum = &mut scratch.sums[target.receiver as usize];
                 sum.lit += lit;
@@ -264,8 +277,7 @@ impl<'a> ShadowLight<'a> {
     /// Lit and whole share of a target; `settled` is its lit fraction if that is known already.
     fn resolve(
         &self,
-        screen: usize,
-        viewer: Viewer<'_>,
+        (screen, viewer): (usize, Viewer<'_>),
         target: &Target,
         settled: Option<f64>,
         nearby: &[Nearby],
@@ -281,7 +293,9 @@ impl<'a> ShadowLight<'a> {
         let measure = Measure { lens, viewer: viewer.lens, face };
         let query = Query { lens, geometry: self.geometry, opacity: self.opacity, casters: &scratch.casters };
         let fraction = settled.unwrap_or_else(|| match (self.options.occlusion, self.options.resolution) {
-            (Occlusion::Correlated, _) => exact::lit_fraction(&query, target, outline, &measure, nearby, work),
+            (Occlusion::Correlated, _) => {
+                exact::lit_fraction(&query, target, outline, &measure, nearby, work)
+            }
             (Occlusion::Paper, Resolution::Auto) => {
                 layers::lit_fraction(&query, target, outline, face, nearby, None, work)
             }
@@ -313,10 +327,15 @@ pub(crate) struct Query<'a> {
 
 impl Query<'_> {
     /// Opacity of a caster over a polygon of the light grid.
-    pub(crate) fn opacity(&self, caster: &Caster, polygon: &ConvexPolygon) -> f64 {
+    pub(crate) fn opacity(&self, caster: &Caster, polygon: &[DVec2]) -> f64 {
         caster.opacity.unwrap_or_else(|| {
-            let points: Vec<_> = polygon.vertices().iter().map(|&v| caster.face.point(self.lens, v)).collect();
-            let mean = self.opacity.mean_opacity(caster.face.id, &points);
+            let zero =
+                SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO };
+            let mut points = [zero; convex::MAX_VERTICES];
+            for (to, &v) in points.iter_mut().zip(polygon) {
+                *to = caster.face.point(self.lens, v);
+            }
+            let mean = self.opacity.mean_opacity(caster.face.id, &points[..polygon.len()]);
             let surface = self.geometry.surfaces()[caster.face.surface as usize];
             f64::from((mean * surface.opacity).clamp(0.0, 1.0))
         })

@@ -262,7 +262,12 @@ impl ShadowScratch {
     }
 
     /// Sorts the targets of one screen into the cells of a local grid. Returns false if there are none.
-    pub(crate) fn sort_targets_into_groups(&mut self, screen: usize, resolution: Resolution, size: f64) -> bool {
+    pub(crate) fn sort_targets_into_groups(
+        &mut self,
+        screen: usize,
+        resolution: Resolution,
+        size: f64,
+    ) -> bool {
         self.casters.clear();
         self.links.clear();
         self.target_order.clear();
@@ -328,7 +333,8 @@ impl ShadowScratch {
         };
         let longest = (high - low).max_element();
         self.cells_per_unit = 1.0 / cell.max(longest / MOST_CELLS).max(f64::MIN_POSITIVE);
-        let cells = |length: f64| ((length * self.cells_per_unit).ceil() as usize).clamp(1, MOST_CELLS as usize);
+        let cells =
+            |length: f64| ((length * self.cells_per_unit).ceil() as usize).clamp(1, MOST_CELLS as usize);
         (self.columns, self.rows) = (cells(high.x - low.x), cells(high.y - low.y));
         (self.low, self.high, self.reach) = (low, high, reach);
         self.open_groups = 0;
@@ -343,7 +349,9 @@ impl ShadowScratch {
         if !(low.cmple(self.high).all() && high.cmpge(self.low).all()) {
             return false;
         }
-        let index = |v: f64, first: f64, count: usize| (((v - first) * self.cells_per_unit).max(0.0) as usize).min(count - 1);
+        let index = |v: f64, first: f64, count: usize| {
+            (((v - first) * self.cells_per_unit).max(0.0) as usize).min(count - 1)
+        };
         let (low, high) = (low - self.reach, high + self.reach);
         let (x0, x1) = (index(low.x, self.low.x, self.columns), index(high.x, self.low.x, self.columns));
         let (y0, y1) = (index(low.y, self.low.y, self.rows), index(high.y, self.low.y, self.rows));
@@ -367,7 +375,8 @@ impl ShadowScratch {
     /// Whether some open group may lie behind a box.
     pub(crate) fn concerns_any_group(&self, lens: &Lens, bounds: &Bounds) -> bool {
         let Some((low, high, nearness)) = lens.shadow_of_box(bounds) else { return true };
-        let concerned = |g: &Group| !g.is_empty() && !g.dark && g.nearness.0 <= nearness && g.overlaps(low, high);
+        let concerned =
+            |g: &Group| !g.is_empty() && !g.dark && g.nearness.0 <= nearness && g.overlaps(low, high);
         self.any_group_near(low, high, |g| concerned(&self.groups[g as usize]))
     }
 

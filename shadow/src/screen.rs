@@ -48,7 +48,9 @@ impl Screens {
                 let position = check(position, "position")?;
                 Ok(Self::cube(position, unit(check(axis, "axis")?)?, geometry))
             }
-            Emitter::Directional { direction } => Ok(Self::parallel(unit(check(direction, "direction")?)?, geometry)),
+            Emitter::Directional { direction } => {
+                Ok(Self::parallel(unit(check(direction, "direction")?)?, geometry))
+            }
         }
     }
 

@@ -15,7 +15,9 @@ use crate::scene::{Occlusion, Projection, Resolution, Scene};
 use background::Background;
 use canvas::Canvas;
 use pointillist_micropoint as micropoint;
-use pointillist_micropoint::{Geometry, MicropointError, MicropointOptions, PixelRect, Renderer, TileCounts, View};
+use pointillist_micropoint::{
+    Geometry, MicropointError, MicropointOptions, PixelRect, Renderer, TileCounts, View,
+};
 use pointillist_shade::Source;
 use pointillist_shadow as shadow;
 use pointillist_shadow::{Emitter, ShadowCounts, ShadowError, ShadowLight, ShadowOptions};
@@ -49,7 +51,12 @@ const TILE_SIZE: u32 = 16;
 ///
 /// # Errors
 /// [`PipelineError`] if the scene cannot be drawn.
-pub fn render(scene: &Scene, job: &RenderJob, progress: &Progress, stats: &Stats) -> Result<Frame, PipelineError> {
+pub fn render(
+    scene: &Scene,
+    job: &RenderJob,
+    progress: &Progress,
+    stats: &Stats,
+) -> Result<Frame, PipelineError> {
     let surfaces = stats.stage("textures", || Surfaces::new(scene))?;
     let geometry = stats.stage("build", || surfaces.geometry(scene))?;
     stats.count("triangles", geometry.triangle_count() as u64);
@@ -66,7 +73,8 @@ pub fn render(scene: &Scene, job: &RenderJob, progress: &Progress, stats: &Stats
     let start = std::time::Instant::now();
     renderer.for_each_tile(rect, TILE_SIZE, |scratch: &mut Scratch, tile| {
         scratch.clock.book(stats, "visibility");
-        let pixels = shader.shade(tile, &background, &job.layers, &mut scratch.shader, &mut scratch.clock, stats);
+        let pixels =
+            shader.shade(tile, &background, &job.layers, &mut scratch.shader, &mut scratch.clock, stats);
         lock(&canvas).put(tile.rect(), pixels);
         let mut totals = lock(&totals);
         totals.0 += tile.counts();

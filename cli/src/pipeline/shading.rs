@@ -88,7 +88,8 @@ impl<'a> Shader<'a> {
         points.extend(tile.points().iter().map(|m| self.set_up(tile, m, polygon)));
         let lit_layers: Vec<usize> =
             layers.iter().filter_map(|l| if let LayerKind::Lit(i) = l { Some(*i) } else { None }).collect();
-        let mut lit = vec![vec![0.0; if lit_layers.is_empty() { 0 } else { tile.points().len() }]; lit_layers.len()];
+        let mut lit =
+            vec![vec![0.0; if lit_layers.is_empty() { 0 } else { tile.points().len() }]; lit_layers.len()];
         for light in self.lights {
             let lit = lit_layers.iter().position(|&l| l == light.light).map(|i| &mut lit[i]);
             self.add_light(tile, light, scratch, lit, clock, stats);
@@ -206,13 +207,19 @@ impl<'a> Shader<'a> {
                 next += fragments.len();
                 // Without a division where it would cost the last bit of a plain 0 or 1.
                 let single = fragments.len() == 1;
-                fraction = if single { lit[next - 1] } else { reached / fragments.iter().map(|f| f.weight).sum::<f64>() };
+                fraction = if single {
+                    lit[next - 1]
+                } else {
+                    reached / fragments.iter().map(|f| f.weight).sum::<f64>()
+                };
             }
             points[a.point as usize].direct += a.radiance * fraction as f32;
             if let Some(layer) = lit_layer.as_deref_mut() {
                 let p = &points[a.point as usize];
-                let to_light = self.scene.lights[light.light].light.illuminate(light.sample, p.position).to_light;
-                layer[a.point as usize] += if sees_light(p.face_normal, to_light) { fraction / samples } else { 0.0 };
+                let to_light =
+                    self.scene.lights[light.light].light.illuminate(light.sample, p.position).to_light;
+                layer[a.point as usize] +=
+                    if sees_light(p.face_normal, to_light) { fraction / samples } else { 0.0 };
             }
         }
     }

@@ -7,6 +7,7 @@ use pointillist_micropoint::{
 };
 use pointillist_shade::Wrap;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 /// What a material looks up in textures. Colour is summed up as colour × opacity, so that the empty
 /// part of a leaf's texture does not bleed into its rim.
@@ -39,10 +40,11 @@ impl Surfaces {
         let mut textures = Vec::with_capacity(scene.materials.len());
         for m in &scene.materials {
             let key = (m.diffuse_map, m.opacity_map, m.wrap);
-            if !known.contains_key(&key) {
-                known.insert(key, std::sync::Arc::new(sum_up(m, &scene.textures)?));
-            }
-            textures.push(known[&key].clone());
+            let texture: &std::sync::Arc<Textured> = match known.entry(key) {
+                Entry::Occupied(e) => e.into_mut(),
+                Entry::Vacant(e) => e.insert(std::sync::Arc::new(sum_up(m, &scene.textures)?)),
+            };
+            textures.push(texture.clone());
         }
         let (surfaces, surface_of) = surfaces_by_material(scene, &textures);
         let any_texture = textures.iter().any(|t| !matches!(**t, Textured::Nothing));
@@ -77,7 +79,12 @@ impl Surfaces {
         Texel { color }
     }
 
-    fn corners<const N: usize>(&self, triangle: u32, polygon: &[SurfacePoint], sums: &TexelSums<N>) -> Corners {
+    fn corners<const N: usize>(
+        &self,
+        triangle: u32,
+        polygon: &[SurfacePoint],
+        sums: &TexelSums<N>,
+    ) -> Corners {
         let uv = &self.uv_of[triangle as usize];
         let size = DVec2::new(f64::from(sums.width()), f64::from(sums.height()));
         let mut corners = Corners::default();
@@ -115,7 +122,9 @@ impl TexturedOpacity for Surfaces {
         match self.textured(triangle) {
             Textured::Nothing | Textured::Color(_) => 1.0,
             Textured::Opacity(sums) => sums.mean(self.corners(triangle, polygon, sums).as_slice())[0] as f32,
-            Textured::ColorAndOpacity(sums) => sums.mean(self.corners(triangle, polygon, sums).as_slice())[3] as f32,
+            Textured::ColorAndOpacity(sums) => {
+                sums.mean(self.corners(triangle, polygon, sums).as_slice())[3] as f32
+            }
         }
     }
 }
@@ -167,7 +176,8 @@ fn sum_up(material: &Material, textures: &[Texture]) -> Result<Textured, Micropo
         (Some(c), Some(o)) => {
             let (width, height) = (c.width.max(o.width), c.height.max(o.height));
             let at = |t: &Texture, x: u32, y: u32| {
-                let scale = |v: u32, from: u32, to: u32| (u64::from(v) * u64::from(to) / u64::from(from)) as u32;
+                let scale =
+                    |v: u32, from: u32, to: u32| (u64::from(v) * u64::from(to) / u64::from(from)) as u32;
                 t.texel(scale(x, width, t.width), scale(y, height, t.height))
             };
             Textured::ColorAndOpacity(TexelSums::new(width, height, wrap, |x, y| {
