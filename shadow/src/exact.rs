@@ -10,6 +10,9 @@ use std::cmp::Ordering;
 /// Overlaps below this share of a receiver are rounding.
 const NEGLIGIBLE: f64 = 1e-9;
 
+/// Light that passes fewer than one part in a million through masks is none.
+const DARK: f64 = 1e-6;
+
 /// The lit fraction of a target, 0..=1.
 pub(crate) fn lit_fraction(
     query: &Query<'_>,
@@ -22,8 +25,11 @@ pub(crate) fn lit_fraction(
     if !find_blockers(query, target, outline, measure.face, nearby, work) {
         return 0.0;
     }
-    if work.blockers.is_empty() {
-        return 1.0;
+    // In an order of their own, for a product that is the same to the last bit.
+    work.veils.sort_unstable_by(f64::total_cmp);
+    let veiled: f64 = work.veils.iter().product();
+    if work.blockers.is_empty() || veiled < DARK {
+        return if veiled < DARK { 0.0 } else { veiled };
     }
     // The result must not depend on the order in which casters were found.
     work.blockers
@@ -34,13 +40,12 @@ pub(crate) fn lit_fraction(
     if work.regions.is_hidden() {
         return 0.0;
     }
-    let whole = target.area * measure.at(convex::area_and_centroid(outline).1);
+    let whole = measure.area(outline);
     let mut lit = 0.0;
     for region in work.regions.list() {
-        let (area, centroid) = region.polygon.area_and_centroid();
-        lit += area * region.transmittance * measure.at(centroid);
+        lit += region.transmittance * measure.area(region.polygon.vertices());
     }
-    if whole > 0.0 { (lit / whole).min(1.0) } else { 0.0 }
+    if whole > 0.0 { veiled * (lit / whole).min(1.0) } else { 0.0 }
 }
 
 /// Collects the casters that overlap the target and stand before it. Returns false as soon as one of
@@ -54,6 +59,8 @@ fn find_blockers(
     work: &mut Work,
 ) -> bool {
     work.blockers.clear();
+    work.veils.clear();
+    let mut veiled = 1.0;
     let (low, high) = target.bounds;
     // What hid the last target often hides the next.
     let last = nearby.iter().position(|n| n.index == work.last_hider);
@@ -73,13 +80,19 @@ fn find_blockers(
         let lower = Layer { face, outline, nearness: target.nearness };
         let front = in_front(query.lens, DVec2::ZERO, upper, lower, false);
         if front == Front::Everywhere && place == Place::Over {
-            // A receiver is small, so a mask mostly shows it nothing but holes or nothing but leaf.
+            // A receiver is small, so a mask mostly shows it nothing but holes or nothing but leaf; and a
+            // veil over all of it needs no cut.
             let opacity = query.opacity(caster, outline);
             if opacity >= 1.0 {
                 work.last_hider = c;
                 return false;
             }
-            if opacity <= 0.0 {
+            if caster.opacity.is_none() {
+                work.veils.push(1.0 - opacity);
+                veiled *= 1.0 - opacity;
+                if veiled < 0.5 * DARK {
+                    return false;
+                }
                 continue;
             }
         }
@@ -143,5 +156,12 @@ pub(crate) fn compare(a: &Caster, b: &Caster) -> Ordering {
     let places = ka.iter().zip(&kb).map(|(x, y)| x.total_cmp(y));
     let by_place = places.fold(Ordering::Equal, Ordering::then);
     let textured = a.opacity.is_none().cmp(&b.opacity.is_none());
-    textured.then(by_place).then((a.face.surface, a.face.id).cmp(&(b.face.surface, b.face.id)))
+    // The two halves of a rectangle agree in all that so far.
+    let corners = |c: &Caster| c.polygon.vertices().iter().fold(DVec2::ZERO, |sum, &v| sum + v);
+    let by_corners = || {
+        let (ca, cb) = (corners(a), corners(b));
+        ca.x.total_cmp(&cb.x).then(ca.y.total_cmp(&cb.y))
+    };
+    let by_number = (a.face.surface, a.face.id).cmp(&(b.face.surface, b.face.id));
+    textured.then(by_place).then_with(by_corners).then(by_number)
 }

@@ -307,7 +307,7 @@ impl<'a> ShadowLight<'a> {
         if !target.shared {
             return (fraction, 1.0);
         }
-        let total = target.area * measure.at(convex::area_and_centroid(outline).1);
+        let total = measure.area(outline);
         (total * fraction, total)
     }
 }
@@ -342,10 +342,11 @@ impl Query<'_> {
     }
 }
 
-/// Area in the viewer's picture per area of the light grid, up to a factor that is constant on a face.
+/// Areas in the viewer's picture of polygons of the light grid, up to a factor that is constant on a face.
 ///
-/// On a plane n·p = k an area element shrinks by |k|/depth³ when it is projected, for the viewer and
-/// for the light alike; the k are constants of the face and cancel in a fraction.
+/// Positions in the picture are a projective map of positions in the light grid, whose denominator is the viewer's
+/// depth over the light's. Such a map turns a triangle of area A with denominators a, b, c at its corners into
+/// one of area A / (a b c), up to a constant: exact, however much the depths vary.
 pub(crate) struct Measure<'a> {
     lens: &'a Lens,
     viewer: &'a Lens,
@@ -353,14 +354,29 @@ pub(crate) struct Measure<'a> {
 }
 
 impl Measure<'_> {
-    pub(crate) fn at(&self, p: DVec2) -> f64 {
-        let nearness = self.face.nearness_at(p);
-        let local = self.lens.unproject(p, nearness);
+    /// Area of a polygon in the picture.
+    pub(crate) fn area(&self, polygon: &[DVec2]) -> f64 {
+        let Some((&first, rest)) = polygon.split_first() else { return 0.0 };
+        let at_first = self.denominator(first);
+        let mut sum = 0.0;
+        let mut previous = (DVec2::ZERO, 1.0);
+        for (i, &v) in rest.iter().enumerate() {
+            let next = (v - first, self.denominator(v));
+            if i > 0 {
+                sum += 0.5 * previous.0.perp_dot(next.0) / (at_first * previous.1 * next.1);
+            }
+            previous = next;
+        }
+        sum.abs()
+    }
+
+    fn denominator(&self, p: DVec2) -> f64 {
+        let local = self.lens.unproject(p, self.face.nearness_at(p));
         let world = self.lens.to_world_axes(local) + (self.lens.origin - self.viewer.origin);
         let light_depth = if self.lens.kind == LensKind::Perspective { local.z } else { 1.0 };
         let viewer_depth =
             if self.viewer.kind == LensKind::Perspective { self.viewer.forward.dot(world) } else { 1.0 };
-        (light_depth / viewer_depth).abs().powi(3)
+        viewer_depth / light_depth
     }
 }
 
