@@ -1,0 +1,173 @@
+//! Any values at all into every public function: an answer or a typed error, never a panic.
+
+use glam::{DAffine3, DMat3, DVec2, DVec3, dvec2, dvec3};
+use pointillist_dice::{ConvexPolygon, HalfPlane};
+use pointillist_micropoint::{
+    Bounds, ClusterQueue, Geometry, GridRect, HiddenSides, MicropointError, MicropointOptions, Occlusion,
+    PixelRect, PlainOpacity, ProjectedVertex, Projection, Regions, Renderer, Setup, Surface, TexelCorner, TexelSums,
+    TexelWrap, Tile, View, ViewVolume, are_disjoint, set_up_face,
+};
+use proptest::prelude::*;
+
+fn number() -> BoxedStrategy<f64> {
+    prop_oneof![
+        4 => -2.0..2.0,
+        1 => any::<f64>(),
+        1 => prop_oneof![
+            Just(0.0), Just(f64::NAN), Just(f64::INFINITY), Just(f64::NEG_INFINITY), Just(1e300), Just(-1e89),
+            Just(5e-324), Just(1e7), Just(-1e16),
+        ],
+    ]
+    .boxed()
+}
+
+/// Finite, so that more than the door is tested.
+fn finite() -> BoxedStrategy<f64> {
+    prop_oneof![
+        6 => -2.0..2.0,
+        1 => prop_oneof![Just(0.0), Just(1e80), Just(-1e89), Just(5e-324), Just(1e7), Just(-1e16), Just(1e-160)],
+    ]
+    .boxed()
+}
+
+fn vector(n: fn() -> BoxedStrategy<f64>) -> BoxedStrategy<DVec3> {
+    (n(), n(), n()).prop_map(|(x, y, z)| dvec3(x, y, z)).boxed()
+}
+
+fn projection() -> impl Strategy<Value = Projection> {
+    prop_oneof![
+        number().prop_map(|fov_y_rad| Projection::Perspective { fov_y_rad }),
+        (0.01..3.1f64).prop_map(|fov_y_rad| Projection::Perspective { fov_y_rad }),
+        number().prop_map(|height| Projection::Orthographic { height }),
+    ]
+}
+
+fn opacity() -> impl Strategy<Value = f32> {
+    prop_oneof![4 => Just(1.0f32), 2 => 0.0..=1.0f32, 1 => any::<f32>()]
+}
+
+fn cases(cases: u32) -> ProptestConfig {
+    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
+}
+
+proptest! {
+    #![proptest_config(cases(512))]
+
+    #[test]
+    fn geometry_is_prepared_or_refused(
+        positions in prop::collection::vec(vector(number), 0..6), triangles in prop::collection::vec([0..8u32, 0..8, 0..8], 0..6),
+        surface_of in prop::collection::vec(0..3u32, 0..6), opacities in prop::collection::vec(opacity(), 0..3),
+    ) {
+        let surfaces: Vec<_> = opacities.iter().map(|&opacity| Surface { opacity, ..Surface::default() }).collect();
+        let result = Geometry::new(&positions, &triangles, &surface_of, &surfaces);
+        let bad_number = positions.iter().any(|p| !p.is_finite());
+        let bad_index = triangles.iter().flatten().any(|&v| v as usize >= positions.len());
+        let bad_surface = surface_of.iter().any(|&s| s as usize >= surfaces.len());
+        let bad_opacity = opacities.iter().any(|o| !(0.0..=1.0).contains(o));
+        let bad = bad_number || bad_index || bad_surface || bad_opacity || surface_of.len() != triangles.len();
+        prop_assert!(!(bad && result.is_ok()));
+        match result {
+            Err(MicropointError::VertexNotFinite { index, .. }) => prop_assert!(index < positions.len()),
+            Err(MicropointError::VertexOutOfRange { triangle, count, .. }) => {
+                prop_assert!(triangle < triangles.len() && count == positions.len());
+            }
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn anything_that_is_accepted_can_be_rendered(
+        positions in prop::collection::vec(vector(finite), 6), indices in prop::collection::vec([0..6usize, 0..6, 0..6], 0..8),
+        opacities in prop::collection::vec(opacity(), 8), textured: bool, eye in vector(number), target in vector(number), up in vector(number),
+        projection in projection(), w in 0..6u32, h in 0..6u32, cells in 0..5u32, paper: bool, rect in [0..9u32, 0..9, 0..9, 0..9],
+    ) {
+        let triangles: Vec<_> = indices.iter().map(|t| t.map(|v| v as u32)).collect();
+        let surfaces: Vec<_> = opacities.iter().map(|&o| Surface { opacity: o.clamp(0.0, 1.0), textured_opacity: textured, two_sided: o > 0.2 }).collect();
+        prop_assume!(opacities.iter().all(|o| !o.is_nan()));
+        let surface_of: Vec<u32> = (0..triangles.len() as u32).collect();
+        let Ok(geometry) = Geometry::new(&positions, &triangles, &surface_of, &surfaces) else { return Ok(()) };
+        let occlusion = if paper { Occlusion::Paper } else { Occlusion::Correlated };
+        let options = MicropointOptions::DEFAULT.with_cells_per_pixel(cells).with_occlusion(occlusion);
+        let Ok(view) = View::look_at(eye, target, up, projection, w, h) else { return Ok(()) };
+        let Ok(renderer) = Renderer::new(&geometry, &PlainOpacity, view, options) else { return Ok(()) };
+        let mut tile = Tile::default();
+        for rect in [renderer.picture(), PixelRect { x0: rect[0], y0: rect[1], x1: rect[2], y1: rect[3] }] {
+            renderer.render(rect, &mut tile);
+            for p in tile.points() {
+                prop_assert!(p.weight.is_finite() && p.weight >= 0.0, "{p:?}");
+                let s = tile.surface_point(p.face, p.grid);
+                let _ = tile.position(p.grid, s.nearness);
+            }
+        }
+    }
+
+    #[test]
+    fn views_are_valid_or_refused(m in prop::collection::vec(number(), 12), projection in projection(), w in any::<u32>(), h in any::<u32>()) {
+        let matrix = DMat3::from_cols_slice(&m[..9]);
+        let view = DAffine3::from_mat3_translation(matrix, DVec3::from_slice(&m[9..]));
+        if let Ok(v) = View::from_matrix(view, projection, w, h) {
+            let _ = (v.ray(dvec2(m[0], m[1])), v.lens(2));
+        }
+    }
+
+    #[test]
+    fn rectangles_have_tiles(r in (any::<u32>(), any::<u32>(), 0..40u32, 0..40u32), size in 0..50u32) {
+        let rect = PixelRect { x0: r.0, y0: r.1, x1: r.0.saturating_add(r.2), y1: r.1.saturating_add(r.3) };
+        let area: u64 = rect.tiles(size).map(|t| u64::from(t.width()) * u64::from(t.height())).sum();
+        prop_assert_eq!(area, u64::from(rect.width()) * u64::from(rect.height()));
+    }
+
+    #[test]
+    fn textures_have_means(
+        w in 0..5u32, h in 0..40u32, values in prop::collection::vec(prop_oneof![4 => 0.0..2.0f32, 1 => any::<f32>()], 1..4), wrap in 0..3usize,
+        corners in prop::collection::vec((number(), number(), number(), number(), number()), 0..12),
+    ) {
+        let wrap = [TexelWrap::Repeat, TexelWrap::Clamp, TexelWrap::Mirror][wrap];
+        let texel = |x: u32, y: u32| [values[(x + 3 * y) as usize % values.len()]];
+        if let Ok(sums) = TexelSums::<1>::new(w, h, wrap, texel) {
+            let corners: Vec<_> = corners.iter()
+                .map(|c| TexelCorner { grid: dvec2(c.0, c.1), rational: c.2, texel: dvec2(c.3, c.4) }).collect();
+            let _ = sums.mean(&corners);
+            for c in &corners {
+                let _ = sums.texel(c.texel.x, c.texel.y);
+            }
+        }
+    }
+
+    #[test]
+    fn kernels_take_any_polygon(
+        a in prop::collection::vec((number(), number()), 0..9), b in prop::collection::vec((number(), number()), 0..9),
+        half in prop::collection::vec(number(), 5), negligible in number(), opacity in number(),
+    ) {
+        let [a, b] = [a, b].map(|p| p.iter().map(|&(x, y)| dvec2(x, y)).collect::<Vec<DVec2>>());
+        let _ = are_disjoint(&a, &b);
+        let mut regions = Regions::default();
+        regions.start(ConvexPolygon::from_vertices(&a), negligible);
+        let front = HalfPlane { anchor: dvec2(half[0], half[1]), normal: dvec2(half[2], half[3]), offset: half[4] };
+        for front in [None, Some(front)] {
+            regions.attenuate(&b, front, |_| opacity);
+        }
+        let _ = regions.is_hidden();
+    }
+
+    #[test]
+    fn faces_and_volumes_take_any_lens(
+        v in [vector(number), vector(number), vector(number)], eye in vector(number), target in vector(number), projection in projection(),
+        rect in prop::collection::vec(number(), 4),
+    ) {
+        let Ok(view) = View::look_at(eye, target, DVec3::Y, projection, 4, 4) else { return Ok(()) };
+        let lens = view.lens(1);
+        let rect = GridRect { low: dvec2(rect[0], rect[1]), high: dvec2(rect[2], rect[3]) };
+        let _ = ViewVolume::new(&lens, &rect).nearest_depth(&Bounds { low: v[0], high: v[1] });
+        let Ok(geometry) = Geometry::new(&v, &[[0, 1, 2]], &[0], &[Surface::default()]) else { return Ok(()) };
+        let _ = (geometry.hidden_sides(Some(eye)), geometry.hidden_sides(None));
+        let count = geometry.visit_near_to_far(&mut ClusterQueue::default(), |_| Some(eye.x), |_| target.x);
+        prop_assert_eq!(count, 0);
+        let (_, vertices, triangles) = geometry.cluster(0);
+        let p: Vec<_> = vertices.iter().map(|&v| ProjectedVertex::new(&lens, v)).collect();
+        let corners = triangles[0].corners.map(|c| &p[usize::from(c)]);
+        let picture = GridRect { low: DVec2::ZERO, high: DVec2::splat(4.0) };
+        let setup = Setup { lens: &lens, rect: &picture, hidden: &HiddenSides::default(), keeps_backs: true };
+        let _ = set_up_face(&setup, &triangles[0], (0, 0), corners, &Surface::default());
+    }
+}
