@@ -15,7 +15,8 @@ enum Textured {
     Nothing,
     Color(TexelSums<3>),
     Opacity(TexelSums<1>),
-    ColorAndOpacity(TexelSums<4>),
+    /// Opacity once more by itself: shadows ask for it often, and for nothing else.
+    ColorAndOpacity(TexelSums<4>, TexelSums<1>),
 }
 
 /// Materials ready to be looked up, and where their textures lie on the triangles.
@@ -62,7 +63,7 @@ impl Surfaces {
 
     /// Whether the colour of a triangle varies.
     pub(crate) fn has_color(&self, triangle: u32) -> bool {
-        matches!(self.textured(triangle), Textured::Color(_) | Textured::ColorAndOpacity(_))
+        matches!(self.textured(triangle), Textured::Color(_) | Textured::ColorAndOpacity(..))
     }
 
     /// Mean colour over a polygon of a triangle.
@@ -71,7 +72,7 @@ impl Surfaces {
         let color = match self.textured(triangle) {
             Textured::Nothing | Textured::Opacity(_) => Vec3::ONE,
             Textured::Color(sums) => rgb(&sums.mean(self.corners(triangle, polygon, sums).as_slice())),
-            Textured::ColorAndOpacity(sums) => {
+            Textured::ColorAndOpacity(sums, _) => {
                 let mean = sums.mean(self.corners(triangle, polygon, sums).as_slice());
                 if mean[3] > 0.0 { rgb(&mean) / mean[3] as f32 } else { Vec3::ZERO }
             }
@@ -121,9 +122,8 @@ impl TexturedOpacity for Surfaces {
     fn mean_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
         match self.textured(triangle) {
             Textured::Nothing | Textured::Color(_) => 1.0,
-            Textured::Opacity(sums) => sums.mean(self.corners(triangle, polygon, sums).as_slice())[0] as f32,
-            Textured::ColorAndOpacity(sums) => {
-                sums.mean(self.corners(triangle, polygon, sums).as_slice())[3] as f32
+            Textured::Opacity(sums) | Textured::ColorAndOpacity(_, sums) => {
+                sums.mean(self.corners(triangle, polygon, sums).as_slice())[0] as f32
             }
         }
     }
@@ -137,7 +137,7 @@ fn weighted(corners: &[DVec2; 3], b: DVec3) -> DVec2 {
 fn surfaces_by_material(scene: &Scene, textures: &[std::sync::Arc<Textured>]) -> (Vec<Surface>, Vec<u32>) {
     let mut surfaces = Vec::with_capacity(2 * scene.materials.len());
     for (m, t) in scene.materials.iter().zip(textures) {
-        let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::ColorAndOpacity(_));
+        let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::ColorAndOpacity(..));
         let opacity = m.surface.opacity;
         surfaces.push(Surface { opacity, textured_opacity, two_sided: true });
         surfaces.push(Surface { opacity, textured_opacity, two_sided: false });
@@ -180,10 +180,12 @@ fn sum_up(material: &Material, textures: &[Texture]) -> Result<Textured, Micropo
                     |v: u32, from: u32, to: u32| (u64::from(v) * u64::from(to) / u64::from(from)) as u32;
                 t.texel(scale(x, width, t.width), scale(y, height, t.height))
             };
-            Textured::ColorAndOpacity(TexelSums::new(width, height, wrap, |x, y| {
+            let both = TexelSums::new(width, height, wrap, |x, y| {
                 let alpha = at(o, x, y).w;
                 (at(c, x, y).truncate() * alpha).extend(alpha).to_array()
-            })?)
+            })?;
+            let opacity = TexelSums::new(o.width, o.height, wrap, |x, y| [o.texel(x, y).w])?;
+            Textured::ColorAndOpacity(both, opacity)
         }
     })
 }

@@ -1,0 +1,174 @@
+//! `micropoint`: run time against error of pictures, beside plain point sampling.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use glam::{DVec3, dvec3};
+use pointillist_cli::scene::{self, Scene};
+use pointillist_micropoint::{MicropointOptions, Occlusion};
+
+use crate::picture::Picture;
+use crate::ray_reference::Tree;
+use crate::report::{
+    Outcome, Row, chart, machine, on_one_thread, scenes, table, time_ratio, timed, write, write_csv,
+};
+use crate::{closed_form, data, draw, line_reference, point_sampling};
+
+/// Pixels on a side.
+const SIZE: u32 = 256;
+
+/// Lines a pixel of the reference pictures.
+const LINES: u32 = 192;
+
+/// A scene and what it must look like.
+struct Case {
+    name: String,
+    scene: Scene,
+    expected: Picture,
+    /// Whether its micropoints alone give the picture; otherwise the whole pipeline draws it.
+    emissive: bool,
+    /// Whether it has closed opaque parts.
+    solid: bool,
+}
+
+/// Measures and writes `micropoint.csv`, `micropoint.md` and `micropoint.svg`.
+pub(crate) fn run(out_dir: &Path) -> Outcome {
+    let cases = cases();
+    let mut rows = vec![];
+    for case in &cases {
+        eprintln!("micropoint: {}", case.name);
+        on_one_thread(|| {
+            rows.extend(ours(case));
+            rows.extend(points(case));
+        });
+    }
+    write_csv(out_dir, "micropoint", &[], &rows)?;
+    chart(out_dir, "micropoint", &rows)?;
+    write(out_dir, "micropoint.md", &markdown(&rows))?;
+    Ok(true)
+}
+
+fn cases() -> Vec<Case> {
+    let by_lines = |name: &str, scene: Scene, solid: bool| {
+        let expected = line_reference::render(&scene, LINES);
+        Case { name: name.to_owned(), scene, expected, emissive: true, solid }
+    };
+    let edge = crate::scenes::lone_edge(SIZE);
+    let line = [dvec3(-0.3, -9.0, 0.0), dvec3(0.5, 9.0, 0.0)];
+    let expected = closed_form::half_plane(&edge, line, DVec3::X, DVec3::ONE);
+    let mut cases = vec![
+        Case { name: "lone edge".to_owned(), scene: edge, expected, emissive: true, solid: false },
+        by_lines("quads", crate::scenes::quads(SIZE), false),
+        by_lines("stacked spheres", crate::scenes::spheres(SIZE), true),
+        by_lines("wires", crate::scenes::wires(SIZE), true),
+        by_lines("stripes to the horizon", crate::scenes::stripes(SIZE), false),
+        by_lines("translucent layers", crate::scenes::layers(SIZE), false),
+        Case { emissive: false, ..by_lines("spheres, matt", crate::scenes::lit_spheres(SIZE), false) },
+        Case {
+            name: "checker 512×512".to_owned(),
+            scene: crate::scenes::checker_ground(SIZE, false),
+            expected: line_reference::render(&crate::scenes::checker_ground(SIZE, true), LINES),
+            emissive: false,
+            solid: false,
+        },
+    ];
+    cases.extend(data::references().into_iter().map(|r| Case {
+        name: format!("reference {}", r.name),
+        scene: r.scene,
+        expected: r.picture,
+        emissive: false,
+        solid: false,
+    }));
+    cases
+}
+
+fn ours(case: &Case) -> Vec<Row> {
+    let mut rows = vec![];
+    for (rule, rule_name) in [(Occlusion::Correlated, "correlated"), (Occlusion::Paper, "paper")] {
+        for cull in if case.solid { &[true, false][..] } else { &[true] } {
+            for cells in [1, 2, 4] {
+                let (seconds, picture) = timed(|| draw_ours(case, rule, *cull, cells));
+                let series = if *cull { rule_name.to_owned() } else { format!("{rule_name}, backs kept") };
+                let setting = format!("{cells}×{cells} cells");
+                rows.push(row(case, series, setting, seconds, &picture));
+            }
+        }
+    }
+    rows
+}
+
+fn draw_ours(case: &Case, rule: Occlusion, cull: bool, cells: u32) -> Picture {
+    if case.emissive {
+        let options = MicropointOptions::DEFAULT.with_cells_per_pixel(cells).with_occlusion(rule);
+        return draw::emissive(&case.scene, options.with_cull_solids(cull)).expect("the scene is valid");
+    }
+    let mut scene = case.scene.clone();
+    scene.render.cells_per_pixel = Some(cells);
+    scene.render.occlusion = Some(match rule {
+        Occlusion::Paper => scene::Occlusion::Paper,
+        _ => scene::Occlusion::Correlated,
+    });
+    draw::with_pipeline(&scene).expect("the scene is valid")
+}
+
+fn points(case: &Case) -> Vec<Row> {
+    let casts = case.scene.lights.iter().any(|l| l.shadow);
+    // With shadow rays, 16 × 16 would take minutes.
+    let sides: &[u32] = if casts { &[1, 2, 4, 8] } else { &[1, 2, 4, 8, 16] };
+    let measure = |&n: &u32| {
+        let (seconds, picture) = timed(|| {
+            if !casts {
+                return point_sampling::render(&case.scene, n, &|_, _, _| 1.0);
+            }
+            let tree = Tree::new(&case.scene);
+            let lights = &case.scene.lights;
+            let visible =
+                |at: &_, light: usize, sample| tree.transmittance(at, lights[light].light.source(sample));
+            point_sampling::render(&case.scene, n, &visible)
+        });
+        row(case, "point samples".to_owned(), format!("{n}×{n}"), seconds, &picture)
+    };
+    sides.iter().map(measure).collect()
+}
+
+fn row(case: &Case, series: String, setting: String, seconds: f64, picture: &Picture) -> Row {
+    let (rmse, largest) = (picture.rmse(&case.expected), picture.largest_error(&case.expected));
+    Row { scene: case.name.clone(), series, setting, seconds, rmse, largest, more: vec![] }
+}
+
+fn markdown(rows: &[Row]) -> String {
+    let mut text = format!(
+        "# Pictures: time against error\n\n`cargo run --release -p studies -- micropoint` made this, on one thread \
+         ({}). {SIZE}×{SIZE} pixels, linear colour, median of three runs (one, where a run takes more than a second), \
+         building the geometry included. Expected pictures: a closed form for the lone edge; lines that are exact \
+         along themselves, {LINES} a pixel, for the other scenes made by code (each texel a quad of its own for the \
+         checker); the pictures that come with the reference scenes. Point samples go through a z-buffer, with a \
+         shadow ray through a tree of boxes where a light casts shadows. *Backs kept*: back faces of closed opaque \
+         parts are not culled.\n\n## Defaults against point samples\n\n\
+         | scene | RMSE | seconds | 4×4 points: RMSE | seconds | most points: RMSE | seconds | same error by points takes |\n\
+         | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+        machine()
+    );
+    for scene in scenes(rows) {
+        let of = |series: &str| -> Vec<&Row> {
+            rows.iter().filter(|r| r.scene == scene && r.series == series).collect()
+        };
+        let points = of("point samples");
+        let ours = of("correlated")[0];
+        let (four, most) = (points[2], points[points.len() - 1]);
+        let ratio = time_ratio(ours, &points).map_or_else(
+            || format!("over {:.1}× as long", most.seconds / ours.seconds),
+            |r| format!("{r:.1}× as long"),
+        );
+        let _ = writeln!(
+            text,
+            "| {scene} | {:.2e} | {:.4} | {:.2e} | {:.4} | {:.2e} | {:.4} | {ratio} |",
+            ours.rmse, ours.seconds, four.rmse, four.seconds, most.rmse, most.seconds
+        );
+    }
+    if data::folder().is_none() {
+        let _ = writeln!(text, "\n{}", data::SKIPPED);
+    }
+    let _ = write!(text, "\n## All settings\n\n{}", table(&[], rows));
+    text
+}

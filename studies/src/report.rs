@@ -1,0 +1,199 @@
+//! Tables, charts and the machine they were made on.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Instant;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+/// What a study tells its caller: whether everything was as it must be.
+pub(crate) type Outcome = Result<bool, Box<dyn std::error::Error + Send + Sync>>;
+
+/// One measurement of a study of time against error.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub(crate) scene: String,
+    /// Rows of one series are joined in the chart.
+    pub(crate) series: String,
+    pub(crate) setting: String,
+    pub(crate) seconds: f64,
+    pub(crate) rmse: f64,
+    pub(crate) largest: f64,
+    /// Further columns, as the study names them.
+    pub(crate) more: Vec<String>,
+}
+
+/// Cores and processor, as text.
+pub(crate) fn machine() -> String {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = info.lines().find_map(|l| l.strip_prefix("model name")?.split_once(':'));
+    let name = name.map_or("unknown processor", |(_, name)| name.trim());
+    format!("{cores} cores, {name}")
+}
+
+/// Median time of three runs, or the time of one that takes seconds, and the result of the last.
+pub(crate) fn timed<T>(mut work: impl FnMut() -> T) -> (f64, T) {
+    /// Seconds beyond which one run has to do.
+    const LONG: f64 = 1.0;
+    let mut once = || {
+        let start = Instant::now();
+        let result = work();
+        (start.elapsed().as_secs_f64(), result)
+    };
+    let (first, result) = once();
+    if first > LONG {
+        return (first, result);
+    }
+    let (second, (third, result)) = (once().0, once());
+    let mut seconds = [first, second, third];
+    seconds.sort_by(f64::total_cmp);
+    (seconds[1], result)
+}
+
+/// Runs on one thread, so that seconds are processor seconds.
+pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.expect("one thread can be started").install(work)
+}
+
+/// Writes `NAME.csv`; `more` names the further columns.
+pub(crate) fn write_csv(out_dir: &Path, name: &str, more: &[&str], rows: &[Row]) -> std::io::Result<()> {
+    let mut text = "scene,series,setting,seconds,rmse,largest_error".to_owned();
+    more.iter().for_each(|column| text += &format!(",{column}"));
+    text.push('\n');
+    for r in rows {
+        let _ = write!(
+            text,
+            "{},{},{},{:.6},{:e},{:e}",
+            r.scene, r.series, r.setting, r.seconds, r.rmse, r.largest
+        );
+        r.more.iter().for_each(|value| text += &format!(",{value}"));
+        text.push('\n');
+    }
+    write(out_dir, &format!("{name}.csv"), &text)
+}
+
+/// The rows as a Markdown table.
+pub(crate) fn table(more: &[&str], rows: &[Row]) -> String {
+    let mut text = "| scene | method | setting | seconds | RMSE | largest error |".to_owned();
+    more.iter().for_each(|column| text += &format!(" {column} |"));
+    text += "\n| --- | --- | --- | ---: | ---: | ---: |";
+    more.iter().for_each(|_| text += " ---: |");
+    text.push('\n');
+    for r in rows {
+        let _ = write!(
+            text,
+            "| {} | {} | {} | {:.4} | {:.2e} | {:.1e} |",
+            r.scene, r.series, r.setting, r.seconds, r.rmse, r.largest
+        );
+        r.more.iter().for_each(|value| text += &format!(" {value} |"));
+        text.push('\n');
+    }
+    text
+}
+
+pub(crate) fn write(out_dir: &Path, file: &str, text: &str) -> std::io::Result<()> {
+    std::fs::create_dir_all(out_dir)?;
+    std::fs::write(out_dir.join(file), text)
+}
+
+/// Rows in the order in which their scenes first occur.
+pub(crate) fn scenes(rows: &[Row]) -> Vec<&str> {
+    let mut names: Vec<&str> = vec![];
+    for r in rows {
+        if !names.contains(&r.scene.as_str()) {
+            names.push(&r.scene);
+        }
+    }
+    names
+}
+
+/// Errors below this are drawn at it: a logarithmic axis has no zero.
+const SMALLEST: f64 = 1e-9;
+
+/// Draws `NAME.svg`: for each scene time against error, both logarithmic.
+pub(crate) fn chart(
+    out_dir: &Path,
+    name: &str,
+    rows: &[Row],
+) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    let scenes = scenes(rows);
+    let mut series: Vec<&str> = vec![];
+    for r in rows {
+        if !series.contains(&r.series.as_str()) {
+            series.push(&r.series);
+        }
+    }
+    const COLUMNS: usize = 3;
+    let lines = scenes.len().div_ceil(COLUMNS);
+    let path = out_dir.join(format!("{name}.svg"));
+    let size = (COLUMNS as u32 * 400, lines as u32 * 330 + 30 * series.len().div_ceil(4) as u32 + 10);
+    let root = SVGBackend::new(&path, size).into_drawing_area();
+    root.fill(&WHITE)?;
+    let (legend, panels) = root.split_vertically(30 * series.len().div_ceil(4) as u32 + 10);
+    for (i, s) in series.iter().enumerate() {
+        let at = (20 + (i % 4) as i32 * 290, 20 + (i / 4) as i32 * 30);
+        legend.draw(&Circle::new(at, 5, Palette99::pick(i).filled()))?;
+        legend.draw(&Text::new((*s).to_owned(), (at.0 + 12, at.1 - 7), ("sans-serif", 15)))?;
+    }
+    for (area, scene) in panels.split_evenly((lines, COLUMNS)).iter().zip(scenes) {
+        let of_scene: Vec<&Row> = rows.iter().filter(|r| r.scene == scene).collect();
+        panel(area, scene, &series, &of_scene)?;
+    }
+    root.present()?;
+    Ok(())
+}
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+fn panel(
+    area: &Area<'_>,
+    scene: &str,
+    series: &[&str],
+    rows: &[&Row],
+) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    let point = |r: &&Row| (r.seconds.max(1e-6), r.rmse.clamp(SMALLEST, 10.0));
+    let range = |values: Vec<f64>| {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(0.0, f64::max);
+        10f64.powf(low.log10().floor())..10f64.powf(high.log10().floor() + 1.0)
+    };
+    let x = range(rows.iter().map(|r| point(r).0).collect());
+    let y = range(rows.iter().map(|r| point(r).1).collect());
+    let mut chart = ChartBuilder::on(area)
+        .caption(scene, ("sans-serif", 16))
+        .margin(10)
+        .x_label_area_size(36)
+        .y_label_area_size(56)
+        .build_cartesian_2d(x.log_scale(), y.log_scale())?;
+    let power = |v: &f64| format!("{v:e}");
+    chart
+        .configure_mesh()
+        .x_desc("seconds")
+        .y_desc("RMSE")
+        .x_label_formatter(&power)
+        .y_label_formatter(&power)
+        .max_light_lines(0)
+        .draw()?;
+    for (i, name) in series.iter().enumerate() {
+        let points: Vec<_> = rows.iter().filter(|r| r.series == *name).map(point).collect();
+        let color = Palette99::pick(i);
+        chart.draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(1)))?;
+        chart.draw_series(PointSeries::<_, _, Circle<_, _>, _>::new(points, 3, color.filled()))?;
+    }
+    Ok(())
+}
+
+/// By what factor a series is faster than another at the same error, by log-log interpolation of `other`.
+///
+/// `None` where `other` never gets as good as the row: then it is slower than its slowest row by an unknown factor.
+pub(crate) fn time_ratio(row: &Row, other: &[&Row]) -> Option<f64> {
+    let mut points: Vec<(f64, f64)> = other.iter().map(|r| (r.rmse.max(SMALLEST), r.seconds)).collect();
+    points.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let reached = points.windows(2).find(|w| w[0].0 >= row.rmse && row.rmse >= w[1].0)?;
+    let [(e0, t0), (e1, t1)] = [reached[0], reached[1]];
+    let s = if e0 > e1 { (row.rmse.ln() - e0.ln()) / (e1.ln() - e0.ln()) } else { 1.0 };
+    Some((t0.ln() + s * (t1.ln() - t0.ln())).exp() / row.seconds)
+}
