@@ -10,9 +10,6 @@ use std::cmp::Ordering;
 /// Overlaps below this share of a receiver are rounding.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// Light that passes fewer than one part in a million through masks is none.
-const DARK: f64 = 1e-6;
-
 /// The lit fraction of a target, 0..=1.
 pub(crate) fn lit_fraction(
     query: &Query<'_>,
@@ -25,11 +22,8 @@ pub(crate) fn lit_fraction(
     if !find_blockers(query, target, outline, measure.face, nearby, work) {
         return 0.0;
     }
-    // In an order of their own, for a product that is the same to the last bit.
-    work.veils.sort_unstable_by(f64::total_cmp);
-    let veiled: f64 = work.veils.iter().product();
-    if work.blockers.is_empty() || veiled < DARK {
-        return if veiled < DARK { 0.0 } else { veiled };
+    if work.blockers.is_empty() {
+        return 1.0;
     }
     // The result must not depend on the order in which casters were found.
     work.blockers
@@ -45,7 +39,7 @@ pub(crate) fn lit_fraction(
     for region in work.regions.list() {
         lit += region.transmittance * measure.area(region.polygon.vertices());
     }
-    if whole > 0.0 { veiled * (lit / whole).min(1.0) } else { 0.0 }
+    if whole > 0.0 { (lit / whole).min(1.0) } else { 0.0 }
 }
 
 /// Collects the casters that overlap the target and stand before it. Returns false as soon as one of
@@ -59,8 +53,6 @@ fn find_blockers(
     work: &mut Work,
 ) -> bool {
     work.blockers.clear();
-    work.veils.clear();
-    let mut veiled = 1.0;
     let (low, high) = target.bounds;
     // What hid the last target often hides the next.
     let last = nearby.iter().position(|n| n.index == work.last_hider);
@@ -80,19 +72,13 @@ fn find_blockers(
         let lower = Layer { face, outline, nearness: target.nearness };
         let front = in_front(query.lens, DVec2::ZERO, upper, lower, false);
         if front == Front::Everywhere && place == Place::Over {
-            // A receiver is small, so a mask mostly shows it nothing but holes or nothing but leaf; and a
-            // veil over all of it needs no cut.
+            // A receiver is small, so a mask mostly shows it nothing but holes or nothing but leaf.
             let opacity = query.opacity(caster, outline);
             if opacity >= 1.0 {
                 work.last_hider = c;
                 return false;
             }
-            if caster.opacity.is_none() {
-                work.veils.push(1.0 - opacity);
-                veiled *= 1.0 - opacity;
-                if veiled < 0.5 * DARK {
-                    return false;
-                }
+            if opacity <= 0.0 {
                 continue;
             }
         }
