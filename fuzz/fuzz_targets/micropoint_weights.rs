@@ -1,0 +1,55 @@
+//! Triangles and views of any kind: weights are shares, and tiles do not matter.
+#![no_main]
+
+use arbitrary::Arbitrary;
+use glam::{DVec3, dvec3};
+use libfuzzer_sys::fuzz_target;
+use pointillist_micropoint::invariants::{self, Soup};
+use pointillist_micropoint::{MicropointOptions, Occlusion, Projection, View};
+
+#[derive(Arbitrary, Debug)]
+struct Input {
+    /// Corners in steps of 1/64, often shared, coplanar or coincident.
+    triangles: Vec<([[i8; 3]; 3], u8)>,
+    box_at: Option<[i8; 3]>,
+    eye: [i8; 3],
+    target: [i8; 3],
+    fov: u8,
+    orthographic: bool,
+    size: (u8, u8),
+    paper: bool,
+    raw: Option<[f64; 3]>,
+}
+
+fn steps([x, y, z]: [i8; 3]) -> DVec3 {
+    dvec3(x.into(), y.into(), z.into()) / 64.0
+}
+
+fuzz_target!(|input: Input| {
+    let mut soup = Soup::default();
+    for (corners, opacity) in input.triangles.iter().take(16) {
+        let surface = soup.surface(f32::from(*opacity) / 255.0);
+        soup.polygon(&corners.map(steps), surface);
+    }
+    if let Some(low) = input.box_at {
+        let surface = soup.surface(1.0);
+        soup.cuboid(steps(low), steps(low) + 0.5, surface);
+    }
+    if let (Some(raw), Some(p)) = (input.raw, soup.positions.first_mut()) {
+        *p = DVec3::from_array(raw);
+    }
+    let span = 0.05 + f64::from(input.fov) / 100.0;
+    let projection = match input.orthographic {
+        true => Projection::Orthographic { height: span },
+        false => Projection::Perspective { fov_y_rad: span },
+    };
+    let (w, h) = (u32::from(input.size.0 % 9), u32::from(input.size.1 % 9));
+    let Ok(view) = View::look_at(steps(input.eye), steps(input.target), DVec3::Y, projection, w, h) else { return };
+    let rule = if input.paper { Occlusion::Paper } else { Occlusion::Correlated };
+    let options = MicropointOptions::DEFAULT.with_occlusion(rule);
+    let facts = invariants::weights_are_shares(&soup, view, options)
+        .and_then(|()| invariants::tiles_do_not_matter(&soup, view, options));
+    if let Err(broken) = facts {
+        panic!("{broken}");
+    }
+});

@@ -1,0 +1,50 @@
+//! Triangles, lights and views of any kind: lit fractions are fractions, and tiles do not matter.
+#![no_main]
+
+use arbitrary::Arbitrary;
+use glam::{DVec3, dvec3};
+use libfuzzer_sys::fuzz_target;
+use pointillist_micropoint::invariants::Soup;
+use pointillist_micropoint::{Projection, View};
+use pointillist_shadow::{Emitter, ShadowOptions, invariants};
+
+#[derive(Arbitrary, Debug)]
+struct Input {
+    triangles: Vec<([[i8; 3]; 3], u8)>,
+    box_at: Option<[i8; 3]>,
+    eye: [i8; 3],
+    target: [i8; 3],
+    light: [i8; 3],
+    axis: [i8; 3],
+    directional: bool,
+    raw: Option<[f64; 3]>,
+}
+
+fn steps([x, y, z]: [i8; 3]) -> DVec3 {
+    dvec3(x.into(), y.into(), z.into()) / 64.0
+}
+
+fuzz_target!(|input: Input| {
+    let mut soup = Soup::default();
+    for (corners, opacity) in input.triangles.iter().take(12) {
+        let surface = soup.surface(f32::from(*opacity) / 255.0);
+        soup.polygon(&corners.map(steps), surface);
+    }
+    if let Some(low) = input.box_at {
+        let surface = soup.surface(1.0);
+        soup.cuboid(steps(low), steps(low) + 0.5, surface);
+    }
+    let position = input.raw.map_or(steps(input.light), DVec3::from_array);
+    let emitter = match input.directional {
+        true => Emitter::Directional { direction: position },
+        false => Emitter::Point { position, axis: steps(input.axis) },
+    };
+    let camera = Projection::Perspective { fov_y_rad: 1.0 };
+    let Ok(view) = View::look_at(steps(input.eye), steps(input.target), DVec3::Y, camera, 5, 4) else { return };
+    let options = ShadowOptions::default();
+    let facts = invariants::fractions_are_fractions(&soup, view, emitter, options)
+        .and_then(|()| invariants::tiles_do_not_matter(&soup, view, emitter, options));
+    if let Err(broken) = facts {
+        panic!("{broken}");
+    }
+});
