@@ -110,13 +110,16 @@ const FAN_OUT: usize = 4;
 pub struct HiddenSides(pub(crate) Vec<i8>);
 
 impl HiddenSides {
-    /// The other sides: those that the viewer can see. Skipping these instead leaves the same
-    /// silhouettes, which is what a light needs; and what then casts shadow faces away from the light,
-    /// so that a lit surface never meets itself.
+    /// The sides that may be left out as casters of light, if these are the sides hidden from the light
+    /// and `viewer` those hidden from whoever sees the receivers.
+    ///
+    /// What a viewer outside a solid sees lies outside it, too, and then the faces turned away from the
+    /// light cast the same shadow as those turned to it. The former are better: they lie behind the
+    /// solid's own lit side and cost it nothing. Receivers inside a solid need the latter.
     #[must_use]
-    pub fn opposite(mut self) -> Self {
-        self.0.iter_mut().for_each(|s| *s = -*s);
-        self
+    pub fn of_casters(&self, viewer: &Self) -> Self {
+        let side = |(&light, &viewer): (&i8, &i8)| if viewer == 0 { light } else { -light };
+        Self(self.0.iter().zip(&viewer.0).map(side).collect())
     }
 }
 
@@ -311,17 +314,23 @@ impl Geometry {
         }
     }
 
-    /// What a viewer at `origin` (a point; or far away against `direction`) never sees of closed
-    /// components. A component that the viewer may be inside of keeps both sides.
+    /// What a lens never sees of closed components. A component that the lens may be inside of, or that
+    /// an orthographic lens cuts open, keeps both sides.
     #[must_use]
-    pub fn hidden_sides(&self, origin: Option<DVec3>) -> HiddenSides {
-        let inside = |i: usize, s: &Solid| {
-            let Some(o) = origin else { return false };
-            let margin = 1e-9 * (s.high - s.low).length();
-            let in_box = (o - s.low).min_element() >= -margin && (s.high - o).min_element() >= -margin;
-            in_box && self.winding(i as u32, o).abs() > 0.01
+    pub fn hidden_sides(&self, lens: &Lens) -> HiddenSides {
+        let open = |i: usize, s: &Solid| match lens.kind {
+            LensKind::Orthographic => {
+                let bounds = Bounds { low: s.low, high: s.high };
+                bounds.extent_along(lens.origin, lens.forward).0 < 0.0
+            }
+            LensKind::Perspective => {
+                let margin = 1e-9 * (s.high - s.low).length();
+                let (above, below) = (lens.origin - s.low, s.high - lens.origin);
+                let in_box = above.min(below).min_element() >= -margin;
+                in_box && self.winding(i as u32, lens.origin).abs() > 0.01
+            }
         };
-        let hidden = |(i, s): (usize, &Solid)| if inside(i, s) { 0 } else { s.orientation };
+        let hidden = |(i, s): (usize, &Solid)| if open(i, s) { 0 } else { s.orientation };
         HiddenSides(self.solids.iter().enumerate().map(hidden).collect())
     }
 

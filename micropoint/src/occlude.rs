@@ -94,7 +94,9 @@ impl Regions {
             for i in first..end {
                 let (number, front) = self.stack[i];
                 let most = if occluders.is_opaque(number) { MOST_REGIONS } else { MOST_TRANSLUCENT_REGIONS };
-                self.attenuate_up_to(most, occluders.outline(number), front, |p| occluders.opacity(number, p));
+                self.attenuate_up_to(most, occluders.outline(number), front, |p| {
+                    occluders.opacity(number, p)
+                });
                 if self.list.len() == self.base {
                     break;
                 }

@@ -234,11 +234,7 @@ impl<'a> Renderer<'a> {
         let margin = DVec2::splat(2.0 * f64::from(cells));
         let size = DVec2::new(f64::from(view.width), f64::from(view.height)) * f64::from(cells);
         let rect = GridRect { low: -margin, high: size + margin };
-        let origin = match lens.kind {
-            crate::lens::LensKind::Perspective => Some(view.eye),
-            crate::lens::LensKind::Orthographic => None,
-        };
-        let hidden = if options.cull_solids { geometry.hidden_sides(origin) } else { HiddenSides::default() };
+        let hidden = if options.cull_solids { geometry.hidden_sides(&lens) } else { HiddenSides::default() };
         Ok(Self { geometry, opacity, view, lens, rect, hidden, options })
     }
 

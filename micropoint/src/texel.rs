@@ -250,7 +250,8 @@ impl<const N: usize> TexelSums<N> {
         if let Some(coarser) = &self.coarser
             && (high - low).max_element() > MOST_SPAN
         {
-            let mut halved = [TexelCorner { grid: DVec2::ZERO, rational: 1.0, texel: DVec2::ZERO }; convex::MAX_VERTICES];
+            let mut halved =
+                [TexelCorner { grid: DVec2::ZERO, rational: 1.0, texel: DVec2::ZERO }; convex::MAX_VERTICES];
             for (to, &texel) in halved.iter_mut().zip(&*ring) {
                 to.texel = 0.5 * texel;
             }

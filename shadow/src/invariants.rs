@@ -3,9 +3,7 @@
 //! Each takes any input at all. A scene, view or light that is refused satisfies every fact.
 
 use pointillist_micropoint::invariants::{Soup, permutation};
-use pointillist_micropoint::{
-    Geometry, MicropointOptions, PixelRect, PlainOpacity, Renderer, Tile, View,
-};
+use pointillist_micropoint::{Geometry, MicropointOptions, PixelRect, PlainOpacity, Renderer, Tile, View};
 
 use crate::{Emitter, Receivers, ShadowLight, ShadowOptions, ShadowScratch, Viewer};
 
@@ -89,7 +87,8 @@ pub fn lit_picture(soup: &Soup, view: View, emitter: Emitter, options: ShadowOpt
 /// Per pixel, what of the light reaches a surface: Σ weight × lit.
 #[must_use]
 pub fn light_on(picture: &LitPicture, surface: u32) -> Vec<f64> {
-    let sum = |pixel: &Vec<LitPiece>| pixel.iter().filter(|p| p.surface == surface).map(|p| p.weight * p.lit).sum();
+    let sum =
+        |pixel: &Vec<LitPiece>| pixel.iter().filter(|p| p.surface == surface).map(|p| p.weight * p.lit).sum();
     picture.iter().map(sum).collect()
 }
 
@@ -110,7 +109,12 @@ fn are_identical(a: &LitPicture, b: &LitPicture) -> Result<(), String> {
 ///
 /// # Errors
 /// The first piece that does not.
-pub fn fractions_are_fractions(soup: &Soup, view: View, emitter: Emitter, options: ShadowOptions) -> Result<(), String> {
+pub fn fractions_are_fractions(
+    soup: &Soup,
+    view: View,
+    emitter: Emitter,
+    options: ShadowOptions,
+) -> Result<(), String> {
     let Some(picture) = lit_picture(soup, view, emitter, options) else { return Ok(()) };
     match picture.iter().flatten().find(|p| !(0.0..=1.0).contains(&p.lit)) {
         Some(p) => Err(format!("{p:?}")),
@@ -122,7 +126,12 @@ pub fn fractions_are_fractions(soup: &Soup, view: View, emitter: Emitter, option
 ///
 /// # Errors
 /// The first pixel that differs.
-pub fn tiles_do_not_matter(soup: &Soup, view: View, emitter: Emitter, options: ShadowOptions) -> Result<(), String> {
+pub fn tiles_do_not_matter(
+    soup: &Soup,
+    view: View,
+    emitter: Emitter,
+    options: ShadowOptions,
+) -> Result<(), String> {
     let result = with_light(soup, view, emitter, options, |_, r, l| {
         let expected = lit_picture_of(r, l, [r.picture()]);
         for size in [16, 5, 1] {

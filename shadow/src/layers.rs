@@ -1,9 +1,9 @@
 //! The paper's rule (§4.2.5): in each light cell, opacity adds up from the light outward.
 
 use crate::light::Query;
-use crate::scratch::{Nearby, Target, Work};
+use crate::scratch::{Nearby, Work};
 use glam::{DVec2, IVec2};
-use pointillist_dice::{CellWindow, ConvexPolygon, Cut, HalfPlane, cut};
+use pointillist_dice::{CellWindow, ConvexPolygon, Cut, HalfPlane, convex, cut};
 use pointillist_micropoint::Face;
 
 /// What a caster does to one light cell.
@@ -20,29 +20,46 @@ const TOUCH: f64 = 1e-7;
 /// than any receiver, and the cost would be without bound.
 const MOST_CELLS: f64 = 256.0;
 
+/// The cells of a light grid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightCells {
+    /// Fixed, or for each target the smallest power of two that is no smaller than it.
+    pub(crate) size: Option<f64>,
+}
+
+impl LightCells {
+    /// Size of the cells for a target with these bounds.
+    fn size(&self, (low, high): (DVec2, DVec2)) -> f64 {
+        let extent = (high - low).max_element();
+        match self.size {
+            Some(size) => size.max(extent / MOST_CELLS.sqrt()),
+            None => extent.max(f64::MIN_POSITIVE).log2().ceil().exp2(),
+        }
+    }
+
+    /// The cells that a target touches: whatever is in them may darken it.
+    pub(crate) fn around(&self, bounds: (DVec2, DVec2)) -> (DVec2, DVec2) {
+        let size = self.size(bounds);
+        ((bounds.0 / size).floor() * size, (bounds.1 / size).ceil() * size)
+    }
+}
+
 /// The lit fraction of a target: cut by the light grid into shadow micropoints, each of which gets
 /// what the layers nearer to the light let through in its cell.
-///
-/// Without a fixed cell size, a cell is the smallest power of two that is no smaller than the target.
 pub(crate) fn lit_fraction(
     query: &Query<'_>,
-    target: &Target,
     outline: &[DVec2],
     face: &Face,
     nearby: &[Nearby],
-    cell: Option<f64>,
+    cells: LightCells,
     work: &mut Work,
 ) -> f64 {
-    let extent = (target.bounds.1 - target.bounds.0).max_element();
-    let size = match cell {
-        Some(size) => size.max(extent / MOST_CELLS.sqrt()),
-        None => extent.max(f64::MIN_POSITIVE).log2().ceil().exp2(),
-    };
+    let size = cells.size(convex::bounds(outline));
     work.partial += 1;
-    let mut cells = Vec::new();
-    cut_by_cells(outline, size, |cell, piece| cells.push((cell, *piece)));
+    let mut pieces = Vec::new();
+    cut_by_cells(outline, size, |cell, piece| pieces.push((cell, *piece)));
     let (mut lit, mut total) = (0.0, 0.0);
-    for (cell, piece) in &cells {
+    for (cell, piece) in &pieces {
         let area = piece.area();
         total += area;
         lit += area * transmittance(query, face, piece, *cell, size, nearby, work);

@@ -2,7 +2,7 @@
 
 use crate::error::ShadowError;
 use crate::exact;
-use crate::layers;
+use crate::layers::{self, LightCells};
 use crate::receiver::{Receivers, Viewer};
 use crate::scratch::{Caster, LitFace, Nearby, ShadowScratch, Side, Sum, Target, Work};
 use crate::screen::{Emitter, Screens};
@@ -80,6 +80,14 @@ impl<'a> ShadowLight<'a> {
         Ok(Self { geometry, opacity, emitter, screens, options })
     }
 
+    /// Promises that all receivers are seen by this lens, which makes shadows of solids cheaper: those
+    /// that the lens is outside of cast by the faces turned away from the light.
+    #[must_use]
+    pub fn seen_from(mut self, viewer: &Lens) -> Self {
+        self.screens.hidden = self.screens.hidden.of_casters(&self.geometry.hidden_sides(viewer));
+        self
+    }
+
     /// The fraction of this light, 0..=1, that reaches each receiver, in their order.
     ///
     /// A receiver that shows the viewer a side turned away from the light gets 0. What a receiver gets
@@ -91,7 +99,7 @@ impl<'a> ShadowLight<'a> {
         scratch: &mut ShadowScratch,
         lit: &mut Vec<f64>,
     ) {
-        scratch.begin(receivers.len(), viewer.faces.len());
+        scratch.begin(receivers.len(), viewer.faces.len(), self.light_cells());
         self.collect_targets(viewer, receivers, scratch);
         for screen in 0..self.screens.lenses.len() {
             if scratch.sort_targets_into_groups(screen, self.options.resolution, self.screens.size) {
@@ -102,6 +110,17 @@ impl<'a> ShadowLight<'a> {
         }
         lit.clear();
         lit.extend(scratch.sums.iter().map(Sum::fraction));
+    }
+
+    /// The light cells of the paper's rule.
+    fn light_cells(&self) -> Option<LightCells> {
+        match (self.options.occlusion, self.options.resolution) {
+            (Occlusion::Correlated, _) => None,
+            (Occlusion::Paper, Resolution::Auto) => Some(LightCells { size: None }),
+            (Occlusion::Paper, Resolution::Cells(n)) => {
+                Some(LightCells { size: Some(self.screens.size / f64::from(n)) })
+            }
+        }
     }
 
     /// Receivers on lit sides, on the screens that see them.
@@ -203,7 +222,8 @@ impl<'a> ShadowLight<'a> {
         let lens = &self.screens.lenses[screen];
         let rect = GridRect { low: scratch.low, high: scratch.high };
         let volume = ViewVolume::new(lens, &rect);
-        let farthest = lens.depth(scratch.least_nearness);
+        let all = self.options.occlusion == Occlusion::Paper;
+        let farthest = if all { f64::INFINITY } else { lens.depth(scratch.least_nearness) };
         let mut queue = std::mem::take(&mut scratch.queue);
         let skipped = self.geometry.visit_near_to_far(
             &mut queue,
@@ -292,17 +312,9 @@ impl<'a> ShadowLight<'a> {
         let outline = scratch.outline(target);
         let measure = Measure { lens, viewer: viewer.lens, face };
         let query = Query { lens, geometry: self.geometry, opacity: self.opacity, casters: &scratch.casters };
-        let fraction = settled.unwrap_or_else(|| match (self.options.occlusion, self.options.resolution) {
-            (Occlusion::Correlated, _) => {
-                exact::lit_fraction(&query, target, outline, &measure, nearby, work)
-            }
-            (Occlusion::Paper, Resolution::Auto) => {
-                layers::lit_fraction(&query, target, outline, face, nearby, None, work)
-            }
-            (Occlusion::Paper, Resolution::Cells(n)) => {
-                let cell = self.screens.size / f64::from(n);
-                layers::lit_fraction(&query, target, outline, face, nearby, Some(cell), work)
-            }
+        let fraction = settled.unwrap_or_else(|| match self.light_cells() {
+            None => exact::lit_fraction(&query, target, outline, &measure, nearby, work),
+            Some(cells) => layers::lit_fraction(&query, outline, face, nearby, cells, work),
         });
         if !target.shared {
             return (fraction, 1.0);

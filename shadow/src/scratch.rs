@@ -1,5 +1,6 @@
 //! Memory for one batch of receivers on the screens of one light: the local light grid.
 
+use crate::layers::LightCells;
 use crate::light::Resolution;
 use glam::DVec2;
 use pointillist_dice::{ConvexPolygon, convex};
@@ -160,6 +161,7 @@ impl std::ops::AddAssign for ShadowCounts {
 #[derive(Debug, Default)]
 pub struct ShadowScratch {
     pub(crate) counts: ShadowCounts,
+    light_cells: Option<LightCells>,
     pub(crate) sides: Vec<Side>,
     pub(crate) targets: Vec<Target>,
     target_vertices: Vec<DVec2>,
@@ -199,7 +201,8 @@ impl ShadowScratch {
         std::mem::take(&mut self.counts)
     }
 
-    pub(crate) fn begin(&mut self, receivers: usize, faces: usize) {
+    pub(crate) fn begin(&mut self, receivers: usize, faces: usize, light_cells: Option<LightCells>) {
+        self.light_cells = light_cells;
         self.sides.clear();
         self.sides.resize(faces, Side::Unknown);
         self.lit_face_of.clear();
@@ -230,13 +233,19 @@ impl ShadowScratch {
         if area < 0.0 {
             outline.reverse();
         }
+        let mut bounds = convex::bounds(outline);
+        if let Some(cells) = &self.light_cells {
+            // Whatever shares a cell with the target may merge into a layer with its casters.
+            bounds = cells.around(bounds);
+            nearness = (f64::NEG_INFINITY, f64::INFINITY);
+        }
         self.targets.push(Target {
             receiver,
             screen: screen as u8,
             face,
             first_vertex: first as u32,
             vertex_count: outline.len() as u32,
-            bounds: convex::bounds(outline),
+            bounds,
             nearness,
             area: area.abs(),
             shared,

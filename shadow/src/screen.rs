@@ -70,10 +70,11 @@ impl Screens {
             centre: DVec2::ZERO,
             reach: 1.0,
         };
+        let lenses = frames.map(lens).to_vec();
         Self {
-            lenses: frames.map(lens).to_vec(),
+            hidden: geometry.hidden_sides(&lenses[0]),
+            lenses,
             rect: GridRect { low: DVec2::splat(-half * RIM), high: DVec2::splat(half * RIM) },
-            hidden: geometry.hidden_sides(Some(position)).opposite(),
             size: SCREEN_UNITS,
         }
     }
@@ -96,9 +97,9 @@ impl Screens {
             reach: 2.0 * diagonal,
         };
         Self {
-            lenses: vec![lens],
             rect: GridRect { low: DVec2::splat(-SCREEN_UNITS), high: DVec2::splat(SCREEN_UNITS) },
-            hidden: geometry.hidden_sides(None).opposite(),
+            hidden: geometry.hidden_sides(&lens),
+            lenses: vec![lens],
             size: SCREEN_UNITS,
         }
     }

@@ -2,7 +2,9 @@
 
 use glam::{DVec3, dvec3};
 use pointillist_micropoint::invariants::Soup;
-use pointillist_micropoint::{MicropointOptions, Occlusion, PixelRect, PlainOpacity, Projection, Renderer, Tile, View};
+use pointillist_micropoint::{
+    MicropointOptions, Occlusion, PixelRect, PlainOpacity, Projection, Renderer, Tile, View,
+};
 use pointillist_shadow::invariants::{self, LitPicture, light_on, lit_picture};
 use pointillist_shadow::{Emitter, Resolution, ShadowLight, ShadowOptions, ShadowScratch};
 use proptest::prelude::*;
@@ -107,7 +109,8 @@ macro_rules! holds {
 fn areas(polygon: &[DVec3], height: f64, pixels: u32) -> Vec<f64> {
     let scale = f64::from(pixels) / height;
     let middle = 0.5 * f64::from(pixels);
-    let ring: Vec<_> = polygon.iter().map(|p| glam::dvec2(p.x * scale + middle, p.z * scale + middle)).collect();
+    let ring: Vec<_> =
+        polygon.iter().map(|p| glam::dvec2(p.x * scale + middle, p.z * scale + middle)).collect();
     let mut areas = vec![0.0; (pixels * pixels) as usize];
     let mut scratch = pointillist_dice::Accumulator::new();
     let grid = pointillist_dice::Grid::UNIT;
@@ -291,10 +294,19 @@ fn a_box_on_the_ground_leaks_no_light_at_its_foot() {
             if is_closed {
                 s.cuboid(dvec3(-1.0, 0.0, -1.0), dvec3(0.0, 1.0, 1.0), surface);
             } else {
-                s.polygon(&[dvec3(0.0, 0.0, -1.0), dvec3(0.0, 0.0, 1.0), dvec3(0.0, 1.0, 1.0), dvec3(0.0, 1.0, -1.0)], surface);
+                s.polygon(
+                    &[
+                        dvec3(0.0, 0.0, -1.0),
+                        dvec3(0.0, 0.0, 1.0),
+                        dvec3(0.0, 1.0, 1.0),
+                        dvec3(0.0, 1.0, -1.0),
+                    ],
+                    surface,
+                );
             }
             let camera = Projection::Orthographic { height: 0.2 };
-            let v = View::look_at(dvec3(0.1, 5.0, 0.0), dvec3(0.1, 0.0, 0.0), DVec3::NEG_Z, camera, 4, 4).unwrap();
+            let v = View::look_at(dvec3(0.1, 5.0, 0.0), dvec3(0.1, 0.0, 0.0), DVec3::NEG_Z, camera, 4, 4)
+                .unwrap();
             let picture = lit_picture(&s, v, sun(dvec3(1.0, -elevation * 0.5, 0.0)), exact()).unwrap();
             let total: f64 = light_on(&picture, 0).iter().sum();
             assert!(total < 1e-9, "elevation {elevation}, closed {is_closed}: {total}");
@@ -330,7 +342,8 @@ fn a_lamp_far_away_is_a_sun() {
 #[test]
 fn the_error_of_the_papers_rule_falls_with_the_light_grid() {
     // A half-plane at an angle over the ground.
-    let half = [dvec3(-0.13, 1.0, 30.0), dvec3(30.0, 1.0, 30.0), dvec3(30.0, 1.0, -30.0), dvec3(0.37, 1.0, -30.0)];
+    let half =
+        [dvec3(-0.13, 1.0, 30.0), dvec3(30.0, 1.0, 30.0), dvec3(30.0, 1.0, -30.0), dvec3(0.37, 1.0, -30.0)];
     let mut s = ground();
     let surface = s.surface(1.0);
     s.polygon(&half, surface);

@@ -13,8 +13,19 @@ fn a_light_outside_a_closed_room_does_not_light_it() {
     let mut s = Soup::default();
     let (walls, table) = (s.surface(1.0), s.surface(1.0));
     s.cuboid(DVec3::splat(-1.1), DVec3::splat(1.1), walls);
-    s.polygon(&[dvec3(-0.3, -0.5, 0.3), dvec3(0.3, -0.5, 0.3), dvec3(0.3, -0.5, -0.3), dvec3(-0.3, -0.5, -0.3)], table);
-    let view = View::look_at(dvec3(0.0, 0.5, 1.0), DVec3::ZERO, DVec3::Y, Projection::Perspective { fov_y_rad: 1.2 }, 4, 4).unwrap();
+    s.polygon(
+        &[dvec3(-0.3, -0.5, 0.3), dvec3(0.3, -0.5, 0.3), dvec3(0.3, -0.5, -0.3), dvec3(-0.3, -0.5, -0.3)],
+        table,
+    );
+    let view = View::look_at(
+        dvec3(0.0, 0.5, 1.0),
+        DVec3::ZERO,
+        DVec3::Y,
+        Projection::Perspective { fov_y_rad: 1.2 },
+        4,
+        4,
+    )
+    .unwrap();
     for emitter in [
         Emitter::Point { position: dvec3(0.1, 8.0, 0.2), axis: DVec3::NEG_Y },
         Emitter::Directional { direction: dvec3(0.1, -1.0, 0.2) },
@@ -30,12 +41,23 @@ fn a_light_outside_a_closed_room_does_not_light_it() {
 fn large_pixels_near_a_lamp_get_their_exact_share() {
     let mut s = Soup::default();
     let (ground, plate) = (s.surface(1.0), s.surface(1.0));
-    let square = |half: f64, y: f64| [dvec3(-half, y, half), dvec3(half, y, half), dvec3(half, y, -half), dvec3(-half, y, -half)];
+    let square = |half: f64, y: f64| {
+        [dvec3(-half, y, half), dvec3(half, y, half), dvec3(half, y, -half), dvec3(-half, y, -half)]
+    };
     s.polygon(&square(20.0, 0.0), ground);
     s.polygon(&square(0.25, 0.6), plate);
-    let view = View::look_at(DVec3::Y * 0.5, DVec3::ZERO, DVec3::NEG_Z, Projection::Orthographic { height: 5.0 }, 5, 5).unwrap();
+    let view = View::look_at(
+        DVec3::Y * 0.5,
+        DVec3::ZERO,
+        DVec3::NEG_Z,
+        Projection::Orthographic { height: 5.0 },
+        5,
+        5,
+    )
+    .unwrap();
     let emitter = Emitter::Point { position: DVec3::Y * 1.2, axis: DVec3::NEG_Z };
-    let lit: f64 = light_on(&lit_picture(&s, view, emitter, ShadowOptions::default()).unwrap(), ground).iter().sum();
+    let lit: f64 =
+        light_on(&lit_picture(&s, view, emitter, ShadowOptions::default()).unwrap(), ground).iter().sum();
     // The plate is at half the height of the lamp: its shadow is 1 × 1.
     assert!((lit - 24.0).abs() < 1e-9, "{lit}");
 }

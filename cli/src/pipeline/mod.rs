@@ -16,7 +16,7 @@ use background::Background;
 use canvas::Canvas;
 use pointillist_micropoint as micropoint;
 use pointillist_micropoint::{
-    Geometry, MicropointError, MicropointOptions, PixelRect, Renderer, TileCounts, View,
+    Geometry, Lens, MicropointError, MicropointOptions, PixelRect, Renderer, TileCounts, View,
 };
 use pointillist_shade::Source;
 use pointillist_shadow as shadow;
@@ -63,7 +63,7 @@ pub fn render(
     stats.count("triangles_of_solids", geometry.solid_triangle_count() as u64);
     let view = view(scene)?;
     let renderer = Renderer::new(&geometry, &surfaces, view, options(scene))?;
-    let lights = stats.stage("lights", || light_samples(scene, &geometry, &surfaces))?;
+    let lights = stats.stage("lights", || light_samples(scene, &geometry, &surfaces, renderer.lens()))?;
     let background = Background::new(scene, &view)?;
     let shader = Shader::new(scene, &surfaces, &lights, &view);
     let canvas = Mutex::new(Canvas::new(scene, job));
@@ -145,6 +145,7 @@ fn light_samples<'a>(
     scene: &Scene,
     geometry: &'a Geometry,
     surfaces: &'a Surfaces,
+    lens: &Lens,
 ) -> Result<Vec<LightSample<'a>>, PipelineError> {
     let mut samples = Vec::new();
     for (light, source) in scene.lights.iter().enumerate() {
@@ -157,7 +158,7 @@ fn light_samples<'a>(
             let shadow = if source.shadow {
                 let emitter = emitter(&source.light, sample);
                 let named = |e| PipelineError::Shadow { name: source.name.clone(), source: e };
-                Some(ShadowLight::new(geometry, surfaces, emitter, options).map_err(named)?)
+                Some(ShadowLight::new(geometry, surfaces, emitter, options).map_err(named)?.seen_from(lens))
             } else {
                 None
             };
