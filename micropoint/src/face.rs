@@ -3,6 +3,7 @@
 use crate::geometry::{HiddenSides, Surface, Triangle};
 use crate::lens::{Lens, LensKind, Plane};
 use glam::{DVec2, DVec3};
+use std::cmp::Ordering;
 
 /// A triangle in the frame of a lens.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +44,17 @@ impl Face {
             rational,
             barycentric: self.barycentric(lens.unproject(grid, nearness)),
         }
+    }
+
+    /// An order of faces that does not depend on the order of triangles: by surface, then by place. The
+    /// triangle's number decides only between triangles with the same corners.
+    #[must_use]
+    pub fn precedence(&self, other: &Self) -> Ordering {
+        // Corner by corner: two copies of a triangle may begin with different corners.
+        let corners = |f: &Self| f.corners.into_iter().flat_map(|c| c.to_array());
+        let mut places = corners(self).zip(corners(other)).map(|(a, b)| a.total_cmp(&b));
+        let by_place = places.find(|o| o.is_ne()).unwrap_or(Ordering::Equal);
+        self.surface.cmp(&other.surface).then(by_place).then(self.id.cmp(&other.id))
     }
 
     /// Barycentric coordinates of a point of the plane (lens frame), kept within the triangle.

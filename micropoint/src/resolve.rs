@@ -131,9 +131,11 @@ fn hide(
     let part = dicer.part(order[i]);
     let outline = dicer.outline(part);
     scratch.blockers.clear();
+    // What lies behind by less than rounding coincides, and may be in front by its number.
+    let behind = part.nearness.0 - lens.tie(part.nearness.0, DVec2::ZERO);
     for (j, &o) in order.iter().enumerate() {
         let other = dicer.part(o);
-        if other.nearness.1 < part.nearness.0 {
+        if other.nearness.1 < behind {
             // The parts are sorted by their nearest point: all that follow lie behind.
             break;
         }
@@ -144,7 +146,7 @@ fn hide(
         let upper = Layer { face: fo, outline: dicer.outline(other), nearness: other.nearness };
         let lower = Layer { face: fp, outline, nearness: part.nearness };
         // Which of two coincident surfaces is seen must not change from cell to cell.
-        let first = (fo.surface, fo.id) < (fp.surface, fp.id);
+        let first = fo.precedence(fp) == std::cmp::Ordering::Less;
         match in_front(lens, corner, upper, lower, first) {
             Front::Nowhere => {}
             Front::Everywhere => scratch.blockers.push((o, None)),

@@ -528,10 +528,7 @@ impl Dicer {
             .then(ka.1.total_cmp(&kb.1))
             .then(ka.2.total_cmp(&kb.2))
             .then(ka.3.total_cmp(&kb.3))
-            .then_with(|| {
-                let (fa, fb) = (&self.faces[a.face as usize], &self.faces[b.face as usize]);
-                (fa.surface, fa.id).cmp(&(fb.surface, fb.id))
-            })
+            .then_with(|| self.faces[a.face as usize].precedence(&self.faces[b.face as usize]))
     }
 
     pub(crate) fn part(&self, index: u32) -> &Part {

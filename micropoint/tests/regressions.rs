@@ -1,7 +1,7 @@
 //! Bugs that were fixed, each with its smallest input.
 
 use glam::{DVec3, dvec3};
-use pointillist_micropoint::invariants::{Soup, nothing_shows_through, picture, shares};
+use pointillist_micropoint::invariants::{Soup, nothing_shows_through, picture, shares, weights_are_shares};
 use pointillist_micropoint::{
     Geometry, MicropointOptions, PixelRect, PlainOpacity, Projection, Renderer, Surface, Tile, View,
 };
@@ -95,4 +95,38 @@ fn of_coincident_surfaces_the_same_one_is_seen_everywhere() {
     let expected = seen[0][1].round();
     let odd = seen.iter().filter(|p| (p[1] - expected).abs() > 1e-9).count();
     assert_eq!(odd, 0, "of {} pixels", seen.len());
+}
+
+/// Of two planes that differ by rounding, neither was found to be in front of the other: both were seen whole.
+#[test]
+fn planes_that_differ_by_rounding_hide_one_another_once() {
+    for gap in [0.0, 1e-15, -1e-15, 1e-13] {
+        let mut soup = Soup::default();
+        for z in [-5.0, -5.0 - gap] {
+            let surface = soup.surface(0.5);
+            soup.polygon(
+                &[dvec3(-9.0, -9.0, z), dvec3(9.0, -9.0, z), dvec3(9.0, 9.0, z), dvec3(-9.0, 9.0, z)],
+                surface,
+            );
+        }
+        for camera in [Projection::Perspective { fov_y_rad: 0.5 }, Projection::Orthographic { height: 3.0 }] {
+            let view = View::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, camera, 3, 3).unwrap();
+            for pixel in shares(&picture(&soup, view, EXACT).unwrap(), 2) {
+                assert!((pixel[0] + pixel[1] - 0.75).abs() < 1e-12, "gap {gap}: {pixel:?}");
+            }
+        }
+    }
+}
+
+/// One vertex far away makes the rounding of a parallel view larger than a box: its sides coincide, and were all seen.
+#[test]
+fn a_vertex_at_1e21_leaves_weights_that_sum_to_one() {
+    let mut soup = Soup::default();
+    let surface = soup.surface(1.0);
+    soup.cuboid(dvec3(0.0, 0.25, 0.0), dvec3(0.5, 0.75, 0.5), surface);
+    soup.positions[0] = dvec3(1.722_388_132_608_684e21, 0.0, 0.0);
+    let camera = Projection::Orthographic { height: 0.92 };
+    let [eye, target] = [dvec3(7.0, 65.0, 68.0), dvec3(64.0, -8.0, -69.0)].map(|p| p / 64.0);
+    let view = View::look_at(eye, target, DVec3::Y, camera, 5, 6).unwrap();
+    weights_are_shares(&soup, view, EXACT).unwrap();
 }
