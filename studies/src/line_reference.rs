@@ -10,7 +10,7 @@ use glam::{DVec3, dvec2};
 use pointillist_cli::scene::Scene;
 
 use crate::picture::Picture;
-use crate::point_sampling::{Pinhole, Projected, project, span};
+use crate::point_sampling::{Pinhole, Projected, by_rows, project, span};
 use crate::scenes::{SurfaceSample, radiance};
 
 /// Part of a line that a triangle covers.
@@ -24,17 +24,7 @@ struct Piece {
 pub(crate) fn render(scene: &Scene, lines: u32) -> Picture {
     let camera = Pinhole::new(scene);
     let triangles = project(scene, &camera);
-    let height = scene.image.height as usize;
-    let mut rows = vec![vec![]; height];
-    for (i, t) in triangles.iter().enumerate() {
-        let ys = t.corners.map(|c| c.y);
-        let (low, high) = (ys[0].min(ys[1]).min(ys[2]), ys[0].max(ys[1]).max(ys[2]));
-        if high >= 0.0 && low <= height as f64 {
-            for row in low.max(0.0).floor() as usize..=(high.floor() as usize).min(height - 1) {
-                rows[row].push(i as u32);
-            }
-        }
-    }
+    let rows = by_rows(&triangles, scene.image.height);
     let mut picture = Picture::black(scene.image.width, scene.image.height);
     let width = picture.width;
     picture.pixels.par_chunks_mut(width).zip(&rows).enumerate().for_each(|(y, (row, indices))| {

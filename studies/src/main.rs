@@ -24,7 +24,9 @@ mod stress_rows;
 use report::Outcome;
 
 /// Name, what it measures, and the study itself.
-const STUDIES: [(&str, &str, fn(&Path) -> Outcome); 5] = [
+type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
+
+const STUDIES: [Study; 5] = [
     ("dice", "areas of a triangle in the cells of a grid", run_dice),
     ("micropoint", "pictures against point sampling", micropoint::run),
     ("shadow", "shadows against a shadow map", shadow::run),

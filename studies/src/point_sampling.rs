@@ -98,6 +98,20 @@ fn in_front(local: &[DVec3; 3]) -> Vec<DVec3> {
     ring
 }
 
+/// For each row of pixels the triangles that it may meet.
+pub(crate) fn by_rows(triangles: &[Projected], height: u32) -> Vec<Vec<u32>> {
+    let mut rows = vec![vec![]; height as usize];
+    for (i, t) in triangles.iter().enumerate() {
+        let ys = t.corners.map(|c| c.y);
+        let (low, high) = (ys[0].min(ys[1]).min(ys[2]), ys[0].max(ys[1]).max(ys[2]));
+        if high >= 0.0 && low < f64::from(height) {
+            let last = (high as usize).min(rows.len() - 1);
+            rows[low.max(0.0) as usize..=last].iter_mut().for_each(|row| row.push(i as u32));
+        }
+    }
+    rows
+}
+
 /// A surface that a translucent one lets through at a sample.
 struct Layer {
     sample: u32,
@@ -109,25 +123,24 @@ struct Layer {
 pub(crate) fn render(scene: &Scene, n: u32, visible: &Visibility<'_>) -> Picture {
     let camera = Pinhole::new(scene);
     let triangles = project(scene, &camera);
-    let mut rows = vec![vec![]; scene.image.height as usize];
-    for (i, t) in triangles.iter().enumerate() {
-        let ys = t.corners.map(|c| c.y);
-        let (low, high) = (ys[0].min(ys[1]).min(ys[2]), ys[0].max(ys[1]).max(ys[2]));
-        let last = f64::from(scene.image.height) - 1.0;
-        if high >= 0.0 && low <= last + 1.0 {
-            for row in low.max(0.0).floor() as usize..=high.min(last).floor() as usize {
-                rows[row].push(i as u32);
-            }
-        }
-    }
+    let rows = by_rows(&triangles, scene.image.height);
     let mut picture = Picture::black(scene.image.width, scene.image.height);
     let mut band = Band::default();
     for (y, indices) in rows.iter().enumerate() {
         band.draw(scene, &triangles, indices, y, n);
         let row = &mut picture.pixels[y * scene.image.width as usize..][..scene.image.width as usize];
-        band.shade(scene, &camera, &triangles, y, n, visible, row);
+        band.shade(&Shading { scene, camera: &camera, triangles: &triangles, visible }, y, n, row);
     }
     picture
+}
+
+/// What samples are shaded with.
+#[derive(Clone, Copy)]
+struct Shading<'a> {
+    scene: &'a Scene,
+    camera: &'a Pinhole,
+    triangles: &'a [Projected],
+    visible: &'a Visibility<'a>,
 }
 
 /// Samples of one row of pixels.
@@ -171,16 +184,8 @@ impl Band {
             .sort_by(|a, b| (a.sample, b.nearness).partial_cmp(&(b.sample, a.nearness)).expect("finite"));
     }
 
-    fn shade(
-        &self,
-        scene: &Scene,
-        camera: &Pinhole,
-        triangles: &[Projected],
-        y: usize,
-        n: u32,
-        visible: &Visibility<'_>,
-        row: &mut [DVec3],
-    ) {
+    fn shade(&self, with: &Shading<'_>, y: usize, n: u32, row: &mut [DVec3]) {
+        let Shading { scene, camera, triangles, visible } = *with;
         let columns = scene.image.width * n;
         let step = 1.0 / f64::from(n);
         let mut next = 0;

@@ -184,7 +184,7 @@ pub(crate) fn with_shadows<'a>(
 }
 
 /// Stratified samples a side: everywhere, and where these differ.
-pub(crate) const COARSE: u32 = 6;
+const COARSE: u32 = 10;
 
 /// A picture by rays; `fine` × `fine` stratified samples in pixels at edges. `seed` moves the samples.
 pub(crate) fn render(scene: &Scene, tree: &Tree, show: &Show<'_>, fine: u32, seed: u64) -> Picture {

@@ -168,7 +168,7 @@ fn panel(
         .x_label_area_size(36)
         .y_label_area_size(56)
         .build_cartesian_2d(x.log_scale(), y.log_scale())?;
-    let power = |v: &f64| format!("{v:e}");
+    let power = |v: &f64| format!("{v:.0e}");
     chart
         .configure_mesh()
         .x_desc("seconds")

@@ -21,8 +21,8 @@ pub(crate) fn half_plane(size: u32) -> Scene {
     let plate = |x0: f64, x1: f64, y: f64, h: f64| {
         [dvec3(x0, y, h), dvec3(x1, y, h), dvec3(x1, y, -h), dvec3(x0, y, -h)]
     };
-    s.polygon(&plate(-40.0, 40.0, 0.0, 40.0), white);
-    s.polygon(&plate(-50.0, EDGE, 1.0, 50.0), white);
+    s.polygon(&plate(-8.0, 8.0, 0.0, 8.0), white);
+    s.polygon(&plate(-9.0, EDGE, 1.0, 9.0), white);
     s.scene.camera.up = dvec3(0.07, 1.0, 0.0);
     s.sun(SLANT);
     s.scene

@@ -24,10 +24,12 @@ struct Subject {
 pub(crate) fn run(out_dir: &Path) -> Outcome {
     let mut text = format!(
         "# Whole pictures\n\n`cargo build --release && cargo run --release -p studies -- speed` made this ({}). \
-         Each picture is drawn by the `pointillist` program, reading and writing included in the total.\n\n",
+         Each picture is drawn by the `pointillist` program, reading and writing included in the total; the better of two \
+         runs counts.\n\n",
         machine()
     );
-    let program = std::env::current_exe()?.with_file_name(format!("pointillist{}", std::env::consts::EXE_SUFFIX));
+    let program =
+        std::env::current_exe()?.with_file_name(format!("pointillist{}", std::env::consts::EXE_SUFFIX));
     if !program.exists() {
         text += "Skipped: the program is not built; `cargo build --release` builds it.\n";
         eprintln!("speed: skipped, `cargo build --release` first");
@@ -45,7 +47,9 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
 }
 
 fn measure(program: &Path, folder: &Path, text: &mut String) -> Result<String, std::io::Error> {
-    let mut csv = "picture,size,threads,total,load,build,tiles,cpu_visibility,cpu_shadow,cpu_shade,peak_bytes\n".to_owned();
+    let mut csv =
+        "picture,size,threads,total,load,build,tiles,cpu_visibility,cpu_shadow,cpu_shade,peak_bytes\n"
+            .to_owned();
     *text += "| picture | size | threads | total s | load s | build s | tiles s | CPU s: visibility | shadow | shade | peak MiB |\n\
               | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(2);
@@ -55,7 +59,7 @@ fn measure(program: &Path, folder: &Path, text: &mut String) -> Result<String, s
         let mut tiles = vec![];
         let mut peaks = vec![];
         for (size, threads) in [("1280x720", 1), ("1280x720", cores), ("2560x1440", cores)] {
-            let Some(stats) = draw(program, folder, &subject, size, threads)? else {
+            let Some(stats) = best(program, folder, &subject, size, threads)? else {
                 let _ = writeln!(text, "| {} | {size} | {threads} | failed | | | | | | | |", subject.name);
                 continue;
             };
@@ -71,7 +75,8 @@ fn measure(program: &Path, folder: &Path, text: &mut String) -> Result<String, s
             ];
             let peak = stats["peak_bytes"].as_f64().unwrap_or(0.0);
             let line: String = values.iter().map(|v| format!(" {v:.2} |")).collect();
-            let _ = writeln!(text, "| {} | {size} | {threads} |{line} {:.0} |", subject.name, peak / 1048576.0);
+            let _ =
+                writeln!(text, "| {} | {size} | {threads} |{line} {:.0} |", subject.name, peak / 1048576.0);
             let line: String = values.iter().map(|v| format!("{v:.4},")).collect();
             let _ = writeln!(csv, "{},{size},{threads},{line}{peak:.0}", subject.name);
             tiles.push(values[3]);
@@ -118,8 +123,30 @@ fn subjects(folder: &Path) -> std::io::Result<Vec<Subject>> {
     Ok(list)
 }
 
+/// The run of two that spent fewer seconds on tiles.
+fn best(
+    program: &Path,
+    folder: &Path,
+    subject: &Subject,
+    size: &str,
+    threads: usize,
+) -> std::io::Result<Option<Value>> {
+    let mut runs = vec![];
+    for _ in 0..2 {
+        runs.extend(draw(program, folder, subject, size, threads)?);
+    }
+    let tiles = |run: &Value| run["seconds"]["tiles"].as_f64().unwrap_or(f64::INFINITY);
+    Ok(runs.into_iter().min_by(|a, b| tiles(a).total_cmp(&tiles(b))))
+}
+
 /// Draws, and returns what `--stats` wrote.
-fn draw(program: &Path, folder: &Path, subject: &Subject, size: &str, threads: usize) -> std::io::Result<Option<Value>> {
+fn draw(
+    program: &Path,
+    folder: &Path,
+    subject: &Subject,
+    size: &str,
+    threads: usize,
+) -> std::io::Result<Option<Value>> {
     let stats = folder.join("stats.json");
     let mut command = Command::new(program);
     command.arg("render").args(&subject.path).args(&subject.arguments);
