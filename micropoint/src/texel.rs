@@ -54,6 +54,9 @@ const MOST_ROWS: f64 = 128.0;
 /// a thousandth of the contrast between neighbours, and what is inside stays exact.
 const MOST_SPAN: f64 = 32.0;
 
+/// Mean width in texels below which an outline is all border, and is followed texel by texel.
+const LEAST_WIDTH: f64 = 8.0;
+
 /// Texels up to which perspective is followed texel by texel.
 const FEW_TEXELS: f64 = 48.0;
 
@@ -121,11 +124,10 @@ impl<const N: usize> TexelSums<N> {
         }
         let (columns, lines) = (width as usize, height as usize);
         let mut sums = Self { width: columns, height: lines, wrap, unit, levels: vec![rows], coarser: None };
-        if width % 2 == 0 && height % 2 == 0 && width.min(height) >= 8 {
+        sums.add_coarse_levels();
+        if width.is_multiple_of(2) && height.is_multiple_of(2) && width.min(height) >= 8 {
             let coarse = Self::build(width / 2, height / 2, wrap, &|x, y| sums.mean_of_four(x, y))?;
             sums.coarser = Some(Box::new(coarse));
-        } else {
-            sums.add_coarse_levels();
         }
         Ok(sums)
     }
@@ -140,7 +142,7 @@ impl<const N: usize> TexelSums<N> {
         std::array::from_fn(|c| ((pair(y, c) + pair(y + 1, c)) * self.unit / 4.0) as f32)
     }
 
-    /// Rows taken together, for textures that cannot be halved.
+    /// Rows taken together, for outlines that are too narrow to take columns together.
     fn add_coarse_levels(&mut self) {
         let stride = self.width + 1;
         let mut rows_of_band = 4;
@@ -198,12 +200,6 @@ impl<const N: usize> TexelSums<N> {
         if low.floor() == high.floor() {
             return self.texel(low.x, low.y);
         }
-        if (high - low).max_element() > MOST_TEXELS.max(4.0 * self.width.max(self.height) as f64) {
-            return match self.wrap {
-                TexelWrap::Clamp => self.texel(0.5 * (low.x + high.x), 0.5 * (low.y + high.y)),
-                TexelWrap::Repeat | TexelWrap::Mirror => self.whole_mean(),
-            };
-        }
         let texels = (high.ceil() - low.floor()).max(DVec2::ONE);
         let few = texels.x * texels.y <= FEW_TEXELS;
         let rationals = corners.iter().map(|c| c.rational);
@@ -247,8 +243,19 @@ impl<const N: usize> TexelSums<N> {
         }
         let ring = &mut ring[..len];
         let (low, high) = convex::bounds(ring);
+        let area = convex::area(ring);
+        let span = (high - low).max_element();
+        // Not finite where a strip of a polygon reaches behind the eye.
+        if !(span.is_finite() && span <= MOST_TEXELS.max(4.0 * self.width.max(self.height) as f64)) {
+            let middle = 0.5 * (low + high);
+            return match self.wrap {
+                TexelWrap::Clamp if middle.is_finite() => self.texel(middle.x, middle.y),
+                _ => self.whole_mean(),
+            };
+        }
         if let Some(coarser) = &self.coarser
-            && (high - low).max_element() > MOST_SPAN
+            && span > MOST_SPAN
+            && area.abs() > LEAST_WIDTH * span
         {
             let mut halved =
                 [TexelCorner { grid: DVec2::ZERO, rational: 1.0, texel: DVec2::ZERO }; convex::MAX_VERTICES];
@@ -257,7 +264,6 @@ impl<const N: usize> TexelSums<N> {
             }
             return coarser.mean_in_texels(&halved[..len]);
         }
-        let area = convex::area(ring);
         let size = high - low;
         // A surface seen edge-on: what it shows is a line of texels, of which the middle will do.
         if area.abs() <= 1e-9 * size.x.max(size.y).powi(2) {
