@@ -230,6 +230,11 @@ impl ShadowScratch {
         }
         let outline = &mut self.target_vertices[first..];
         let area = convex::area(outline);
+        // A receiver without corners, or with one that is nowhere, gets no light.
+        if outline.is_empty() || !area.is_finite() || !outline.iter().all(|v| v.is_finite()) {
+            self.target_vertices.truncate(first);
+            return;
+        }
         if area < 0.0 {
             outline.reverse();
         }

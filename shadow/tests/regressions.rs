@@ -8,7 +8,6 @@ use pointillist_shadow::{Emitter, ShadowOptions};
 
 /// Only faces turned away from the light cast the shadow of a solid, so that what is in a closed room was lit from outside.
 #[test]
-#[ignore = "open: needs to know where the viewer is"]
 fn a_light_outside_a_closed_room_does_not_light_it() {
     let mut s = Soup::default();
     let (walls, table) = (s.surface(1.0), s.surface(1.0));

@@ -1,0 +1,73 @@
+//! Any values at all into every public function: an answer or a typed error, never a panic.
+
+use glam::{DVec3, dvec3};
+use pointillist_micropoint::{
+    Geometry, MicropointOptions, Occlusion, PlainOpacity, Projection, Renderer, Surface, Tile, View,
+};
+use pointillist_shadow::{
+    Emitter, Receivers, Resolution, ShadowError, ShadowLight, ShadowOptions, ShadowScratch, Viewer,
+};
+use proptest::prelude::*;
+
+fn number() -> BoxedStrategy<f64> {
+    prop_oneof![
+        6 => -2.0..2.0,
+        1 => any::<f64>(),
+        1 => prop_oneof![Just(0.0), Just(f64::NAN), Just(f64::INFINITY), Just(1e300), Just(-1e89), Just(5e-324), Just(1e16)],
+    ]
+    .boxed()
+}
+
+fn vector() -> BoxedStrategy<DVec3> {
+    (number(), number(), number()).prop_map(|(x, y, z)| dvec3(x, y, z)).boxed()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_light_on_any_receivers_gives_fractions_or_an_error(
+        triangles in prop::collection::vec(([vector(), vector(), vector()], 0.0..=1.0f32), 1..5), position in vector(), axis in vector(),
+        directional: bool, cells in prop::option::of(any::<u32>()), paper: bool, extra in prop::collection::vec(vector(), 0..9),
+    ) {
+        let finite = |p: &DVec3| p.is_finite() && p.abs().max_element() < 1e80;
+        let triangles: Vec<_> = triangles.into_iter().filter(|(c, _)| c.iter().all(finite)).collect();
+        prop_assume!(!triangles.is_empty());
+        let positions: Vec<_> = triangles.iter().flat_map(|(c, _)| *c).collect();
+        let indices: Vec<_> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let surfaces: Vec<_> = triangles.iter().map(|t| Surface { opacity: t.1, ..Surface::default() }).collect();
+        let surface_of: Vec<_> = (0..triangles.len() as u32).collect();
+        let geometry = Geometry::new(&positions, &indices, &surface_of, &surfaces).unwrap();
+        let view = View::look_at(dvec3(0.1, 0.2, 3.0), DVec3::ZERO, DVec3::Y, Projection::Perspective { fov_y_rad: 1.0 }, 3, 3).unwrap();
+        let renderer = Renderer::new(&geometry, &PlainOpacity, view, MicropointOptions::DEFAULT).unwrap();
+        let mut tile = Tile::default();
+        renderer.render(renderer.picture(), &mut tile);
+        let emitter = match directional {
+            true => Emitter::Directional { direction: position },
+            false => Emitter::Point { position, axis },
+        };
+        let rule = if paper { Occlusion::Paper } else { Occlusion::Correlated };
+        let resolution = cells.map_or(Resolution::Auto, Resolution::Cells);
+        let options = ShadowOptions::default().with_occlusion(rule).with_resolution(resolution);
+        let light = match ShadowLight::new(&geometry, &PlainOpacity, emitter, options) {
+            Ok(light) => light,
+            Err(ShadowError::NotFinite { .. }) => {
+                prop_assert!(!position.is_finite() || (!directional && !axis.is_finite()) || position.abs().max_element() > 1e80);
+                return Ok(());
+            }
+            Err(_) => return Ok(()),
+        };
+        let mut receivers = Receivers::default();
+        receivers.push_tile(&tile);
+        if !tile.faces().is_empty() {
+            receivers.push(0, extra.iter().copied());
+            receivers.push(0, []);
+        }
+        let mut lit = vec![];
+        light.lit(Viewer { lens: tile.lens(), faces: tile.faces() }, &receivers, &mut ShadowScratch::default(), &mut lit);
+        prop_assert_eq!(lit.len(), receivers.len());
+        for l in lit {
+            prop_assert!((0.0..=1.0).contains(&l), "{}", l);
+        }
+    }
+}
