@@ -113,9 +113,9 @@ pub struct ProjectedVertex {
 /// Grid positions beyond this are clipped before they are used: 2²⁴ cells leave 28 bits to a cell.
 const GUARD: f64 = (1 << 24) as f64;
 
-/// Nearest depth relative to the largest coordinate of the triangle. What is nearer is cut away:
-/// a slice of one part in 10⁹.
-const NEAR: f64 = 1e-9;
+/// Nearest depth relative to the largest coordinate of the triangle, a few ulp of it: what is nearer is
+/// rounding, and is cut away.
+const NEAR: f64 = 1e-15;
 
 impl ProjectedVertex {
     /// Projects a vertex.

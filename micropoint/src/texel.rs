@@ -194,7 +194,8 @@ impl<const N: usize> TexelSums<N> {
             .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), c| (l.min(c.texel), h.max(c.texel)));
         // Beyond this, neighbouring texels can hardly be told apart in f64.
         const LARGEST: f64 = 1e12;
-        if !(low.is_finite() && high.is_finite() && low.abs().max(high.abs()).max_element() < LARGEST) {
+        let usable = |c: &TexelCorner| c.texel.abs().max_element() < LARGEST && c.texel.is_finite();
+        if corners.is_empty() || !corners.iter().all(usable) {
             return self.texel(0.0, 0.0);
         }
         if low.floor() == high.floor() {
