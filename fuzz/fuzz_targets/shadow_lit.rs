@@ -40,8 +40,15 @@ fuzz_target!(|input: Input| {
         false => Emitter::Point { position, axis: steps(input.axis) },
     };
     let camera = Projection::Perspective { fov_y_rad: 1.0 };
-    let Ok(view) = View::look_at(steps(input.eye), steps(input.target), DVec3::Y, camera, 5, 4) else { return };
+    let Ok(view) = View::look_at(steps(input.eye), steps(input.target), DVec3::Y, camera, 5, 4) else {
+        return;
+    };
     let options = ShadowOptions::default();
+    // Any floats may give surfaces edge-on to within rounding: then an answer is enough.
+    if input.raw.is_some() {
+        let _ = invariants::lit_picture(&soup, view, emitter, options);
+        return;
+    }
     let facts = invariants::fractions_are_fractions(&soup, view, emitter, options)
         .and_then(|()| invariants::tiles_do_not_matter(&soup, view, emitter, options));
     if let Err(broken) = facts {

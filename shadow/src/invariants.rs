@@ -74,7 +74,7 @@ fn with_light<T>(
 ) -> Option<T> {
     let geometry = soup.geometry().ok()?;
     let renderer = Renderer::new(&geometry, &PlainOpacity, view, MicropointOptions::DEFAULT).ok()?;
-    let light = ShadowLight::new(&geometry, &PlainOpacity, emitter, options).ok()?;
+    let light = ShadowLight::new(&geometry, &PlainOpacity, emitter, options).ok()?.seen_from(renderer.lens());
     Some(visit(&geometry, &renderer, &light))
 }
 

@@ -20,6 +20,9 @@ const TOUCH: f64 = 1e-7;
 /// than any receiver, and the cost would be without bound.
 const MOST_CELLS: f64 = 256.0;
 
+/// Cells from the middle of the light grid to the farthest receiver.
+const MOST_DISTANCE: f64 = (1 << 29) as f64;
+
 /// The cells of a light grid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightCells {
@@ -31,9 +34,11 @@ impl LightCells {
     /// Size of the cells for a target with these bounds.
     fn size(&self, (low, high): (DVec2, DVec2)) -> f64 {
         let extent = (high - low).max_element();
+        // Receivers far smaller than their distance from the middle: cells must be numbered in 32 bits.
+        let least = low.abs().max(high.abs()).max_element() / MOST_DISTANCE;
         match self.size {
-            Some(size) => size.max(extent / MOST_CELLS.sqrt()),
-            None => extent.max(f64::MIN_POSITIVE).log2().ceil().exp2(),
+            Some(size) => size.max(extent / MOST_CELLS.sqrt()).max(least),
+            None => extent.max(least).max(f64::MIN_POSITIVE).log2().ceil().exp2(),
         }
     }
 

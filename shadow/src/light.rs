@@ -59,6 +59,9 @@ pub struct ShadowLight<'a> {
     options: ShadowOptions,
 }
 
+/// Sine of the angle between a surface and its light below which the surface is edge-on, within the rounding of its normal.
+const EDGE_ON: f64 = 1e-12;
+
 impl<'a> ShadowLight<'a> {
     /// Sets up the screens of a light.
     ///
@@ -159,9 +162,12 @@ impl<'a> ShadowLight<'a> {
         let [a, b, c] = self.geometry.corners(face.source.0, face.source.1);
         let normal = (b - a).cross(c - a);
         let towards = match self.emitter {
-            Emitter::Point { position, .. } => normal.dot(position - a),
-            Emitter::Directional { direction } => -normal.dot(direction),
+            Emitter::Point { position, .. } => position - a,
+            Emitter::Directional { direction } => -direction,
         };
+        let slope = normal.normalize_or_zero().dot(towards.normalize_or_zero());
+        // Edge-on to the light: no area to compare, and nothing to gain.
+        let towards = if slope.abs() > EDGE_ON { slope } else { 0.0 };
         if (face.front && towards > 0.0) || (!face.front && towards < 0.0) { Side::Lit } else { Side::Dark }
     }
 
