@@ -1,6 +1,6 @@
 //! How much of a light reaches each visible piece of a surface, without shadow maps, bias or rays.
 //!
-//! The *shape* of each visible piece is carried to the light ([1], §4): projected onto a light screen
+//! The *shape* of each visible piece is carried to the light (\[1\], §4): projected onto a light screen
 //! and compared there with the triangles between it and the light. What is left of its area is the
 //! lit fraction.
 //!
