@@ -113,9 +113,13 @@ pub struct ProjectedVertex {
 /// Grid positions beyond this are clipped before they are used: 2²⁴ cells leave 28 bits to a cell.
 const GUARD: f64 = (1 << 24) as f64;
 
-/// Nearest depth relative to the largest coordinate of the triangle, a few ulp of it: what is nearer is
-/// rounding, and is cut away.
-const NEAR: f64 = 1e-15;
+/// Nearest depth relative to the largest coordinate of the triangle. What is nearer has lost its direction
+/// to rounding, and is cut away; a ground that reaches 10¹² eye heights still comes out right.
+const NEAR: f64 = 1e-13;
+
+/// A plane whose distance from the eye, relative to the size of the triangle, is at most this contains
+/// the eye up to rounding: it is seen edge-on and has no area, whatever its corners round to.
+const EDGE_ON: f64 = 1e-14;
 
 impl ProjectedVertex {
     /// Projects a vertex.
@@ -196,7 +200,14 @@ pub fn set_up_face(
         false => {
             let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
             match lens.kind {
-                LensKind::Perspective => n.dot(corners[0]) < 0.0,
+                LensKind::Perspective => {
+                    let distance = n.dot(corners[0]);
+                    let size = corners.iter().map(|c| c.length()).fold(0.0, f64::max);
+                    if distance.abs() <= EDGE_ON * n.length() * size || !distance.is_finite() {
+                        return None;
+                    }
+                    distance < 0.0
+                }
                 LensKind::Orthographic => n.z < 0.0,
             }
         }

@@ -130,3 +130,15 @@ fn a_vertex_at_1e21_leaves_weights_that_sum_to_one() {
     let view = View::look_at(eye, target, DVec3::Y, camera, 5, 6).unwrap();
     weights_are_shares(&soup, view, EXACT).unwrap();
 }
+
+/// Faces that contain the eye became slivers when their corners were rounded: pixels summed up to 1.0001.
+#[test]
+fn an_eye_on_a_corner_of_a_cuboid_sees_no_more_than_everything() {
+    let corner = DVec3::splat(-31.0 / 64.0);
+    let mut soup = Soup::default();
+    let surface = soup.surface(1.0);
+    soup.cuboid(corner, corner + 0.5, surface);
+    let camera = Projection::Perspective { fov_y_rad: 1.0 };
+    let view = View::look_at(corner, dvec3(0.0, -4.0, -24.0) / 64.0, DVec3::Y, camera, 5, 4).unwrap();
+    weights_are_shares(&soup, view, MicropointOptions::default()).unwrap();
+}
