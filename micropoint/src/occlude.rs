@@ -277,7 +277,8 @@ pub fn in_front(
 ) -> Front {
     let (fu, fl) = (&upper.face.plane, &lower.face.plane);
     let tie = lens.tie(lower.nearness.1, fu.slope.abs() + fl.slope.abs());
-    if upper.nearness.0 >= lower.nearness.1 + tie {
+    // Ranges that lie apart need no planes, however steep these are.
+    if upper.nearness.0 >= lower.nearness.1 + lens.tie(lower.nearness.1, DVec2::ZERO) {
         return Front::Everywhere;
     }
     let mut common = ConvexPolygon::from_vertices(lower.outline);
