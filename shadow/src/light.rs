@@ -144,9 +144,9 @@ impl<'a> ShadowLight<'a> {
             let offset = viewer.lens.origin - self.screens.lenses[0].origin;
             let sees_all = |s: &usize| corners.iter().all(|&c| self.screens.sees(*s, c + offset));
             let count = self.screens.lenses.len();
-            let known = usize::from(scratch.last_screen).min(count - 1);
-            if let Some(screen) = std::iter::once(known).chain(0..count).find(sees_all) {
-                scratch.last_screen = screen as u8;
+            // Where two screens see all of it, the choice must not depend on other receivers.
+            let likely = self.screens.facing(corners.first().map_or(DVec3::ZERO, |&c| c + offset));
+            if let Some(screen) = std::iter::once(likely).chain(0..count).find(sees_all) {
                 let lens = &self.screens.lenses[screen];
                 let outline = corners.iter().map(|&c| placed(lens, lens.local_vector(c + offset)));
                 scratch.push_target((index as u32, r.face), screen, false, outline);

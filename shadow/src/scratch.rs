@@ -167,7 +167,6 @@ pub struct ShadowScratch {
     target_vertices: Vec<DVec2>,
     pub(crate) lit_faces: Vec<LitFace>,
     lit_face_of: Vec<u32>,
-    pub(crate) last_screen: u8,
     pub(crate) sums: Vec<Sum>,
     pub(crate) target_order: Vec<u32>,
     pub(crate) groups: Vec<Group>,
