@@ -14,6 +14,9 @@ pub struct Region {
     pub transmittance: f64,
 }
 
+/// Light that is fainter than this, of 1, is none: what it would show has no bit in any picture.
+const FAINT: f64 = 1e-12;
+
 /// Regions beyond which an occluder no longer divides but dims what it touches, by the share that it
 /// covers. Reached only where hundreds of occluders overlap in a spot that halving does not separate.
 const MOST_REGIONS: usize = 256;
@@ -191,7 +194,7 @@ impl Regions {
             let outside = self.outside.drain(..).filter(|p| p.area() > negligible);
             self.list.extend(outside.map(|polygon| Region { polygon, transmittance }));
             let passed = transmittance * (1.0 - opacity);
-            if passed > 0.0 {
+            if passed > FAINT {
                 self.list.push(Region { polygon: inside, transmittance: passed });
             }
         }
