@@ -101,8 +101,18 @@ pub(crate) struct Sum {
 }
 
 impl Sum {
+    /// The lit fraction. What rounding leaves of a receiver on the border of two screens is neither light
+    /// nor shadow.
     pub(crate) fn fraction(&self) -> f64 {
-        if self.total > 0.0 { (self.lit / self.total).clamp(0.0, 1.0) } else { 0.0 }
+        const ROUNDING: f64 = 1e-12;
+        let fraction = if self.total > 0.0 { self.lit / self.total } else { 0.0 };
+        if fraction < ROUNDING {
+            0.0
+        } else if fraction > 1.0 - ROUNDING {
+            1.0
+        } else {
+            fraction
+        }
     }
 }
 
