@@ -247,7 +247,9 @@ impl<const N: usize> TexelSums<N> {
         let area = convex::area(ring);
         let span = (high - low).max_element();
         // Not finite where a strip of a polygon reaches behind the eye.
-        if !(span.is_finite() && span <= MOST_TEXELS.max(4.0 * self.width.max(self.height) as f64)) {
+        // Each corner is looked at: bounds do not always keep a NaN.
+        let finite = span.is_finite() && ring.iter().all(|v| v.is_finite());
+        if !finite || span > MOST_TEXELS.max(4.0 * self.width.max(self.height) as f64) {
             let middle = 0.5 * (low + high);
             return match self.wrap {
                 TexelWrap::Clamp if middle.is_finite() => self.texel(middle.x, middle.y),
