@@ -1,9 +1,10 @@
 //! Bugs that were fixed, each with its smallest input.
 
-use glam::{DVec3, dvec3};
+use glam::{DVec2, DVec3, dvec2, dvec3};
 use pointillist_micropoint::invariants::{Soup, nothing_shows_through, picture, shares, weights_are_shares};
 use pointillist_micropoint::{
-    Geometry, MicropointOptions, PixelRect, PlainOpacity, Projection, Renderer, Surface, Tile, View,
+    Geometry, MicropointOptions, PixelRect, PlainOpacity, Projection, Renderer, Surface, TexelCorner,
+    TexelSums, TexelWrap, Tile, View,
 };
 
 const EXACT: MicropointOptions = MicropointOptions::DEFAULT;
@@ -141,4 +142,17 @@ fn an_eye_on_a_corner_of_a_cuboid_sees_no_more_than_everything() {
     let camera = Projection::Perspective { fov_y_rad: 1.0 };
     let view = View::look_at(corner, dvec3(0.0, -4.0, -24.0) / 64.0, DVec3::Y, camera, 5, 4).unwrap();
     weights_are_shares(&soup, view, MicropointOptions::default()).unwrap();
+}
+
+/// Where a polygon is cut by depth, a corner may overflow to NaN; bounds forgot what came before it, and the edge to a corner
+/// 10¹¹ texels away was followed row by row, for hours.
+#[test]
+fn a_texel_mean_ends_where_a_cut_overflows() {
+    let white = TexelSums::<1>::new(1, 1, TexelWrap::Repeat, |_, _| [1.0]).unwrap();
+    let corner =
+        |grid: DVec2, rational: f64, row: f64| TexelCorner { grid, rational, texel: dvec2(0.0, row) };
+    let corners =
+        [corner(DVec2::ZERO, 1e300, 1e11), corner(DVec2::X, 1.0, 0.0), corner(DVec2::Y, 1e300, 0.0)];
+    let [mean] = white.mean(&corners);
+    assert!((mean - 1.0).abs() < 1e-6, "{mean}");
 }
