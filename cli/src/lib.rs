@@ -3,6 +3,7 @@
 //! The crates below this one are the library to build on; this one may change with every version.
 #![forbid(unsafe_code)]
 
+pub mod cloud_io;
 mod commands;
 pub mod compare;
 pub mod dice_command;

@@ -1,0 +1,128 @@
+//! LAS and LAZ through the crate `las`.
+//!
+//! Coordinates come out with scale and offset applied. Colours have 16 bits by the standard, but many programs write 8
+//! into them: if the largest of the first block is from 1 to 255, they are taken as 8 bits.
+
+use super::ReadSeek;
+use super::block::{At, CloudSummary, Gather, MAX_BLOCK_POINTS, Point, Stop};
+use super::colour::ColourCode;
+use super::format::CloudFormat;
+use crate::input_error::InputError;
+use glam::DVec3;
+use las::{PointData, PointDataBuilder, Reader};
+use std::io::SeekFrom;
+
+/// Bytes of decoded records at once. The header says how long a record is, up to 64 KiB, so that 65,536 of them would be
+/// 4 GiB on its word.
+const CHUNK_BYTES: usize = 4 << 20;
+
+/// Reads a LAS or LAZ.
+pub(super) fn read<R: ReadSeek>(
+    name: &str,
+    mut input: R,
+    gather: &mut Gather<'_>,
+) -> Result<CloudSummary, Stop> {
+    check_extended_records(name, &mut input)?;
+    let mut reader = Reader::new(input).map_err(|error| fault(name, &error, 0))?;
+    let mut chunk = PointDataBuilder::new().for_header(reader.header()).build();
+    let announced = reader.header().number_of_points();
+    let points_at_once = (CHUNK_BYTES / chunk.record_len().max(1)).clamp(1, MAX_BLOCK_POINTS);
+    gather.expect(reader.header().point_format().has_color, false, false);
+    let mut code = None;
+    let mut read = 0;
+    while read < announced {
+        let count = reader
+            .fill_points(points_at_once as u64, &mut chunk)
+            .map_err(|error| fault(name, &error, read))?;
+        if count == 0 {
+            break;
+        }
+        let code = *code.get_or_insert_with(|| colour_code(&chunk));
+        push(name, &chunk, code, read, gather)?;
+        read += count;
+    }
+    gather.finish(name, CloudFormat::Las)
+}
+
+fn fault(name: &str, error: &las::Error, read: u64) -> InputError {
+    InputError::of_file(name, format!("not LAS, after {read} points: {error}"))
+        .with_help("the file is damaged or was cut off; get it again, or convert it to PLY")
+}
+
+fn colour_code(chunk: &PointData) -> ColourCode {
+    let highest = chunk.rgb().into_iter().flatten().map(|(r, g, b)| r.max(g).max(b)).max();
+    if highest.is_some_and(|highest| (1..=255).contains(&highest)) {
+        ColourCode::Byte
+    } else {
+        ColourCode::Short
+    }
+}
+
+fn push(
+    name: &str,
+    chunk: &PointData,
+    code: ColourCode,
+    before: u64,
+    gather: &mut Gather<'_>,
+) -> Result<(), Stop> {
+    let mut colours = chunk.rgb();
+    for (index, ((x, y), z)) in chunk.x().zip(chunk.y()).zip(chunk.z()).enumerate() {
+        let number = before + index as u64;
+        let mut point = Point { position: DVec3::new(x, y, z), ..Point::default() };
+        if let Some((r, g, b)) = colours.as_mut().and_then(Iterator::next) {
+            for (linear, stored) in point.colour.iter_mut().zip([r, g, b]) {
+                *linear = code.linear(f64::from(stored)).ok_or_else(|| {
+                    let message = format!(
+                        "point {number} (from 0) has a colour of {stored}, but those before have 8 bits"
+                    );
+                    InputError::of_file(name, message).with_help("write all colours with 16 bits")
+                })?;
+            }
+        }
+        gather.push(&point, At::Point(number))?;
+    }
+    Ok(())
+}
+
+/// Refuses extended records (behind the points) that do not fit into the file: the library would ask for as much memory as
+/// their headers say.
+fn check_extended_records<R: ReadSeek>(name: &str, input: &mut R) -> Result<(), InputError> {
+    /// Where a LAS 1.4 header has the offset of the first record (8 bytes) and their number (4).
+    const FIRST: u64 = 235;
+    /// Bytes of a record's own header, and where in it the length is.
+    const RECORD_HEADER: u64 = 60;
+    const LENGTH: u64 = 20;
+    let io = |error: std::io::Error| InputError::of_file(name, format!("cannot be read: {error}"));
+    let size = input.seek(SeekFrom::End(0)).map_err(io)?;
+    let mut minor = [0; 1];
+    read_at(input, 25, &mut minor).map_err(io)?;
+    let mut words = [0; 12];
+    if minor[0] >= 4 && size >= FIRST + 12 {
+        read_at(input, FIRST, &mut words).map_err(io)?;
+    }
+    let [first @ .., n0, n1, n2, n3] = words;
+    let mut at = u64::from_le_bytes(first);
+    for record in 0..u32::from_le_bytes([n0, n1, n2, n3]) {
+        let mut length = [0; 8];
+        let fits = at.checked_add(RECORD_HEADER).is_some_and(|end| end <= size);
+        if fits {
+            read_at(input, at + LENGTH, &mut length).map_err(io)?;
+        }
+        let length = u64::from_le_bytes(length);
+        let end = at.saturating_add(RECORD_HEADER).saturating_add(length);
+        if !fits || end > size {
+            let message = format!(
+                "extended record {record} at byte {at} with {length} bytes is not within the {size} bytes"
+            );
+            return Err(InputError::of_file(name, message)
+                .with_help("the file is damaged or was cut off; get it again, or convert it to PLY"));
+        }
+        at = end;
+    }
+    input.rewind().map_err(io)
+}
+
+fn read_at<R: ReadSeek>(input: &mut R, at: u64, into: &mut [u8]) -> std::io::Result<()> {
+    input.seek(SeekFrom::Start(at))?;
+    input.read_exact(into)
+}
