@@ -258,19 +258,24 @@ const SHORT_EDGE: f64 = 1e-4;
 /// The half-planes to the left of the edges of a convex ring (positive order), from the last edge on.
 ///
 /// Each holds the whole ring. Cuts leave vertices that nearly coincide, and the line through two such
-/// vertices can run anywhere, right through the ring too; it is moved outward then.
+/// vertices can run anywhere, right through the ring too; it is moved outward then. Vertices that coincide have
+/// no edge between them and give no half-plane.
 pub fn half_planes(ring: &[DVec2]) -> impl Iterator<Item = HalfPlane> + '_ {
     let (low, high) = bounds(ring);
     let short = SHORT_EDGE * (high - low).max_element();
     let mut previous = ring.last().copied().unwrap_or_default();
-    ring.iter().map(move |&v| {
+    ring.iter().filter_map(move |&v| {
         let mut half = HalfPlane::left_of(previous, v);
         previous = v;
+        // Without a normal every point would be on the border: neither inside nor outside.
+        if half.normal == DVec2::ZERO {
+            return None;
+        }
         if half.normal.abs().max_element() < short {
             let least = ring.iter().map(|&p| half.value(p)).fold(0.0, f64::min);
             half.offset = -least;
         }
-        half
+        Some(half)
     })
 }
 
@@ -348,6 +353,13 @@ mod tests {
         for half in half_planes(&ring) {
             assert!(ring.iter().chain(&inside).all(|&v| half.value(v) >= -1e-16), "{half:?}");
         }
+    }
+
+    #[test]
+    fn a_corner_given_twice_has_no_edge_of_its_own() {
+        let ring = [dvec2(0.0, 0.0), dvec2(1.0, 0.0), dvec2(1.0, 0.0), dvec2(0.0, 1.0)];
+        assert_eq!(half_planes(&ring).count(), 3);
+        assert!(half_planes(&ring).all(|half| half.value(dvec2(0.25, 0.25)) > 0.0));
     }
 
     #[test]

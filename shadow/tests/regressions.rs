@@ -3,7 +3,7 @@
 use glam::{DVec3, dvec3};
 use pointillist_micropoint::invariants::Soup;
 use pointillist_micropoint::{Projection, View};
-use pointillist_shadow::invariants::{light_on, lit_picture};
+use pointillist_shadow::invariants::{light_on, lit_picture, tiles_do_not_matter};
 use pointillist_shadow::{Emitter, ShadowOptions};
 
 /// Only faces turned away from the light cast the shadow of a solid, so that what is in a closed room was lit from outside.
@@ -59,4 +59,20 @@ fn large_pixels_near_a_lamp_get_their_exact_share() {
         light_on(&lit_picture(&s, view, emitter, ShadowOptions::default()).unwrap(), ground).iter().sum();
     // The plate is at half the height of the lamp: its shadow is 1 × 1.
     assert!((lit - 24.0).abs() < 1e-9, "{lit}");
+}
+
+/// A caster that reaches out of its screen was clipped into an outline with one corner twice. The edge between the two has no
+/// inside, so that it "separated" the caster from receivers right behind it, and only some tiles had a shortcut around that.
+#[test]
+fn a_light_in_the_plane_of_a_wall_does_not_shine_through_the_lid() {
+    let mut s = Soup::default();
+    let walls = s.surface(1.0);
+    s.cuboid(DVec3::splat(-1.0 / 64.0), DVec3::splat(31.0 / 64.0), walls);
+    let [eye, target, position] = [dvec3(6.0, 0.0, 0.0), dvec3(0.0, 41.0, 4.0), dvec3(-1.0, -1.0, 33.0)];
+    let camera = Projection::Perspective { fov_y_rad: 1.0 };
+    let view = View::look_at(eye / 64.0, target / 64.0, DVec3::Y, camera, 5, 4).unwrap();
+    let emitter = Emitter::Point { position: position / 64.0, axis: dvec3(41.0, 41.0, 64.0) };
+    let picture = lit_picture(&s, view, emitter, ShadowOptions::default()).unwrap();
+    assert!(picture.iter().flatten().all(|p| p.lit == 0.0), "{picture:?}");
+    tiles_do_not_matter(&s, view, emitter, ShadowOptions::default()).unwrap();
 }
