@@ -2,6 +2,7 @@
 
 use super::Report;
 use super::report::write_text;
+use crate::cloud_io::{self, CloudOptions, CloudSummary, Pose};
 use crate::error::CliError;
 use crate::image_io::{ExrFile, read_picture};
 use crate::input_error::InputError;
@@ -30,14 +31,19 @@ fn describe(path: &Path) -> Result<Value, InputError> {
     match extension.as_str() {
         "toml" | "json" => Ok(of_scene(&scene::load(path, &Overrides::default())?)),
         "obj" => Ok(of_mesh("obj", &read_obj(&name, &bytes()?)?)),
-        "ply" => Ok(of_mesh("ply", &read_ply(&name, &bytes()?)?)),
+        "ply" => of_ply(path, &name),
+        "conf" => of_conf(path),
+        "gz" | "xyz" | "txt" | "asc" | "pts" | "csv" | "las" | "laz" | "e57" => Ok(of_cloud(&summary(path)?)),
         "exr" => of_exr(&name, &bytes()?),
         "png" | "jpg" | "jpeg" | "hdr" => {
             let picture = read_picture(path)?;
             Ok(json!({ "kind": "image", "format": extension, "size": picture.size }))
         }
         _ => Err(InputError::of_file(&name, "the name does not say what kind of file this is")
-            .with_help("known are .toml, .json, .obj, .ply, .exr, .png, .jpg and .hdr")),
+            .with_help(
+                "known are .toml, .json, .obj, .ply, .exr, .png, .jpg and .hdr, and of clouds .ply.gz, .xyz, .txt, \
+                 .asc, .pts, .csv, .las, .laz, .e57 and .conf",
+            )),
     }
 }
 
@@ -72,7 +78,7 @@ fn of_scene(scene: &Scene) -> Value {
 
 fn of_mesh(format: &str, mesh: &FileMesh) -> Value {
     json!({
-        "kind": if mesh.triangles.is_empty() { "cloud" } else { "mesh" },
+        "kind": "mesh",
         "format": format,
         "vertices": mesh.positions.len(),
         "triangles": mesh.triangles.len(),
@@ -82,6 +88,80 @@ fn of_mesh(format: &str, mesh: &FileMesh) -> Value {
         "material_files": mesh.material_files,
         "bounds": bounds(&mesh.positions),
     })
+}
+
+/// A mesh if it has faces, a cloud otherwise.
+fn of_ply(path: &Path, name: &str) -> Result<Value, InputError> {
+    let summary = summary(path)?;
+    if summary.faces == 0 {
+        return Ok(of_cloud(&summary));
+    }
+    let bytes = std::fs::read(path).map_err(|e| InputError::of_file(name, format!("cannot be read: {e}")))?;
+    Ok(of_mesh("ply", &read_ply(name, &bytes)?))
+}
+
+/// Broken points are counted and not an error: this command is for looking at files.
+fn summary(path: &Path) -> Result<CloudSummary, InputError> {
+    let options = CloudOptions::default().with_drop_invalid(true);
+    cloud_io::read_cloud(path, &options, &mut |_| Ok(()))
+}
+
+fn of_cloud(summary: &CloudSummary) -> Value {
+    let mut value = json!({
+        "kind": "cloud",
+        "format": summary.format.as_str(),
+        "points": summary.points,
+        "invalid": summary.dropped,
+        "colours": summary.has_colours,
+        "normals": summary.has_normals,
+        "radii": summary.has_radii,
+        "bounds": summary.bounds.map(|corner| corner.to_array()),
+        "warnings": summary.warnings,
+    });
+    if let Some(grid) = summary.grid {
+        value["grid"] = json!({
+            "columns": grid.cols, "rows": grid.rows, "filled": grid.filled, "spacing": grid.spacing,
+        });
+    }
+    value
+}
+
+/// All scans of a `.conf`, with the box of their points in the world.
+fn of_conf(path: &Path) -> Result<Value, InputError> {
+    let conf = cloud_io::read_conf(path)?;
+    let options = CloudOptions::default().with_drop_invalid(true);
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let mut points = 0;
+    let mut scans = Vec::new();
+    for scan in &conf.scans {
+        let summary = cloud_io::read_cloud::<InputError>(&scan.path, &options, &mut |block| {
+            for &position in block.positions {
+                let world = scan.pose.to_world(position);
+                low = low.min(world);
+                high = high.max(world);
+            }
+            Ok(())
+        })?;
+        points += summary.points;
+        let mut value = of_cloud(&summary);
+        value["path"] = json!(scan.path.display().to_string());
+        value["pose"] = of_pose(&scan.pose);
+        scans.push(value);
+    }
+    Ok(json!({
+        "kind": "scans",
+        "format": "conf",
+        "points": points,
+        "bounds": [low.to_array(), high.to_array()],
+        "camera": conf.camera.as_ref().map(of_pose),
+        "scans": scans,
+        "warnings": conf.warnings,
+    }))
+}
+
+/// World from scan, the quaternion as x, y, z, w.
+fn of_pose(pose: &Pose) -> Value {
+    json!({ "rotation": pose.rotation.to_array(), "translation": pose.translation.to_array() })
 }
 
 fn of_exr(name: &str, bytes: &[u8]) -> Result<Value, InputError> {

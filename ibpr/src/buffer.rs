@@ -1,0 +1,118 @@
+//! The buffer at screen/S: one averaged point per pixel.
+
+use crate::view::BufferMap;
+
+/// Empty pixels around the buffer, so that windows need no test for its border.
+pub(crate) const PAD: usize = 4;
+
+/// Entries after the last row, so that the last pixels can be read as a whole vector.
+const TAIL: usize = 16;
+
+/// A corner of faces: an averaged point in the picture, with its normal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corner {
+    /// Picture pixels in steps of 1/[`SUBPIXEL`].
+    pub(crate) x: i32,
+    pub(crate) y: i32,
+    /// Bent depth, and the unit normal in the camera's frame (right, up, back) towards the eye.
+    pub(crate) surface: [f32; 4],
+}
+
+/// Steps per picture pixel in which corners are placed.
+pub(crate) const SUBPIXEL: f32 = 256.0;
+
+impl Corner {
+    /// A corner that no face uses.
+    pub(crate) const NONE: Self = Self { x: 0, y: 0, surface: [f32::INFINITY, 0.0, 0.0, 0.0] };
+
+    pub(crate) fn is_some(&self) -> bool {
+        self.surface[0] < f32::INFINITY
+    }
+}
+
+/// One averaged point per pixel, as arrays with a border of [`PAD`] empty pixels.
+#[derive(Debug, Default)]
+pub(crate) struct Buffer {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) stride: usize,
+    /// Averaged position in buffer pixels; in empty pixels 0.
+    pub(crate) x: Vec<f32>,
+    pub(crate) y: Vec<f32>,
+    /// Averaged bent depth (see [`BufferMap::bend`]).
+    pub(crate) q: Vec<f32>,
+    /// Number of averaged points; 0 where the pixel is empty.
+    pub(crate) count: Vec<f32>,
+    /// What faces are made of.
+    pub(crate) corners: Vec<Corner>,
+    /// Averaged colour; not kept up to date for clouds without colours.
+    pub(crate) colour: Vec<[f32; 3]>,
+}
+
+impl Buffer {
+    pub(crate) fn reshape(&mut self, map: &BufferMap) {
+        let (stride, rows) = (map.width + 2 * PAD, map.height + 2 * PAD);
+        let len = stride * rows + TAIL;
+        (self.width, self.height) = (map.width, map.height);
+        if stride != self.stride || self.x.len() != len {
+            self.stride = stride;
+            for array in [&mut self.x, &mut self.y, &mut self.q, &mut self.count] {
+                array.clear();
+                array.resize(len, 0.0);
+            }
+            self.colour.clear();
+            self.colour.resize(len, [0.0; 3]);
+            self.corners.clear();
+            self.corners.resize(len, Corner::NONE);
+        }
+    }
+
+    /// Index of pixel (`column`, `row`).
+    pub(crate) fn at(&self, column: usize, row: usize) -> usize {
+        (row + PAD) * self.stride + column + PAD
+    }
+
+    /// Entries of the arrays without the rows above and below the picture.
+    pub(crate) fn inner(&self) -> std::ops::Range<usize> {
+        PAD * self.stride..(PAD + self.height) * self.stride
+    }
+}
+
+/// How far depths may differ on one surface, as bent depths.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DepthScale {
+    /// Typical distance of points in units (see [`BufferMap::unit`]).
+    pub(crate) spacing: f32,
+    /// Units per buffer pixel at the reference depth.
+    pub(crate) footprint: f32,
+    /// See [`BufferMap::bend`].
+    pub(crate) bend: f32,
+}
+
+impl DepthScale {
+    pub(crate) fn new(map: &BufferMap, spacing: f64) -> Self {
+        let depth = if map.view.is_perspective() { map.reference } else { 1.0 };
+        Self { spacing: (spacing / map.unit) as f32, footprint: (depth / map.focal()) as f32, bend: map.bend() }
+    }
+
+    /// The distance that counts as one between neighbours at relative depth `d`: the spacing of points,
+    /// or the size of a buffer pixel where that is larger.
+    pub(crate) fn unit(&self, d: f32) -> f32 {
+        self.spacing.max(self.footprint * (1.0 + self.bend * d))
+    }
+
+    pub(crate) fn bent(&self, d: f32) -> f32 {
+        d / (1.0 + self.bend * d)
+    }
+
+    pub(crate) fn straight(&self, q: f32) -> f32 {
+        q / (1.0 - self.bend * q)
+    }
+
+    /// `steps` units at bent depth `q`, as a difference of bent depths.
+    pub(crate) fn bent_step(&self, q: f32, steps: f32) -> f32 {
+        let slope = 1.0 - self.bend * q;
+        // unit(straight(q)) · dq/dd, where dq/dd = (1 − k·q)² and 1 + k·d = 1/(1 − k·q).
+        steps * (self.spacing * slope * slope).max(self.footprint * slope)
+    }
+}

@@ -1,0 +1,166 @@
+//! Scans made ready once, to be drawn from any view.
+
+use crate::cone::{self, Cone};
+use crate::error::IbprError;
+use crate::order::{Lattice, in_order};
+use crate::parallel::*;
+use crate::scan::Scan;
+use crate::spacing;
+use glam::{DVec3, Vec3};
+use std::ops::Range;
+
+/// Points per block: few enough to be near one another, many enough that a block costs nothing.
+pub(crate) const BLOCK: usize = 1024;
+
+/// Points that are near one another and of one scan.
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    /// Of the cloud's arrays.
+    pub(crate) points: Range<usize>,
+    pub(crate) origin: DVec3,
+    /// Half the sides of the box about `origin`, in units.
+    pub(crate) half: Vec3,
+    /// Holds all normals, if they are known.
+    pub(crate) cone: Option<Cone>,
+    /// Unit, in the world.
+    pub(crate) towards_scanner: Option<DVec3>,
+}
+
+/// Several scans as blocks in Morton order, with positions relative to their block.
+///
+/// The same for every order of scans and of points in them.
+#[derive(Clone, Debug)]
+pub struct Cloud {
+    pub(crate) blocks: Vec<Block>,
+    /// World units per unit of offsets: a power of 2 near the extent, so that `f32` never over- or
+    /// underflows whatever the units of the scan.
+    pub(crate) unit: f64,
+    /// Coordinates relative to the origin of their block, in units.
+    pub(crate) offsets: [Vec<f32>; 3],
+    /// Linear RGB, or empty.
+    pub(crate) colours: Vec<[f32; 3]>,
+    low: DVec3,
+    high: DVec3,
+    spacing: f64,
+    density: f64,
+}
+
+impl Cloud {
+    /// Sorts the points of `scans`, measures their spacing and finds where their surfaces face.
+    ///
+    /// Takes about 0.3 µs per point; holds 12 bytes per point, 24 with colour. Points of scans
+    /// without colour get `base` if other scans have colours.
+    ///
+    /// # Errors
+    /// [`IbprError::NoPoints`], [`IbprError::PointNotFinite`], [`IbprError::BadColour`],
+    /// [`IbprError::LengthMismatch`], [`IbprError::BadScan`], [`IbprError::TooManyPoints`].
+    pub fn new(scans: &[Scan<'_>], base: Vec3) -> Result<Self, IbprError> {
+        for (i, scan) in scans.iter().enumerate() {
+            scan.check(i)?;
+        }
+        let points: usize = scans.iter().map(|s| s.positions.len()).sum();
+        if points == 0 {
+            return Err(IbprError::NoPoints);
+        }
+        if u32::try_from(points).is_err() {
+            return Err(IbprError::TooManyPoints { points });
+        }
+        let lattice = Lattice::around(scans.iter().flat_map(|s| s.positions));
+        if !lattice.extent.is_finite() {
+            return Err(IbprError::BadScan { scan: 0, reason: "its points are too far apart for f64" });
+        }
+        let ordered = in_order(scans, &lattice);
+        let spacings: Vec<f64> = ordered.iter().map(|o| spacing::of_scan(&scans[o.scan], o)).collect();
+        let spacing = spacing::typical(&ordered, &spacings);
+        let coloured = scans.iter().any(|s| s.colours.is_some());
+        let mut cloud = Self {
+            blocks: vec![],
+            unit: if lattice.extent > 0.0 { lattice.extent.log2().floor().exp2() } else { 1.0 },
+            offsets: [0; 3].map(|_| Vec::with_capacity(points)),
+            colours: Vec::with_capacity(if coloured { points } else { 0 }),
+            low: lattice.low,
+            high: lattice.high,
+            spacing,
+            density: spacing::of_all(&ordered, &lattice, spacing, points),
+        };
+        for o in &ordered {
+            let scan = &scans[o.scan];
+            for indices in o.points.chunks(BLOCK) {
+                cloud.add_block(scan, indices);
+                if coloured {
+                    let colour = |&i: &u32| scan.colours.map_or(base.to_array(), |c| c[i as usize]);
+                    cloud.colours.extend(indices.iter().map(colour));
+                }
+            }
+        }
+        cloud.find_cones();
+        Ok(cloud)
+    }
+
+    fn find_cones(&mut self) {
+        let (spacing, offsets) = (self.spacing / self.unit, &self.offsets);
+        chunks(&mut self.blocks, 1).for_each(|blocks| {
+            for block in blocks {
+                let of_block = |axis: usize| &offsets[axis][block.points.clone()];
+                let points = [of_block(0), of_block(1), of_block(2)];
+                block.cone =
+                    block.towards_scanner.and_then(|d| cone::of_points(points, spacing, d.as_vec3()));
+            }
+        });
+    }
+
+    fn add_block(&mut self, scan: &Scan<'_>, indices: &[u32]) {
+        let position = |i: &u32| scan.positions[*i as usize];
+        let bounds = Lattice::around(indices.iter().map(|i| &scan.positions[*i as usize]));
+        let origin = bounds.centre();
+        let start = self.offsets[0].len();
+        for i in indices {
+            let offset = ((position(i) - origin) / self.unit).as_vec3();
+            for (axis, value) in self.offsets.iter_mut().zip(offset.to_array()) {
+                axis.push(value);
+            }
+        }
+        let towards_scanner = scan.towards_scanner.map(DVec3::normalize);
+        let points = start..start + indices.len();
+        // Rounded up: the box must hold the rounded offsets.
+        let half = (0.5 / self.unit * (bounds.high - bounds.low)).as_vec3() * (1.0 + 4.0 * f32::EPSILON);
+        self.blocks.push(Block { points, origin, half, cone: None, towards_scanner });
+    }
+
+    /// Number of points.
+    #[must_use]
+    #[expect(clippy::len_without_is_empty, reason = "a cloud is never empty")]
+    pub fn len(&self) -> usize {
+        self.offsets[0].len()
+    }
+
+    /// Whether any scan brought colours.
+    #[must_use]
+    pub fn has_colours(&self) -> bool {
+        !self.colours.is_empty()
+    }
+
+    /// Lower and upper corner of the box around all points.
+    #[must_use]
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        (self.low, self.high)
+    }
+
+    /// Typical distance between neighbours of one scan, in world units: what γ is counted in.
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// Distance between neighbours when all scans are laid over one another, in world units.
+    #[must_use]
+    pub fn density_spacing(&self) -> f64 {
+        self.density
+    }
+
+    /// How many blocks of points there are.
+    #[must_use]
+    pub fn block_count(&self) -> usize {
+        self.blocks.len()
+    }
+}

@@ -1,0 +1,95 @@
+//! Which blocks a frame has to look at.
+
+use crate::cloud::{Block, Cloud};
+use crate::frame::FrameCounts;
+use crate::options::Culling;
+use crate::view::{Projection, View};
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Incidence up to which a scanner measures (the paper's observation).
+const MOST_INCIDENCE_RAD: f64 = 75.0 * PI / 180.0;
+
+/// Indices of the blocks that may be seen, in the cloud's order.
+pub(crate) fn visible(
+    cloud: &Cloud,
+    view: &View,
+    culling: Culling,
+    blocks: &mut Vec<u32>,
+    counts: &mut FrameCounts,
+) {
+    blocks.clear();
+    *counts = FrameCounts::default();
+    let frustum = Frustum::new(view);
+    for (i, block) in cloud.blocks.iter().enumerate() {
+        let skipped = if frustum.misses(block, cloud.unit) {
+            &mut counts.blocks_outside
+        } else if faces_away(block, view, culling, cloud.unit) {
+            &mut counts.blocks_facing_away
+        } else {
+            blocks.push(i as u32);
+            counts.blocks += 1;
+            counts.points += block.points.len();
+            continue;
+        };
+        *skipped += 1;
+        counts.points_skipped += block.points.len();
+    }
+}
+
+/// Half-spaces that hold the view: n·(p − eye) ≥ offset.
+struct Frustum {
+    eye: DVec3,
+    planes: [(DVec3, f64); 5],
+}
+
+impl Frustum {
+    fn new(view: &View) -> Self {
+        let half = 0.5 / view.focal_px();
+        let (x, y) = (half * f64::from(view.width), half * f64::from(view.height));
+        let (r, u, f) = (view.right, view.up, view.forward);
+        let sides = match view.projection {
+            Projection::Perspective { .. } => {
+                [(x * f + r, 0.0), (x * f - r, 0.0), (y * f + u, 0.0), (y * f - u, 0.0)]
+            }
+            Projection::Orthographic { .. } => [(r, -x), (-r, -x), (u, -y), (-u, -y)],
+        };
+        let [a, b, c, d] = sides;
+        Self { eye: view.eye, planes: [a, b, c, d, (f, 0.0)] }
+    }
+
+    fn misses(&self, block: &Block, unit: f64) -> bool {
+        let centre = block.origin - self.eye;
+        let half = block.half.as_dvec3() * unit;
+        self.planes.iter().any(|(n, offset)| n.dot(centre) + n.abs().dot(half) < *offset)
+    }
+}
+
+/// From the block to the eye: unit direction, and the angle that the block's own size adds.
+fn towards_eye(block: &Block, view: &View, unit: f64) -> (DVec3, f64) {
+    match view.projection {
+        Projection::Orthographic { .. } => (-view.forward, 0.0),
+        Projection::Perspective { .. } => {
+            let to_eye = view.eye - block.origin;
+            let (distance, radius) = (to_eye.length(), block.half.as_dvec3().length() * unit);
+            // An eye inside the block sees it from everywhere.
+            let spread = if distance > radius { (radius / distance).asin() } else { PI };
+            (to_eye / distance.max(f64::MIN_POSITIVE), spread)
+        }
+    }
+}
+
+fn faces_away(block: &Block, view: &View, culling: Culling, unit: f64) -> bool {
+    let (to_eye, spread) = towards_eye(block, view, unit);
+    let angle_to = |axis: DVec3| axis.dot(to_eye).clamp(-1.0, 1.0).acos();
+    let scan_beyond = |angle: f64| block.towards_scanner.is_some_and(|d| angle_to(d) > angle + spread);
+    match culling {
+        Culling::None => false,
+        Culling::Printed => block.towards_scanner.is_some_and(|d| d.dot(-view.forward) < 0.0),
+        Culling::Scans => scan_beyond(FRAC_PI_2 + MOST_INCIDENCE_RAD),
+        Culling::Blocks => match block.cone {
+            Some(c) => angle_to(c.axis.as_dvec3()) > FRAC_PI_2 + f64::from(c.half_angle) + spread,
+            None => scan_beyond(FRAC_PI_2 + MOST_INCIDENCE_RAD),
+        },
+    }
+}

@@ -1,0 +1,76 @@
+/// What can be wrong with the input of this crate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum IbprError {
+    /// No scan holds a point.
+    #[error("there are no points to draw")]
+    NoPoints,
+    /// A coordinate is NaN or infinite.
+    #[error("point {index} of scan {scan} is not finite: {value:?}")]
+    PointNotFinite {
+        /// Position of the scan in the slice.
+        scan: usize,
+        /// Position of the point in its scan.
+        index: usize,
+        /// Its coordinates.
+        value: [f64; 3],
+    },
+    /// A colour is NaN, infinite or negative.
+    #[error("the colour of point {index} of scan {scan} is not a finite number of at least 0: {value:?}")]
+    BadColour {
+        /// Position of the scan in the slice.
+        scan: usize,
+        /// Position of the point in its scan.
+        index: usize,
+        /// Linear RGB.
+        value: [f32; 3],
+    },
+    /// There must be a colour for each point, or none.
+    #[error("scan {scan} has {colours} colours for {points} points")]
+    LengthMismatch {
+        /// Position of the scan in the slice.
+        scan: usize,
+        /// How many colours were given.
+        colours: usize,
+        /// How many points there are.
+        points: usize,
+    },
+    /// A spacing must be finite and above 0, a direction finite and not zero.
+    #[error("scan {scan}: {reason}")]
+    BadScan {
+        /// Position of the scan in the slice.
+        scan: usize,
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// More points than an index holds.
+    #[error("{points} points are more than this crate can number (2^32 - 1)")]
+    TooManyPoints {
+        /// How many there are.
+        points: usize,
+    },
+    /// The camera cannot be used.
+    #[error("the view is not usable: {reason}")]
+    BadView {
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// The picture is empty or too large.
+    #[error("a picture of {width} x {height} pixels cannot be drawn: each side must be 1 to 16384")]
+    BadSize {
+        /// Pixels from left to right.
+        width: u32,
+        /// Pixels from top to bottom.
+        height: u32,
+    },
+    /// An option is outside its range.
+    #[error("{name} = {value} is not usable: {range}")]
+    BadOption {
+        /// Name of the field.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        range: &'static str,
+    },
+}

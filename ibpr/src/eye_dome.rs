@@ -1,0 +1,37 @@
+//! Eye-dome lighting: pixels behind their surroundings darken.
+//!
+//! C. Boucheny, *Visualisation scientifique interactive de grands volumes de données*, 2009, §4.4:
+//! shade = exp(−300 · strength · mean over neighbours of max(0, log₂ z − log₂ zₙ)).
+
+use crate::frame::Frame;
+use crate::options::EyeDome;
+use crate::parallel::*;
+
+/// Factor of the exponent that makes a strength of 1 usual.
+const GAIN: f32 = 300.0;
+
+/// Darkens the colours of a finished frame.
+pub(crate) fn apply(frame: &mut Frame, dome: &EyeDome) {
+    let (width, height) = (frame.width, frame.height);
+    let depth = &frame.depth;
+    let r = dome.radius as isize;
+    let around = [(r, 0), (r, r), (0, r), (-r, r), (-r, 0), (-r, -r), (0, -r), (r, -r)];
+    chunks(&mut frame.colour, width).enumerate().for_each(|(y, row)| {
+        for (x, pixel) in row.iter_mut().enumerate() {
+            let here = depth[y * width + x];
+            if here == f32::INFINITY {
+                continue;
+            }
+            let behind = |(dx, dy): (isize, isize)| {
+                let (i, j) = (x.checked_add_signed(dx)?, y.checked_add_signed(dy)?);
+                let there = (i < width && j < height).then(|| depth[j * width + i])?;
+                (there < here).then(|| (here / there).log2())
+            };
+            let sum: f32 = around.into_iter().filter_map(behind).sum();
+            let shade = (-GAIN * dome.strength * sum / 8.0).exp();
+            for c in &mut pixel[..3] {
+                *c *= shade;
+            }
+        }
+    });
+}

@@ -1,0 +1,213 @@
+//! Faces between neighbouring averaged points, drawn at the size of the picture.
+//!
+//! Four neighbouring pixels are a quad. Those of its corners that hold points of one surface make the
+//! face: four a quadrilateral, three a triangle, as in the paper. Towards corners that are missing (or
+//! belong to another surface) the face reaches half a buffer pixel further: the averaged points lie
+//! inside the outline, not on it.
+
+use crate::buffer::{Buffer, Corner, DepthScale, SUBPIXEL};
+use crate::normals::STEP;
+use crate::raster::{Paint, Strip, Vertex};
+
+/// How faces are made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FaceRules {
+    pub(crate) scale: DepthScale,
+    /// Picture pixels by which outlines reach beyond the corners; 0: as printed.
+    pub(crate) outline_px: f32,
+    /// Buffer pixels per world unit at depth 1, and the offset and size of the buffer's pixels: what
+    /// continues a surface beyond a corner.
+    pub(crate) focal: f32,
+    pub(crate) reference: f32,
+    pub(crate) centre: (f32, f32),
+    pub(crate) perspective: bool,
+    /// Picture pixels per buffer pixel.
+    pub(crate) pixel: f32,
+    /// Whether colour and count are drawn too.
+    pub(crate) painted: bool,
+    /// Second pass: no face where points are dense or the surface is nearly edge-on.
+    pub(crate) sparse_only: bool,
+}
+
+/// More points in a pixel are "dense" (the paper's 8).
+const DENSE: f32 = 8.0;
+
+/// Cosine of the view's angle to the normal below which a surface is "nearly edge-on".
+const EDGE_ON_COS: f32 = 0.3;
+
+/// Draws all faces of `buffer` that touch `strip`.
+pub(crate) fn draw(buffer: &Buffer, rules: &FaceRules, strip: &mut Strip) {
+    // A corner lies in its own pixel, an outline at most one pixel (and half a picture pixel) beyond.
+    let reach = 2.0 + 0.5 / rules.pixel;
+    let top = (strip.first_row as f32 / rules.pixel - reach).max(-1.0) as isize;
+    let bottom = ((strip.first_row + strip.rows) as f32 / rules.pixel + reach).min(buffer.height as f32) as isize;
+    for row in top..bottom {
+        let upper = buffer.at(0, 0).wrapping_add_signed(row * buffer.stride as isize - 1);
+        for at in upper..upper + buffer.width + 1 {
+            let quad = [at, at + 1, at + 1 + buffer.stride, at + buffer.stride];
+            draw_quad(buffer, rules, quad, strip);
+        }
+    }
+}
+
+/// Corners run clockwise in the picture from the upper left.
+fn draw_quad(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], strip: &mut Strip) {
+    let corners = quad.map(|i| &buffer.corners[i]);
+    let depth = corners.map(|c| c.surface[0]);
+    let farthest = depth[0].max(depth[1]).max(depth[2].max(depth[3]));
+    let nearest = depth[0].min(depth[1]).min(depth[2].min(depth[3]));
+    if nearest == f32::INFINITY {
+        return;
+    }
+    let step = rules.scale.bent_step(nearest, STEP);
+    if rules.sparse_only && quad.iter().any(|i| too_fine(buffer, rules, *i)) {
+        return;
+    }
+    if farthest - nearest < step {
+        let vertices = corners.map(|c| vertex(c, f32::INFINITY));
+        return draw_whole(buffer, rules, quad, &vertices, strip);
+    }
+    let joined = [0, 1, 2, 3].map(|k: usize| (depth[k] - depth[(k + 1) % 4]).abs() < step);
+    let mut left = 0;
+    for (k, d) in depth.iter().enumerate() {
+        left |= usize::from(*d < f32::INFINITY) << k;
+    }
+    while left != 0 {
+        let group = surface_of(left.trailing_zeros() as usize, left, joined);
+        left &= !group;
+        draw_part(buffer, rules, quad, group, strip);
+    }
+}
+
+/// Corners that belong with `first`, as a bit mask.
+fn surface_of(first: usize, valid: usize, joined: [bool; 4]) -> usize {
+    let mut group = 1 << first;
+    // Three rounds reach every corner of a ring of four.
+    for _ in 0..3 {
+        for k in 0..4 {
+            let pair = 1 << k | 1 << ((k + 1) % 4);
+            if joined[k] && group & pair != 0 {
+                group |= pair & valid;
+            }
+        }
+    }
+    group
+}
+
+fn too_fine(buffer: &Buffer, rules: &FaceRules, at: usize) -> bool {
+    let corner = &buffer.corners[at];
+    buffer.count[at] > DENSE || (corner.is_some() && facing(corner, rules, buffer, at) < EDGE_ON_COS)
+}
+
+/// Cosine between the normal and the direction to the eye.
+fn facing(corner: &Corner, rules: &FaceRules, buffer: &Buffer, at: usize) -> f32 {
+    let [_, nx, ny, nz] = corner.surface;
+    if !rules.perspective {
+        return nz;
+    }
+    let (u, v) = (buffer.x[at] - rules.centre.0, buffer.y[at] - rules.centre.1);
+    let (x, y) = (u / rules.focal, v / rules.focal);
+    (nz - nx * x + ny * y) / (1.0 + x * x + y * y).sqrt()
+}
+
+fn vertex(corner: &Corner, inside: f32) -> Vertex {
+    Vertex { x: corner.x, y: corner.y, surface: corner.surface, inside }
+}
+
+fn paint(buffer: &Buffer, at: usize) -> Paint {
+    let [r, g, b] = buffer.colour[at];
+    [r, g, b, buffer.count[at]]
+}
+
+/// Two triangles, along the diagonal whose ends are closer in depth.
+fn draw_whole(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], v: &[Vertex; 4], strip: &mut Strip) {
+    let depth = |k: usize| v[k].surface[0];
+    let turn = (depth(0) - depth(2)).abs() > (depth(1) - depth(3)).abs();
+    let triangles = if turn { [[1, 2, 3], [1, 3, 0]] } else { [[0, 1, 2], [0, 2, 3]] };
+    let paints = rules.painted.then(|| quad.map(|i| paint(buffer, i)));
+    for t in triangles {
+        let paints = paints.as_ref().map(|p| t.map(|k: usize| &p[k]));
+        strip.triangle::<false>(t.map(|k: usize| &v[k]), paints);
+    }
+}
+
+/// The face of some of the corners, with its outline towards the others.
+fn draw_part(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], group: usize, strip: &mut Strip) {
+    let size = group.count_ones();
+    if rules.outline_px <= 0.0 && size < 3 {
+        return;
+    }
+    let has = |k: usize| group >> (k % 4) & 1 == 1;
+    let blank = (vertex(&Corner::NONE, 0.0), [0.0; 4]);
+    let mut ring = [blank; 6];
+    let mut n = 0;
+    let mut push = |v: Vertex, p: Paint| {
+        ring[n] = (v, p);
+        n += 1;
+    };
+    for k in (0..4).filter(|k| has(*k)) {
+        let at = quad[k];
+        let p = if rules.painted { paint(buffer, at) } else { [0.0; 4] };
+        let outline = rules.outline_px > 0.0;
+        if outline && !has(k + 3) {
+            push(beyond(buffer, rules, [at, quad[(k + 3) % 4]], towards(k, (k + 3) % 4)), p);
+        }
+        let inside = if outline && size < 4 { rules.outline_px } else { f32::INFINITY };
+        push(vertex(&buffer.corners[at], inside), p);
+        if outline && !has(k + 1) {
+            push(beyond(buffer, rules, [at, quad[(k + 1) % 4]], towards(k, (k + 1) % 4)), p);
+        }
+    }
+    for k in 1..n.saturating_sub(1) {
+        let t = [0, k, k + 1];
+        let paints = rules.painted.then(|| t.map(|i| &ring[i].1));
+        let vertices = t.map(|i| &ring[i].0);
+        if size == 4 || rules.outline_px <= 0.0 {
+            strip.triangle::<false>(vertices, paints);
+        } else {
+            strip.triangle::<true>(vertices, paints);
+        }
+    }
+}
+
+/// Direction from corner `from` of a quad to its neighbour `to`.
+fn towards(from: usize, to: usize) -> (f32, f32) {
+    const PLACE: [(f32, f32); 4] = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+    (PLACE[to].0 - PLACE[from].0, PLACE[to].1 - PLACE[from].1)
+}
+
+/// The point where the surface of corner `at` ends towards the neighbour `next`: on the corner's plane,
+/// half a picture pixel outside the outline. Behind a nearer neighbour it does not end: there it goes on
+/// until that one hides it.
+fn beyond(buffer: &Buffer, rules: &FaceRules, [at, next]: [usize; 2], direction: (f32, f32)) -> Vertex {
+    /// From here on a picture pixel is not touched by the surface.
+    const OUTSIDE_PX: f32 = 0.5;
+    /// Buffer pixels: from a corner at one side of its pixel to beyond the outline of a corner at the
+    /// other side of the next.
+    const UNDER: f32 = 1.5;
+    let corner = &buffer.corners[at];
+    let hidden = buffer.corners[next].surface[0] < corner.surface[0];
+    let (length_px, inside) = if hidden {
+        (UNDER * rules.pixel, rules.outline_px + UNDER * rules.pixel)
+    } else {
+        (rules.outline_px + OUTSIDE_PX, -OUTSIDE_PX)
+    };
+    let [q, nx, ny, nz] = corner.surface;
+    // The slope of the bent depth, from the normal: see `Camera::normal`.
+    let toward = if rules.perspective {
+        let (u, v) = (buffer.x[at] - rules.centre.0, buffer.y[at] - rules.centre.1);
+        (nz - nx * u / rules.focal + ny * v / rules.focal) / (rules.reference - q)
+    } else {
+        nz
+    };
+    let along = (nx * direction.0 - ny * direction.1) / (rules.focal * toward);
+    let limit = rules.scale.bent_step(q, 1.0);
+    let rise = (along * length_px / rules.pixel).clamp(-limit, limit);
+    let step = |d: f32| (d * length_px * SUBPIXEL) as i32;
+    Vertex {
+        x: corner.x + step(direction.0),
+        y: corner.y + step(direction.1),
+        surface: [if rise.is_nan() { q } else { q + rise }, nx, ny, nz],
+        inside,
+    }
+}

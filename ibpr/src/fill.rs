@@ -1,0 +1,183 @@
+//! Pull-push: pixels without points that lie between pixels with points of one surface.
+//!
+//! Only what is enclosed is filled, so outlines do not grow: an empty pixel takes the mean of opposite
+//! neighbours that belong together. For wider gaps the buffer is averaged to half its size (pull), the
+//! gaps that are enclosed there are filled, and handed down (push).
+
+use crate::buffer::{Buffer, DepthScale, PAD};
+use crate::parallel::*;
+
+/// Count of a filled pixel: it is drawn, but has next to no say in plane fits.
+pub(crate) const FILLED: f32 = 1e-3;
+
+/// Depths of opposite neighbours may differ by this many units: twice the step between neighbours.
+const STEP: f32 = 10.0;
+
+/// Of the four pairs of opposite neighbours, so many must close a gap: a slit between two surfaces is
+/// bridged by one pair only, and stays open.
+const ENCLOSED: usize = 3;
+const ENCLOSED_EMPTY: usize = 1;
+
+/// Rows that are searched together.
+const BAND_ROWS: usize = 32;
+
+/// A pixel that gets a value.
+#[derive(Clone, Copy, Debug)]
+struct Fill {
+    index: usize,
+    x: f32,
+    y: f32,
+    q: f32,
+    colour: [f32; 3],
+}
+
+/// Working memory.
+#[derive(Debug, Default)]
+pub(crate) struct FillScratch {
+    bands: Vec<Vec<Fill>>,
+    levels: Vec<Buffer>,
+}
+
+/// Fills gaps of less than 2^`levels` pixels.
+pub(crate) fn pull_push(buffer: &mut Buffer, scale: &DepthScale, levels: u32, scratch: &mut FillScratch) {
+    if levels == 0 {
+        return;
+    }
+    let coarser = levels as usize - 1;
+    let FillScratch { bands, levels: pyramid } = scratch;
+    pyramid.resize_with(coarser.max(pyramid.len()), Buffer::default);
+    for l in 0..coarser {
+        let (finer, rest) = pyramid.split_at_mut(l);
+        pull(finer.last().unwrap_or(buffer), &mut rest[0], scale);
+    }
+    for l in (0..coarser).rev() {
+        let (finer, rest) = pyramid.split_at_mut(l);
+        close_gaps(&mut rest[0], scale, bands);
+        push(&rest[0], finer.last_mut().unwrap_or(buffer), bands);
+    }
+    close_gaps(buffer, scale, bands);
+}
+
+/// Fills the pixels between opposite neighbours of one surface.
+fn close_gaps(buffer: &mut Buffer, scale: &DepthScale, bands: &mut Vec<Vec<Fill>>) {
+    let count = buffer.height.div_ceil(BAND_ROWS);
+    bands.resize_with(count.max(bands.len()), Vec::new);
+    let shared = &*buffer;
+    chunks(&mut bands[..count], 1).enumerate().for_each(|(i, fills)| {
+        let fills = &mut fills[0];
+        fills.clear();
+        for row in i * BAND_ROWS..((i + 1) * BAND_ROWS).min(shared.height) {
+            let start = shared.at(0, row);
+            fills.extend((start..start + shared.width).filter_map(|i| between(shared, i, scale)));
+        }
+    });
+    for fill in bands[..count].iter().flatten() {
+        apply(buffer, fill);
+    }
+}
+
+fn apply(buffer: &mut Buffer, fill: &Fill) {
+    let i = fill.index;
+    (buffer.x[i], buffer.y[i], buffer.q[i]) = (fill.x, fill.y, fill.q);
+    (buffer.count[i], buffer.colour[i]) = (FILLED, fill.colour);
+}
+
+/// The mean of the pairs of opposite neighbours of the surface that is nearest to the eye, for a pixel
+/// that is empty or through which another surface behind that one is seen.
+fn between(buffer: &Buffer, index: usize, scale: &DepthScale) -> Option<Fill> {
+    let s = buffer.stride;
+    let occupied = buffer.count[index] > 0.0;
+    let q = buffer.q[index];
+    let step = scale.bent_step(q, STEP);
+    let in_front = |i: usize| buffer.count[i] > 0.0 && buffer.q[i] < q - step;
+    // Nearly all pixels end here: without a nearer neighbour beside it, two pairs at most could close it.
+    if occupied && ![index - 1, index + 1, index - s, index + s].into_iter().any(in_front) {
+        return None;
+    }
+    let behind = |pair: f32| !occupied || q > pair + scale.bent_step(pair, STEP);
+    let mut nearest = f32::INFINITY;
+    let mut pairs = [(0, 0, f32::INFINITY); 4];
+    for (pair, offset) in pairs.iter_mut().zip([1, s, s + 1, s - 1]) {
+        let (a, b) = (index - offset, index + offset);
+        if buffer.count[a] > 0.0 && buffer.count[b] > 0.0 {
+            let (qa, qb) = (buffer.q[a], buffer.q[b]);
+            let mean = 0.5 * (qa + qb);
+            if (qa - qb).abs() < scale.bent_step(qa, STEP) && behind(mean) {
+                *pair = (a, b, mean);
+                nearest = nearest.min(mean);
+            }
+        }
+    }
+    let enclosing = pairs.iter().filter(|p| p.2 < f32::INFINITY).count();
+    if enclosing < if occupied { ENCLOSED } else { ENCLOSED_EMPTY } {
+        return None;
+    }
+    let together = nearest + scale.bent_step(nearest, STEP);
+    let mut fill = Fill { index, x: 0.0, y: 0.0, q: 0.0, colour: [0.0; 3] };
+    let mut n = 0.0;
+    for (a, b, q) in pairs.into_iter().filter(|p| p.2 < together) {
+        n += 2.0;
+        fill.x += buffer.x[a] + buffer.x[b];
+        fill.y += buffer.y[a] + buffer.y[b];
+        fill.q += 2.0 * q;
+        for (sum, (c, d)) in fill.colour.iter_mut().zip(buffer.colour[a].iter().zip(buffer.colour[b])) {
+            *sum += c + d;
+        }
+    }
+    (fill.x, fill.y, fill.q) = (fill.x / n, fill.y / n, fill.q / n);
+    fill.colour = fill.colour.map(|c| c / n);
+    Some(fill)
+}
+
+/// Half the size: each pixel the mean of the up to four pixels of the surface nearest to the eye.
+fn pull(fine: &Buffer, coarse: &mut Buffer, scale: &DepthScale) {
+    let (width, height) = (fine.width.div_ceil(2), fine.height.div_ceil(2));
+    (coarse.width, coarse.height, coarse.stride) = (width, height, width + 2 * PAD);
+    let len = coarse.stride * (height + 2 * PAD);
+    for array in [&mut coarse.x, &mut coarse.y, &mut coarse.q, &mut coarse.count] {
+        array.clear();
+        array.resize(len, 0.0);
+    }
+    coarse.colour.clear();
+    coarse.colour.resize(len, [0.0; 3]);
+    for row in 0..height {
+        for column in 0..width {
+            let first = fine.at(2 * column, 2 * row);
+            let children = [first, first + 1, first + fine.stride, first + fine.stride + 1];
+            let valid = children.into_iter().filter(|c| fine.count[*c] > 0.0);
+            let nearest = valid.clone().map(|c| fine.q[c]).fold(f32::INFINITY, f32::min);
+            let together = nearest + scale.bent_step(nearest, STEP);
+            let to = coarse.at(column, row);
+            for c in valid.filter(|c| fine.q[*c] < together) {
+                coarse.count[to] += 1.0;
+                coarse.x[to] += 0.5 * fine.x[c];
+                coarse.y[to] += 0.5 * fine.y[c];
+                coarse.q[to] += fine.q[c];
+                for (sum, v) in coarse.colour[to].iter_mut().zip(fine.colour[c]) {
+                    *sum += v;
+                }
+            }
+            if coarse.count[to] > 0.0 {
+                let inverse = 1.0 / coarse.count[to];
+                for array in [&mut coarse.x, &mut coarse.y, &mut coarse.q] {
+                    array[to] *= inverse;
+                }
+                coarse.colour[to] = coarse.colour[to].map(|v| v * inverse);
+            }
+        }
+    }
+}
+
+/// Hands filled pixels down to the four below them, where those are empty.
+fn push(coarse: &Buffer, fine: &mut Buffer, bands: &[Vec<Fill>]) {
+    for fill in bands[..coarse.height.div_ceil(BAND_ROWS)].iter().flatten() {
+        let (row, column) = (fill.index / coarse.stride - PAD, fill.index % coarse.stride - PAD);
+        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let (x, y) = (2 * column + dx, 2 * row + dy);
+            let index = fine.at(x, y);
+            if x < fine.width && y < fine.height && fine.count[index] == 0.0 {
+                apply(fine, &Fill { index, x: x as f32 + 0.5, y: y as f32 + 0.5, ..*fill });
+            }
+        }
+    }
+}

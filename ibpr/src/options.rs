@@ -1,0 +1,204 @@
+//! What a frame is made with.
+
+use crate::error::IbprError;
+use glam::{DVec3, Vec3};
+
+/// Size of a buffer pixel in picture pixels (the paper's S).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scale {
+    /// From the field of view, the distance and the density of the points, times this factor.
+    ///
+    /// At factor 1 a buffer pixel holds about one point of the surface that is seen.
+    Auto(f32),
+    /// Fixed, at least 1.
+    Fixed(f32),
+}
+
+/// How much a point of the surface nearest to the eye counts; u is its depth behind the nearest point
+/// of its pixel in units of γ, 0 ≤ u ≤ 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weighting {
+    /// `u`, eq. 2 as it survives in print: the nearest point counts (almost) nothing.
+    Printed,
+    /// `1 − u`: falls from the nearest point, and so pulls noisy surfaces towards the eye.
+    Falling,
+    /// 1: the plain mean of the slab.
+    Even,
+    /// `1 − |z − mean|/γ` about the plain mean of the slab: a third walk over the points.
+    Symmetric,
+}
+
+/// Where normals come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Normals {
+    /// Least-squares planes over windows that grow with the noise.
+    Plane,
+    /// The mean of up to eight triangles with consecutive neighbours, as in the paper.
+    Triangles,
+}
+
+/// What is skipped because it faces away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Culling {
+    /// Nothing.
+    None,
+    /// Scans taken from behind, as in the paper: drops points that can be seen.
+    Printed,
+    /// Scans that are more than 90° + 75° from the view: a scanner sees incidences up to about 75°.
+    Scans,
+    /// Blocks of points whose normals all face away.
+    Blocks,
+}
+
+/// Buffers per frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Passes {
+    /// One, with S.
+    One,
+    /// A finer one with `finer`·S under the normal one, which is drawn over it except where points are
+    /// dense or the surface is nearly edge-on.
+    Two {
+        /// The paper uses 0.66 to 0.83.
+        finer: f32,
+    },
+}
+
+/// Surfaces one sees through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Translucency {
+    /// Opacity of each surface, 0 to 1.
+    pub alpha: f32,
+    /// Surfaces kept per pixel, 1 to [`Translucency::MOST_LAYERS`]. The paper keeps 5.
+    pub layers: usize,
+    /// Depth within which points belong to one surface, in spacings. The paper uses 10.
+    pub threshold: f32,
+}
+
+impl Translucency {
+    /// Most layers per pixel.
+    pub const MOST_LAYERS: usize = 8;
+
+    /// Five layers, threshold 10, as in the paper.
+    #[must_use]
+    pub const fn new(alpha: f32) -> Self {
+        Self { alpha, layers: 5, threshold: 10.0 }
+    }
+}
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Light {
+    /// From the eye.
+    Eye,
+    /// From far away: direction towards the light, world space.
+    Towards(DVec3),
+}
+
+/// Depth shading that needs no normals: pixels behind their surroundings darken (Boucheny 2009).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EyeDome {
+    /// How dark a step gets; 1 is usual.
+    pub strength: f32,
+    /// Distance of the eight neighbours that are looked at, in pixels.
+    pub radius: u32,
+}
+
+/// How a frame is drawn. The defaults are what measured best (`studies -- ibpr`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Options {
+    /// Size of buffer pixels. Default: [`Scale::Auto`] with [`Options::AUTO_FACTOR`].
+    pub scale: Scale,
+    /// Thickness of a surface in spacings (or buffer pixels, where those are larger). Default: 2.
+    pub gamma: f32,
+    /// Default: [`Weighting::Even`].
+    pub weighting: Weighting,
+    /// Default: [`Normals::Plane`].
+    pub normals: Normals,
+    /// How far faces reach beyond the outermost means, in buffer pixels; 0 as printed. Default: 0.5.
+    pub outline: f32,
+    /// Levels of pull-push: gaps of less than 2^levels pixels are filled. Default: 1.
+    pub fill: u32,
+    /// Default: [`Passes::One`].
+    pub passes: Passes,
+    /// Default: none.
+    pub translucency: Option<Translucency>,
+    /// Default: [`Culling::Blocks`].
+    pub culling: Culling,
+    /// Default: [`Light::Eye`].
+    pub light: Light,
+    /// Share of the light that comes from everywhere, 0 to 1. Default: 0.1.
+    pub ambient: f32,
+    /// Colour of points that have none, linear RGB. Default: 0.8.
+    pub base: Vec3,
+    /// Default: none.
+    pub eye_dome: Option<EyeDome>,
+    /// Whether the frame gets normals and counts besides colour and depth. Default: false.
+    pub surface_layers: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            scale: Scale::Auto(Self::AUTO_FACTOR),
+            gamma: 2.0,
+            weighting: Weighting::Even,
+            normals: Normals::Plane,
+            outline: 0.5,
+            fill: 1,
+            passes: Passes::One,
+            translucency: None,
+            culling: Culling::Blocks,
+            light: Light::Eye,
+            ambient: 0.1,
+            base: Vec3::splat(0.8),
+            eye_dome: None,
+            surface_layers: false,
+        }
+    }
+}
+
+impl Options {
+    /// Factor of [`Scale::Auto`] by default, found by experiment (`studies -- ibpr`).
+    pub const AUTO_FACTOR: f32 = 1.6;
+
+    /// Most levels of pull-push.
+    pub const MOST_FILL: u32 = 6;
+
+    pub(crate) fn check(&self) -> Result<(), IbprError> {
+        let check = |name, value: f32, good: bool, range| {
+            if good { Ok(()) } else { Err(IbprError::BadOption { name, value: f64::from(value), range }) }
+        };
+        let positive = |v: f32| v > 0.0 && v.is_finite();
+        match self.scale {
+            Scale::Auto(f) => check("scale factor", f, positive(f), "it must be above 0")?,
+            Scale::Fixed(s) => check("scale", s, s >= 1.0 && s.is_finite(), "it must be at least 1")?,
+        }
+        check("gamma", self.gamma, positive(self.gamma), "it must be above 0")?;
+        check("outline", self.outline, (0.0..=1.0).contains(&self.outline), "it must be 0 to 1")?;
+        check("fill", self.fill as f32, self.fill <= Self::MOST_FILL, "it must be 0 to 6")?;
+        check("ambient", self.ambient, (0.0..=1.0).contains(&self.ambient), "it must be 0 to 1")?;
+        if let Passes::Two { finer } = self.passes {
+            check("finer", finer, finer > 0.0 && finer <= 1.0, "it must be above 0 and at most 1")?;
+        }
+        if let Some(t) = self.translucency {
+            check("alpha", t.alpha, (0.0..=1.0).contains(&t.alpha), "it must be 0 to 1")?;
+            let good = (1..=Translucency::MOST_LAYERS).contains(&t.layers);
+            check("layers", t.layers as f32, good, "it must be 1 to 8")?;
+            check("threshold", t.threshold, positive(t.threshold), "it must be above 0")?;
+        }
+        if let Some(e) = self.eye_dome {
+            check("strength", e.strength, e.strength >= 0.0 && e.strength.is_finite(), "it must be at least 0")?;
+            check("radius", e.radius as f32, (1..=64).contains(&e.radius), "it must be 1 to 64")?;
+        }
+        for c in self.base.to_array() {
+            check("base", c, c >= 0.0 && c.is_finite(), "it must be at least 0")?;
+        }
+        if let Light::Towards(d) = self.light
+            && !(d.is_finite() && d.length_squared() > 0.0)
+        {
+            check("light", d.x as f32, false, "the direction must be finite and not zero")?;
+        }
+        Ok(())
+    }
+}

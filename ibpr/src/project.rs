@@ -1,0 +1,72 @@
+//! Points of a block in buffer pixels.
+
+/// Points that are transformed together: their results stay in the first-level cache.
+pub(crate) const LANES: usize = 256;
+
+/// Transformed points; entries of `kept` number those that lie in the band.
+pub(crate) struct Projected {
+    /// Position in buffer pixels.
+    pub(crate) x: [f32; LANES],
+    pub(crate) y: [f32; LANES],
+    /// Depth relative to the reference.
+    pub(crate) depth: [f32; LANES],
+    kept: [u16; LANES],
+    count: usize,
+}
+
+/// Rows of the buffer that are filled together, and the nearest depth that is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Band {
+    pub(crate) width: usize,
+    pub(crate) first_row: usize,
+    pub(crate) rows: usize,
+    /// Depths (relative) must be above this.
+    pub(crate) near: f32,
+    /// Whether x and y are divided by the depth, and what is added to the relative depth to get it.
+    pub(crate) perspective: bool,
+    pub(crate) reference: f32,
+}
+
+impl Projected {
+    pub(crate) fn new() -> Self {
+        Self { x: [0.0; LANES], y: [0.0; LANES], depth: [0.0; LANES], kept: [0; LANES], count: 0 }
+    }
+
+    /// Numbers of the points in the band.
+    pub(crate) fn kept(&self) -> impl Iterator<Item = usize> {
+        self.kept[..self.count].iter().map(|k| usize::from(*k))
+    }
+
+    /// Index of the pixel of point `k` in the band; it was kept.
+    pub(crate) fn pixel(&self, k: usize, band: &Band) -> usize {
+        (self.y[k] as usize - band.first_row) * band.width + self.x[k] as usize
+    }
+
+    /// Transforms up to [`LANES`] points and notes which lie in the band.
+    pub(crate) fn transform(&mut self, rows: &[f32; 12], points: [&[f32]; 3], band: &Band) {
+        let [px, py, pz] = points;
+        let n = px.len().min(LANES);
+        let (px, py, pz) = (&px[..n], &py[..n], &pz[..n]);
+        let (x, y, depth) = (&mut self.x[..n], &mut self.y[..n], &mut self.depth[..n]);
+        for i in 0..n {
+            let row = |r: usize| rows[r] * px[i] + rows[r + 1] * py[i] + rows[r + 2] * pz[i] + rows[r + 3];
+            let d = row(8);
+            let k = if band.perspective { 1.0 / (d + band.reference) } else { 1.0 };
+            (x[i], y[i], depth[i]) = (row(0) * k, row(4) * k, d);
+        }
+        let right = band.width as f32;
+        let (top, bottom) = (band.first_row as f32, (band.first_row + band.rows) as f32);
+        let mut count = 0;
+        for i in 0..n {
+            let inside = (x[i] >= 0.0)
+                & (x[i] < right)
+                & (y[i] >= top)
+                & (y[i] < bottom)
+                & (depth[i] > band.near);
+            // Without a branch: an entry that is not kept is overwritten by the next.
+            self.kept[count] = i as u16;
+            count += usize::from(inside);
+        }
+        self.count = count;
+    }
+}

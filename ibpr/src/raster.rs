@@ -1,0 +1,169 @@
+//! Small triangles into a strip of the picture.
+
+use crate::buffer::SUBPIXEL;
+
+/// What a picture pixel keeps of a face besides its surface: linear RGB and the number of points.
+pub(crate) type Paint = [f32; 4];
+
+/// A vertex as it is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex {
+    /// Picture pixels in steps of 1/[`SUBPIXEL`].
+    pub(crate) x: i32,
+    pub(crate) y: i32,
+    /// Bent depth and normal.
+    pub(crate) surface: [f32; 4],
+    /// Picture pixels from here to the outline of the surface; below 0 outside.
+    pub(crate) inside: f32,
+}
+
+/// Nearest surface per pixel, and the nearest rim in front of it.
+///
+/// A rim is a pixel that the outline of a surface crosses: it covers the pixel in part, and what lies
+/// behind shows through the rest.
+#[derive(Debug, Default)]
+pub(crate) struct Strip {
+    pub(crate) width: usize,
+    pub(crate) first_row: usize,
+    pub(crate) rows: usize,
+    /// Bent depth (+∞ where nothing is) and normal.
+    pub(crate) solid: Vec<[f32; 4]>,
+    pub(crate) rim: Vec<[f32; 4]>,
+    /// Covered share of rim pixels; 0 where there is no rim.
+    pub(crate) rim_cover: Vec<f32>,
+    /// Colours of the two, if asked for.
+    pub(crate) solid_paint: Vec<Paint>,
+    pub(crate) rim_paint: Vec<Paint>,
+}
+
+/// No surface.
+const FAR: [f32; 4] = [f32::INFINITY, 0.0, 0.0, 0.0];
+
+impl Strip {
+    /// Empties it, and gives it the place of some rows of the picture.
+    pub(crate) fn begin(&mut self, width: usize, first_row: usize, rows: usize, painted: bool) {
+        (self.width, self.first_row, self.rows) = (width, first_row, rows);
+        let n = width * rows;
+        self.solid.clear();
+        self.solid.resize(n, FAR);
+        self.rim.resize(n, FAR);
+        self.rim_cover.clear();
+        self.rim_cover.resize(n, 0.0);
+        let painted = if painted { n } else { 0 };
+        self.solid_paint.resize(painted, [0.0; 4]);
+        self.rim_paint.resize(painted, [0.0; 4]);
+    }
+
+    /// Draws a triangle, of either orientation. `paints` are the paints of its vertices.
+    ///
+    /// Pixels whose centre lies on an edge belong to one of the two triangles that share it
+    /// (top-left rule on 1/[`SUBPIXEL`] pixels), so meshes have neither gaps nor pixels drawn twice.
+    pub(crate) fn triangle<const RIM: bool>(&mut self, vertices: [&Vertex; 3], paints: Option<[&Paint; 3]>) {
+        let [a, b, c] = vertices;
+        let area = i64::from(b.x - a.x) * i64::from(c.y - a.y) - i64::from(b.y - a.y) * i64::from(c.x - a.x);
+        match area {
+            0 => {}
+            1.. => self.oriented::<RIM>([a, b, c], paints, area),
+            _ => self.oriented::<RIM>([a, c, b], paints.map(|[p, q, r]| [p, r, q]), -area),
+        }
+    }
+
+    fn oriented<const RIM: bool>(&mut self, [a, b, c]: [&Vertex; 3], paints: Option<[&Paint; 3]>, area: i64) {
+        const STEP: i64 = SUBPIXEL as i64;
+        const HALF: i32 = SUBPIXEL as i32 / 2;
+        // Pixels whose centres lie in the bounding box.
+        let first = |v: i32| (v + HALF - 1).div_euclid(STEP as i32);
+        let last = |v: i32| (v - HALF).div_euclid(STEP as i32);
+        let left = first(a.x.min(b.x).min(c.x)).max(0);
+        let right = last(a.x.max(b.x).max(c.x)).min(self.width as i32 - 1);
+        let top = first(a.y.min(b.y).min(c.y)).max(self.first_row as i32);
+        let bottom = last(a.y.max(b.y).max(c.y)).min((self.first_row + self.rows) as i32 - 1);
+        if left > right || top > bottom {
+            return;
+        }
+        let centre = (i64::from(left) * STEP + i64::from(HALF), i64::from(top) * STEP + i64::from(HALF));
+        let edges = [Edge::new(b, c, centre), Edge::new(c, a, centre), Edge::new(a, b, centre)];
+        let inverse = 1.0 / area as f32;
+        let mut row = edges.map(|e| e.value);
+        for y in top..=bottom {
+            let mut at = row;
+            let base = (y as usize - self.first_row) * self.width;
+            for x in left..=right {
+                let inside = at.iter().zip(&edges).all(|(v, e)| v + e.bias >= 0);
+                if inside {
+                    let weights = [at[1] as f32 * inverse, at[2] as f32 * inverse];
+                    self.put::<RIM>(base + x as usize, [a, b, c], weights, paints);
+                }
+                for (v, e) in at.iter_mut().zip(&edges) {
+                    *v += e.right;
+                }
+            }
+            for (v, e) in row.iter_mut().zip(&edges) {
+                *v += e.down;
+            }
+        }
+    }
+
+    /// Keeps the nearest; `weights` are those of the second and third vertex.
+    #[inline(always)]
+    fn put<const RIM: bool>(
+        &mut self,
+        at: usize,
+        [a, b, c]: [&Vertex; 3],
+        weights: [f32; 2],
+        paints: Option<[&Paint; 3]>,
+    ) {
+        let mix4 = |a: &[f32; 4], b: &[f32; 4], c: &[f32; 4]| {
+            let mut out = *a;
+            for (i, v) in out.iter_mut().enumerate() {
+                *v += weights[0] * (b[i] - a[i]) + weights[1] * (c[i] - a[i]);
+            }
+            out
+        };
+        let surface = mix4(&a.surface, &b.surface, &c.surface);
+        if RIM {
+            let inside =
+                a.inside + weights[0] * (b.inside - a.inside) + weights[1] * (c.inside - a.inside);
+            // A pixel whose centre lies this far inside the outline is covered to this share.
+            let cover = inside + 0.5;
+            if cover < 1.0 {
+                // Two surfaces may meet in a rim: the nearest one is kept.
+                if cover > 0.0 && (self.rim_cover[at] == 0.0 || surface[0] < self.rim[at][0]) {
+                    self.rim[at] = surface;
+                    self.rim_cover[at] = cover;
+                    if let Some([p, q, r]) = paints {
+                        self.rim_paint[at] = mix4(p, q, r);
+                    }
+                }
+                return;
+            }
+        }
+        if surface[0] < self.solid[at][0] {
+            self.solid[at] = surface;
+            if let Some([p, q, r]) = paints {
+                self.solid_paint[at] = mix4(p, q, r);
+            }
+        }
+    }
+}
+
+/// Twice the area of the triangle of an edge and a pixel's centre, in square steps.
+#[derive(Clone, Copy)]
+struct Edge {
+    value: i64,
+    /// What a pixel to the right or below adds.
+    right: i64,
+    down: i64,
+    /// −1 where the edge itself does not belong to the triangle.
+    bias: i64,
+}
+
+impl Edge {
+    fn new(from: &Vertex, to: &Vertex, centre: (i64, i64)) -> Self {
+        let (dx, dy) = (i64::from(to.x - from.x), i64::from(to.y - from.y));
+        let value = dx * (centre.1 - i64::from(from.y)) - dy * (centre.0 - i64::from(from.x));
+        let top_left = dy < 0 || (dy == 0 && dx > 0);
+        let step = SUBPIXEL as i64;
+        Self { value, right: -dy * step, down: dx * step, bias: if top_left { 0 } else { -1 } }
+    }
+}

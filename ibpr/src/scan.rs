@@ -1,0 +1,68 @@
+//! One range scan as its caller holds it.
+
+use crate::error::IbprError;
+use glam::DVec3;
+
+/// Points that were measured together, in world space.
+#[derive(Clone, Copy, Debug)]
+pub struct Scan<'a> {
+    pub(crate) positions: &'a [DVec3],
+    pub(crate) colours: Option<&'a [[f32; 3]]>,
+    pub(crate) spacing: Option<f64>,
+    pub(crate) towards_scanner: Option<DVec3>,
+}
+
+impl<'a> Scan<'a> {
+    /// Points without colour, whose spacing is estimated and whose scanner is unknown.
+    #[must_use]
+    pub fn new(positions: &'a [DVec3]) -> Self {
+        Self { positions, colours: None, spacing: None, towards_scanner: None }
+    }
+
+    /// Linear RGB of each point.
+    #[must_use]
+    pub fn with_colours(mut self, colours: &'a [[f32; 3]]) -> Self {
+        self.colours = Some(colours);
+        self
+    }
+
+    /// Distance between neighbouring points in world units (the scan resolution).
+    #[must_use]
+    pub fn with_spacing(mut self, spacing: f64) -> Self {
+        self.spacing = Some(spacing);
+        self
+    }
+
+    /// Direction from the object to the scanner, of any length: lets what faces away be skipped.
+    #[must_use]
+    pub fn with_scanner(mut self, towards: DVec3) -> Self {
+        self.towards_scanner = Some(towards);
+        self
+    }
+
+    /// Refuses what no picture can be made of; `scan` is its place in the caller's slice.
+    pub(crate) fn check(&self, scan: usize) -> Result<(), IbprError> {
+        if let Some(index) = self.positions.iter().position(|p| !p.is_finite()) {
+            return Err(IbprError::PointNotFinite { scan, index, value: self.positions[index].to_array() });
+        }
+        if let Some(colours) = self.colours {
+            if colours.len() != self.positions.len() {
+                let (colours, points) = (colours.len(), self.positions.len());
+                return Err(IbprError::LengthMismatch { scan, colours, points });
+            }
+            let good = |c: &[f32; 3]| c.iter().all(|v| v.is_finite() && *v >= 0.0);
+            if let Some(index) = colours.iter().position(|c| !good(c)) {
+                return Err(IbprError::BadColour { scan, index, value: colours[index] });
+            }
+        }
+        let bad = |reason| Err(IbprError::BadScan { scan, reason });
+        match self.spacing {
+            Some(s) if !(s > 0.0 && s.is_finite()) => return bad("the spacing must be finite and above 0"),
+            _ => {}
+        }
+        match self.towards_scanner {
+            Some(d) if d.try_normalize().is_none() => bad("the direction must be finite and not zero"),
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! How far points lie from their neighbours.
+
+use crate::order::{BITS, Lattice, Ordered};
+use crate::scan::Scan;
+
+/// Points whose nearest neighbour is looked for.
+const SAMPLE: usize = 1024;
+
+/// Neighbours before and after in Morton order that are looked at: for most points they hold the
+/// nearest ones, and the median does not feel the others.
+const WINDOW: usize = 96;
+
+/// The neighbour whose distance is taken: on a square grid it is the spacing, and for points thrown at
+/// random 1.07 times the side of the square that each has for itself.
+const NEIGHBOUR: usize = 4;
+
+/// Median distance to the fourth neighbour that is not a duplicate; 0 if no point has any.
+pub(crate) fn of_scan(scan: &Scan<'_>, ordered: &Ordered) -> f64 {
+    if let Some(given) = scan.spacing {
+        return given;
+    }
+    let n = ordered.points.len();
+    let at = |i: usize| scan.positions[ordered.points[i] as usize];
+    let nearest = |i: usize| {
+        let window = i.saturating_sub(WINDOW)..(i + WINDOW + 1).min(n);
+        let mut nearest = [f64::INFINITY; NEIGHBOUR];
+        for distance2 in window.map(|j| at(j).distance_squared(at(i))).filter(|d| *d > 0.0) {
+            if let Some(place) = nearest.iter().position(|n| distance2 < *n) {
+                nearest[place..].rotate_right(1);
+                nearest[place] = distance2;
+            }
+        }
+        // A point of a tiny cloud may have fewer neighbours.
+        nearest.into_iter().rfind(|d| d.is_finite())
+    };
+    let mut distances: Vec<f64> = (0..n).step_by(n.div_ceil(SAMPLE)).filter_map(nearest).collect();
+    median(&mut distances).sqrt()
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// Median of the scans' spacings, each counted as often as it has points.
+pub(crate) fn typical(ordered: &[Ordered], spacings: &[f64]) -> f64 {
+    let mut by_spacing: Vec<(f64, usize)> =
+        spacings.iter().copied().zip(ordered.iter().map(|o| o.points.len())).collect();
+    by_spacing.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = by_spacing.iter().map(|s| s.1).sum::<usize>() / 2;
+    let mut seen = 0;
+    let middle = by_spacing.iter().find(|s| {
+        seen += s.1;
+        seen > half
+    });
+    middle.map_or(0.0, |s| s.0)
+}
+
+/// Distance between neighbours of all scans together: √(area / points), the area from the number of
+/// lattice cells of about 2.5 spacings that hold points.
+///
+/// A plane cuts |nₓ| + |n_y| + |n_z| cells of side h per h², 1.5 in the mean over directions.
+pub(crate) fn of_all(ordered: &[Ordered], lattice: &Lattice, spacing: f64, points: usize) -> f64 {
+    const CELLS_PER_AREA: f64 = 1.5;
+    if !(spacing > 0.0 && lattice.extent > spacing) {
+        return spacing;
+    }
+    let level = (lattice.extent / (2.5 * spacing)).log2().round().clamp(1.0, f64::from(BITS)) as u32;
+    let shift = 3 * (BITS - level);
+    let mut cells = vec![];
+    for o in ordered {
+        let start = cells.len();
+        cells.extend(o.codes.iter().map(|c| c >> shift));
+        // Codes come sorted: what repeats within a scan goes before the sort.
+        let mut kept = start;
+        for i in start..cells.len() {
+            if kept == start || cells[kept - 1] != cells[i] {
+                cells[kept] = cells[i];
+                kept += 1;
+            }
+        }
+        cells.truncate(kept);
+    }
+    cells.sort_unstable();
+    cells.dedup();
+    let side = lattice.extent / f64::from(1u32 << level);
+    let area = cells.len() as f64 * side * side / CELLS_PER_AREA;
+    (area / points as f64).sqrt()
+}
