@@ -93,13 +93,17 @@ fn ply(rows: &[Row], encoding: Encoding, double: bool) -> Vec<u8> {
     let line_end = Number::LineEnd;
     for &([x, y, z], normal, radius, [red, green, blue]) in rows {
         let real = |value: f32| if double { Number::Double(f64::from(value)) } else { Number::Float(value) };
-        [real(x), Number::UChar(red), real(y), Number::UChar(green), real(z)].map(&mut put);
-        [Number::UChar(2), Number::Short(1), Number::Short(300), Number::UChar(blue)].map(&mut put);
-        normal.map(|value| put(Number::Float(value)));
-        [Number::Int(-1), Number::Float(radius), line_end].map(&mut put);
+        [real(x), Number::UChar(red), real(y), Number::UChar(green), real(z)].into_iter().for_each(&mut put);
+        [Number::UChar(2), Number::Short(1), Number::Short(300), Number::UChar(blue)]
+            .into_iter()
+            .for_each(&mut put);
+        normal.into_iter().map(Number::Float).for_each(&mut put);
+        [Number::Int(-1), Number::Float(radius), line_end].into_iter().for_each(&mut put);
     }
     for _ in 0..2 {
-        [Number::UChar(3), Number::Int(0), Number::Int(0), Number::Int(0), line_end].map(&mut put);
+        [Number::UChar(3), Number::Int(0), Number::Int(0), Number::Int(0), line_end]
+            .into_iter()
+            .for_each(&mut put);
     }
     file
 }

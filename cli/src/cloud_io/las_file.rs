@@ -7,10 +7,10 @@ use super::ReadSeek;
 use super::block::{At, CloudSummary, Gather, MAX_BLOCK_POINTS, Point, Stop};
 use super::colour::ColourCode;
 use super::format::CloudFormat;
+use super::las_check;
 use crate::input_error::InputError;
 use glam::DVec3;
 use las::{PointData, PointDataBuilder, Reader};
-use std::io::SeekFrom;
 
 /// Bytes of decoded records at once. The header says how long a record is, up to 64 KiB, so that 65,536 of them would be
 /// 4 GiB on its word.
@@ -22,7 +22,8 @@ pub(super) fn read<R: ReadSeek>(
     mut input: R,
     gather: &mut Gather<'_>,
 ) -> Result<CloudSummary, Stop> {
-    check_extended_records(name, &mut input)?;
+    las_check::check(name, &mut input)?;
+    las_check::check_items(name, &mut input)?;
     let mut reader = Reader::new(input).map_err(|error| fault(name, &error, 0))?;
     let mut chunk = PointDataBuilder::new().for_header(reader.header()).build();
     let announced = reader.header().number_of_points();
@@ -82,47 +83,4 @@ fn push(
         gather.push(&point, At::Point(number))?;
     }
     Ok(())
-}
-
-/// Refuses extended records (behind the points) that do not fit into the file: the library would ask for as much memory as
-/// their headers say.
-fn check_extended_records<R: ReadSeek>(name: &str, input: &mut R) -> Result<(), InputError> {
-    /// Where a LAS 1.4 header has the offset of the first record (8 bytes) and their number (4).
-    const FIRST: u64 = 235;
-    /// Bytes of a record's own header, and where in it the length is.
-    const RECORD_HEADER: u64 = 60;
-    const LENGTH: u64 = 20;
-    let io = |error: std::io::Error| InputError::of_file(name, format!("cannot be read: {error}"));
-    let size = input.seek(SeekFrom::End(0)).map_err(io)?;
-    let mut minor = [0; 1];
-    read_at(input, 25, &mut minor).map_err(io)?;
-    let mut words = [0; 12];
-    if minor[0] >= 4 && size >= FIRST + 12 {
-        read_at(input, FIRST, &mut words).map_err(io)?;
-    }
-    let [first @ .., n0, n1, n2, n3] = words;
-    let mut at = u64::from_le_bytes(first);
-    for record in 0..u32::from_le_bytes([n0, n1, n2, n3]) {
-        let mut length = [0; 8];
-        let fits = at.checked_add(RECORD_HEADER).is_some_and(|end| end <= size);
-        if fits {
-            read_at(input, at + LENGTH, &mut length).map_err(io)?;
-        }
-        let length = u64::from_le_bytes(length);
-        let end = at.saturating_add(RECORD_HEADER).saturating_add(length);
-        if !fits || end > size {
-            let message = format!(
-                "extended record {record} at byte {at} with {length} bytes is not within the {size} bytes"
-            );
-            return Err(InputError::of_file(name, message)
-                .with_help("the file is damaged or was cut off; get it again, or convert it to PLY"));
-        }
-        at = end;
-    }
-    input.rewind().map_err(io)
-}
-
-fn read_at<R: ReadSeek>(input: &mut R, at: u64, into: &mut [u8]) -> std::io::Result<()> {
-    input.seek(SeekFrom::Start(at))?;
-    input.read_exact(into)
 }

@@ -12,6 +12,8 @@ mod e57_file;
 mod format;
 mod gunzip;
 #[cfg(feature = "las")]
+mod las_check;
+#[cfg(feature = "las")]
 mod las_file;
 mod number;
 mod ply;
@@ -50,7 +52,8 @@ use std::path::Path;
 /// # Errors
 ///
 /// [`InputError`], converted into `E`, for anything wrong with the file: missing, of unknown kind, damaged, cut short, without
-/// points, with points that are not finite. Blocks may have been handed out before. An error of `sink` ends the
+/// points, with points that are not finite. Messages name the line of text and the byte of binary files, both counted in
+/// the unpacked data if it was packed. Blocks may have been handed out before. An error of `sink` ends the
 /// reading and comes back as it is.
 pub fn read_cloud<E: From<InputError>>(
     path: &Path,

@@ -122,13 +122,18 @@ impl Text {
         let mut checked = String::from_utf8_lossy(line.text).into_owned();
         match words.as_slice() {
             [keyword, element, _] if keyword.bytes == b"element" => {
-                self.current = element.shown();
+                self.current = String::from_utf8_lossy(element.bytes).into_owned();
                 self.elements.push(self.lines.len());
                 self.know(name, line, *element, self.current.clone())?;
             }
             [keyword, types @ .., property] if keyword.bytes == b"property" => {
                 check_types(name, line, types)?;
-                self.know(name, line, *property, format!("{} {}", self.current, property.shown()))?;
+                self.know(
+                    name,
+                    line,
+                    *property,
+                    format!("{} {}", self.current, String::from_utf8_lossy(property.bytes)),
+                )?;
                 if !is_identifier(property.bytes) {
                     // Scanners put brackets and percents into names; the library wants letters. We want x, y and z.
                     checked.truncate(property.start);
