@@ -5,13 +5,15 @@
 
 use crate::buffer::{Buffer, DepthScale, PAD};
 use crate::cloud::Cloud;
-use crate::options::Weighting;
+use crate::layers;
+use crate::options::{Translucency, Weighting};
 use crate::parallel::*;
 use crate::project::{Band, LANES, Projected};
 use crate::view::BufferMap;
+use pulp::Arch;
 
 /// Rows per band: the sums of a band of 1024 pixels fit into the second-level cache.
-const BAND_ROWS: usize = 32;
+const BAND_ROWS: usize = 64;
 
 /// A block as this frame sees it.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +44,7 @@ pub(crate) struct BandScratch {
     near: Vec<f32>,
     mean: Vec<f32>,
     sums: Vec<Sums>,
+    pub(crate) layered: layers::LayerScratch,
 }
 
 /// What stays the same for all points of a frame.
@@ -50,6 +53,8 @@ pub(crate) struct Rules {
     pub(crate) gamma: f32,
     pub(crate) weighting: Weighting,
     pub(crate) scale: DepthScale,
+    /// Several surfaces per pixel, or only the nearest.
+    pub(crate) layers: Option<Translucency>,
 }
 
 /// Projects the boxes of the visible blocks.
@@ -91,8 +96,8 @@ pub(crate) fn accumulate(
     pool: &Pool<BandScratch>,
 ) {
     let inner = buffer.inner();
-    let n = BAND_ROWS * buffer.stride;
-    let stride = buffer.stride;
+    let (stride, pitch) = (buffer.stride, buffer.pitch);
+    let n = BAND_ROWS * pitch;
     chunks(&mut buffer.x[inner.clone()], n)
         .zip(chunks(&mut buffer.y[inner.clone()], n))
         .zip(chunks(&mut buffer.q[inner.clone()], n))
@@ -100,19 +105,14 @@ pub(crate) fn accumulate(
         .zip(chunks(&mut buffer.colour[inner], n))
         .enumerate()
         .for_each(|(i, ((((x, y), q), count), colour))| {
-            let first_row = i * BAND_ROWS;
-            let band = Band {
-                width: map.width,
-                first_row,
-                rows: x.len() / stride,
-                near: -(map.reference as f32) * (1.0 - 4.0 * f32::EPSILON),
-                perspective: map.view.is_perspective(),
-                reference: map.reference as f32,
-            };
-            pool.with(|scratch| {
-                sum_band(cloud, views, &band, rules, scratch);
-                let rows = Resolved { x, y, q, count, colour };
-                resolve(scratch, &band, &rules.scale, cloud.has_colours(), stride, rows);
+            let band = Band::new(map, i * BAND_ROWS, x.len() / pitch);
+            let out = Resolved { x, y, q, count, colour, stride, pitch };
+            pool.with(|scratch| match rules.layers {
+                None => {
+                    sum_band(cloud, views, &band, rules, scratch);
+                    resolve(scratch, &band, &rules.scale, cloud.has_colours(), out);
+                }
+                Some(layers) => layers::fill_band(cloud, views, &band, rules, layers, scratch, out),
             });
         });
 }
@@ -126,13 +126,14 @@ pub(crate) fn walk(
     mut each: impl FnMut(&Projected, usize, usize, usize),
 ) {
     let mut projected = Projected::new();
+    let arch = Arch::new();
     let [x, y, z] = &cloud.offsets;
     let end_row = band.first_row + band.rows;
     for view in views.iter().filter(|v| v.top < end_row && v.bottom > band.first_row) {
         for start in (view.start..view.end).step_by(LANES) {
             let lanes = start..(start + LANES).min(view.end);
             let points = [&x[lanes.clone()], &y[lanes.clone()], &z[lanes]];
-            projected.transform(&view.rows, points, band);
+            projected.transform(arch, &view.rows, points, band);
             for k in projected.kept() {
                 each(&projected, k, projected.pixel(k, band), start + k);
             }
@@ -142,13 +143,14 @@ pub(crate) fn walk(
 
 fn sum_band(cloud: &Cloud, views: &[BlockView], band: &Band, rules: Rules, scratch: &mut BandScratch) {
     let pixels = band.width * band.rows;
-    let BandScratch { near, mean, sums } = scratch;
+    let BandScratch { near, mean, sums, .. } = scratch;
     near.clear();
     near.resize(pixels, f32::INFINITY);
     walk(cloud, views, band, |p, k, pixel, _| near[pixel] = near[pixel].min(p.depth[k]));
     sums.clear();
     sums.resize(pixels, [0.0; 8]);
-    let behind = |p: &Projected, k: usize, near: f32| (p.depth[k] - near) / (rules.gamma * rules.scale.unit(near));
+    let behind =
+        |p: &Projected, k: usize, near: f32| (p.depth[k] - near) / (rules.gamma * rules.scale.unit(near));
     if rules.weighting == Weighting::Symmetric {
         let all = |_: &Projected, _: usize, _: usize, u: f32| if u <= 1.0 { 1.0 } else { 0.0 };
         let weight = |p: &Projected, k: usize, pixel: usize| all(p, k, pixel, behind(p, k, near[pixel]));
@@ -209,25 +211,21 @@ fn add(
 }
 
 /// Rows of a buffer that a band writes.
-struct Resolved<'a> {
-    x: &'a mut [f32],
-    y: &'a mut [f32],
-    q: &'a mut [f32],
-    count: &'a mut [f32],
-    colour: &'a mut [[f32; 3]],
+pub(crate) struct Resolved<'a> {
+    pub(crate) x: &'a mut [f32],
+    pub(crate) y: &'a mut [f32],
+    pub(crate) q: &'a mut [f32],
+    pub(crate) count: &'a mut [f32],
+    pub(crate) colour: &'a mut [[f32; 3]],
+    /// Entries to the next layer and to the next row.
+    pub(crate) stride: usize,
+    pub(crate) pitch: usize,
 }
 
-fn resolve(
-    scratch: &BandScratch,
-    band: &Band,
-    scale: &DepthScale,
-    coloured: bool,
-    stride: usize,
-    out: Resolved<'_>,
-) {
+fn resolve(scratch: &BandScratch, band: &Band, scale: &DepthScale, coloured: bool, out: Resolved<'_>) {
     for row in 0..band.rows {
         for column in 0..band.width {
-            let (from, to) = (row * band.width + column, row * stride + column + PAD);
+            let (from, to) = (row * band.width + column, row * out.pitch + column + PAD);
             let sum = &scratch.sums[from];
             out.count[to] = sum[COUNT];
             if sum[COUNT] == 0.0 {

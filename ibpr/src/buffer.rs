@@ -1,4 +1,4 @@
-//! The buffer at screen/S: one averaged point per pixel.
+//! The buffer at screen/S: one averaged point per pixel, or one for each of several layers.
 
 use crate::view::BufferMap;
 
@@ -30,12 +30,19 @@ impl Corner {
     }
 }
 
-/// One averaged point per pixel, as arrays with a border of [`PAD`] empty pixels.
+/// One averaged point per pixel and layer, as arrays with a border of [`PAD`] empty pixels.
+///
+/// A row of pixels is [`Buffer::layers`] rows of entries, one below the other, nearest layer first.
 #[derive(Debug, Default)]
 pub(crate) struct Buffer {
     pub(crate) width: usize,
     pub(crate) height: usize,
+    /// Surfaces per pixel.
+    pub(crate) layers: usize,
+    /// Entries from a pixel to its next layer.
     pub(crate) stride: usize,
+    /// Entries from a pixel to the one below it.
+    pub(crate) pitch: usize,
     /// Averaged position in buffer pixels; in empty pixels 0.
     pub(crate) x: Vec<f32>,
     pub(crate) y: Vec<f32>,
@@ -50,12 +57,13 @@ pub(crate) struct Buffer {
 }
 
 impl Buffer {
-    pub(crate) fn reshape(&mut self, map: &BufferMap) {
-        let (stride, rows) = (map.width + 2 * PAD, map.height + 2 * PAD);
-        let len = stride * rows + TAIL;
-        (self.width, self.height) = (map.width, map.height);
-        if stride != self.stride || self.x.len() != len {
-            self.stride = stride;
+    pub(crate) fn reshape(&mut self, width: usize, height: usize, layers: usize) {
+        let (stride, rows) = (width + 2 * PAD, height + 2 * PAD);
+        let len = stride * rows * layers + TAIL;
+        let same = (width, height, layers) == (self.width, self.height, self.layers);
+        (self.width, self.height, self.layers) = (width, height, layers);
+        (self.stride, self.pitch) = (stride, stride * layers);
+        if !same {
             for array in [&mut self.x, &mut self.y, &mut self.q, &mut self.count] {
                 array.clear();
                 array.resize(len, 0.0);
@@ -67,14 +75,22 @@ impl Buffer {
         }
     }
 
-    /// Index of pixel (`column`, `row`).
+    /// Forgets all points.
+    pub(crate) fn empty(&mut self) {
+        for array in [&mut self.x, &mut self.y, &mut self.q, &mut self.count] {
+            array.fill(0.0);
+        }
+        self.colour.fill([0.0; 3]);
+    }
+
+    /// Index of the nearest layer of pixel (`column`, `row`).
     pub(crate) fn at(&self, column: usize, row: usize) -> usize {
-        (row + PAD) * self.stride + column + PAD
+        (row + PAD) * self.pitch + column + PAD
     }
 
     /// Entries of the arrays without the rows above and below the picture.
     pub(crate) fn inner(&self) -> std::ops::Range<usize> {
-        PAD * self.stride..(PAD + self.height) * self.stride
+        PAD * self.pitch..(PAD + self.height) * self.pitch
     }
 }
 
@@ -92,7 +108,11 @@ pub(crate) struct DepthScale {
 impl DepthScale {
     pub(crate) fn new(map: &BufferMap, spacing: f64) -> Self {
         let depth = if map.view.is_perspective() { map.reference } else { 1.0 };
-        Self { spacing: (spacing / map.unit) as f32, footprint: (depth / map.focal()) as f32, bend: map.bend() }
+        Self {
+            spacing: (spacing / map.unit) as f32,
+            footprint: (depth / map.focal()) as f32,
+            bend: map.bend(),
+        }
     }
 
     /// The distance that counts as one between neighbours at relative depth `d`: the spacing of points,
@@ -103,10 +123,6 @@ impl DepthScale {
 
     pub(crate) fn bent(&self, d: f32) -> f32 {
         d / (1.0 + self.bend * d)
-    }
-
-    pub(crate) fn straight(&self, q: f32) -> f32 {
-        q / (1.0 - self.bend * q)
     }
 
     /// `steps` units at bent depth `q`, as a difference of bent depths.

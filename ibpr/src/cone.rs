@@ -69,10 +69,9 @@ fn least_axis(m: Mat3) -> Option<(Vec3, f32, f32)> {
     // The trigonometric form of the roots of a symmetric 3×3 matrix's characteristic polynomial.
     let trace = (m.x_axis.x + m.y_axis.y + m.z_axis.z) / 3.0;
     let shifted = m - Mat3::from_diagonal(Vec3::splat(trace));
-    let p2 = (shifted.x_axis.length_squared()
-        + shifted.y_axis.length_squared()
-        + shifted.z_axis.length_squared())
-        / 6.0;
+    let p2 =
+        (shifted.x_axis.length_squared() + shifted.y_axis.length_squared() + shifted.z_axis.length_squared())
+            / 6.0;
     let p = p2.sqrt();
     if !(p > 0.0 && p.is_finite()) {
         return None;

@@ -7,7 +7,7 @@
 
 use crate::buffer::{Buffer, Corner, DepthScale, SUBPIXEL};
 use crate::normals::STEP;
-use crate::raster::{Paint, Strip, Vertex};
+use crate::raster::{Paint, Pixels, Strip, Vertex};
 
 /// How faces are made.
 #[derive(Clone, Copy, Debug)]
@@ -35,23 +35,72 @@ const DENSE: f32 = 8.0;
 /// Cosine of the view's angle to the normal below which a surface is "nearly edge-on".
 const EDGE_ON_COS: f32 = 0.3;
 
+/// Buffer pixels that a surface reaches under a nearer one: from a corner at one side of its pixel to
+/// beyond the outline of a corner at the other side of the next.
+const UNDER: f32 = 1.5;
+
 /// Draws all faces of `buffer` that touch `strip`.
-pub(crate) fn draw(buffer: &Buffer, rules: &FaceRules, strip: &mut Strip) {
-    // A corner lies in its own pixel, an outline at most one pixel (and half a picture pixel) beyond.
-    let reach = 2.0 + 0.5 / rules.pixel;
-    let top = (strip.first_row as f32 / rules.pixel - reach).max(-1.0) as isize;
-    let bottom = ((strip.first_row + strip.rows) as f32 / rules.pixel + reach).min(buffer.height as f32) as isize;
+pub(crate) fn draw<P: Pixels>(buffer: &Buffer, rules: &FaceRules, strip: &mut Strip<P>) {
+    // A corner lies in its own pixel, and faces reach up to `UNDER` beyond.
+    let reach = UNDER + 0.5 + 0.5 / rules.pixel;
+    let first = strip.first_row as f32 / rules.pixel;
+    let last = (strip.first_row + strip.rows) as f32 / rules.pixel;
+    let top = (first - reach - 1.0).max(-1.0) as isize;
+    let bottom = (last + reach).min(buffer.height as f32) as isize;
     for row in top..bottom {
-        let upper = buffer.at(0, 0).wrapping_add_signed(row * buffer.stride as isize - 1);
+        let upper = buffer.at(0, 0).wrapping_add_signed(row * buffer.pitch as isize - 1);
         for at in upper..upper + buffer.width + 1 {
-            let quad = [at, at + 1, at + 1 + buffer.stride, at + buffer.stride];
-            draw_quad(buffer, rules, quad, strip);
+            let quad = [at, at + 1, at + 1 + buffer.pitch, at + buffer.pitch];
+            if buffer.layers == 1 {
+                draw_quad(buffer, rules, quad, strip);
+            } else {
+                draw_layers(buffer, rules, quad, strip);
+            }
+        }
+    }
+}
+
+/// The faces of all surfaces that pass through a quad: each corner joins the corners nearest to it in
+/// depth, whatever their layer.
+fn draw_layers<P: Pixels>(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], strip: &mut Strip<P>) {
+    let mut used = [0u32; 4];
+    for k in 0..4 {
+        for layer in 0..buffer.layers {
+            let seed = quad[k] + layer * buffer.stride;
+            let depth = buffer.corners[seed].surface[0];
+            if depth == f32::INFINITY || used[k] >> layer & 1 == 1 {
+                continue;
+            }
+            used[k] |= 1 << layer;
+            let (mut face, mut group) = (quad, 1 << k);
+            face[k] = seed;
+            for j in k + 1..4 {
+                let apart =
+                    |l: &usize| (buffer.corners[quad[j] + l * buffer.stride].surface[0] - depth).abs();
+                let free = (0..buffer.layers).filter(|l| used[j] >> l & 1 == 0);
+                let nearest = free.min_by(|a, b| apart(a).total_cmp(&apart(b)));
+                if let Some(l) = nearest.filter(|l| apart(l) < rules.scale.bent_step(depth, STEP)) {
+                    used[j] |= 1 << l;
+                    face[j] = quad[j] + l * buffer.stride;
+                    group |= 1 << j;
+                }
+            }
+            let fine = |j: usize| group >> j & 1 == 1 && too_fine(buffer, rules, face[j]);
+            if rules.sparse_only && (0..4).any(fine) {
+                continue;
+            }
+            if group == 15 {
+                let vertices = face.map(|i| vertex(&buffer.corners[i], f32::INFINITY));
+                draw_whole(buffer, rules, face, &vertices, strip);
+            } else {
+                draw_part(buffer, rules, face, group, strip);
+            }
         }
     }
 }
 
 /// Corners run clockwise in the picture from the upper left.
-fn draw_quad(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], strip: &mut Strip) {
+fn draw_quad<P: Pixels>(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], strip: &mut Strip<P>) {
     let corners = quad.map(|i| &buffer.corners[i]);
     let depth = corners.map(|c| c.surface[0]);
     let farthest = depth[0].max(depth[1]).max(depth[2].max(depth[3]));
@@ -120,7 +169,13 @@ fn paint(buffer: &Buffer, at: usize) -> Paint {
 }
 
 /// Two triangles, along the diagonal whose ends are closer in depth.
-fn draw_whole(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], v: &[Vertex; 4], strip: &mut Strip) {
+fn draw_whole<P: Pixels>(
+    buffer: &Buffer,
+    rules: &FaceRules,
+    quad: [usize; 4],
+    v: &[Vertex; 4],
+    strip: &mut Strip<P>,
+) {
     let depth = |k: usize| v[k].surface[0];
     let turn = (depth(0) - depth(2)).abs() > (depth(1) - depth(3)).abs();
     let triangles = if turn { [[1, 2, 3], [1, 3, 0]] } else { [[0, 1, 2], [0, 2, 3]] };
@@ -132,7 +187,13 @@ fn draw_whole(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], v: &[Vertex;
 }
 
 /// The face of some of the corners, with its outline towards the others.
-fn draw_part(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], group: usize, strip: &mut Strip) {
+fn draw_part<P: Pixels>(
+    buffer: &Buffer,
+    rules: &FaceRules,
+    quad: [usize; 4],
+    group: usize,
+    strip: &mut Strip<P>,
+) {
     let size = group.count_ones();
     if rules.outline_px <= 0.0 && size < 3 {
         return;
@@ -182,11 +243,9 @@ fn towards(from: usize, to: usize) -> (f32, f32) {
 fn beyond(buffer: &Buffer, rules: &FaceRules, [at, next]: [usize; 2], direction: (f32, f32)) -> Vertex {
     /// From here on a picture pixel is not touched by the surface.
     const OUTSIDE_PX: f32 = 0.5;
-    /// Buffer pixels: from a corner at one side of its pixel to beyond the outline of a corner at the
-    /// other side of the next.
-    const UNDER: f32 = 1.5;
     let corner = &buffer.corners[at];
-    let hidden = buffer.corners[next].surface[0] < corner.surface[0];
+    // Through translucent surfaces one would see it go on.
+    let hidden = buffer.layers == 1 && buffer.corners[next].surface[0] < corner.surface[0];
     let (length_px, inside) = if hidden {
         (UNDER * rules.pixel, rules.outline_px + UNDER * rules.pixel)
     } else {

@@ -132,14 +132,8 @@ fn between(buffer: &Buffer, index: usize, scale: &DepthScale) -> Option<Fill> {
 /// Half the size: each pixel the mean of the up to four pixels of the surface nearest to the eye.
 fn pull(fine: &Buffer, coarse: &mut Buffer, scale: &DepthScale) {
     let (width, height) = (fine.width.div_ceil(2), fine.height.div_ceil(2));
-    (coarse.width, coarse.height, coarse.stride) = (width, height, width + 2 * PAD);
-    let len = coarse.stride * (height + 2 * PAD);
-    for array in [&mut coarse.x, &mut coarse.y, &mut coarse.q, &mut coarse.count] {
-        array.clear();
-        array.resize(len, 0.0);
-    }
-    coarse.colour.clear();
-    coarse.colour.resize(len, [0.0; 3]);
+    coarse.reshape(width, height, 1);
+    coarse.empty();
     for row in 0..height {
         for column in 0..width {
             let first = fine.at(2 * column, 2 * row);

@@ -5,6 +5,7 @@ use crate::options::Normals;
 use crate::parallel::*;
 use crate::view::BufferMap;
 use glam::Vec3;
+use pulp::Arch;
 
 /// Depths of neighbouring pixels of one surface differ by less than this many units (the paper's 5).
 pub(crate) const STEP: f32 = 5.0;
@@ -24,18 +25,20 @@ pub(crate) fn make_corners(
     histogram: &mut Histogram,
 ) {
     let inner = buffer.inner();
-    let n = BAND_ROWS * buffer.stride;
+    let n = BAND_ROWS * buffer.pitch;
     let mut corners = std::mem::take(&mut buffer.corners);
     let shared = &*buffer;
     let camera = Camera::new(map);
+    let arch = Arch::new();
     let radius = match rule {
-        Normals::Plane => radius_for_noise(shared, scale, histogram),
+        Normals::Plane => arch.dispatch(Wide(|| radius_for_noise(shared, scale, histogram))),
         Normals::Triangles => 1,
     };
-    let fitting = Fitting { scale: *scale, radius };
+    let fitting = Fitting { arch, scale: *scale, radius };
     chunks(&mut corners[inner], n).enumerate().for_each(|(i, rows)| {
         for (r, row) in rows.chunks_mut(shared.stride).enumerate() {
-            let start = shared.at(0, i * BAND_ROWS + r);
+            // Rows of entries: all layers of a row of pixels, then those of the next.
+            let start = shared.at(0, i * BAND_ROWS) + r * shared.stride;
             let out = &mut row[PAD..PAD + shared.width];
             match rule {
                 Normals::Plane => plane_row(shared, start, &camera, &fitting, out),
@@ -132,10 +135,10 @@ fn plane_row(b: &Buffer, start: usize, camera: &Camera, fitting: &Fitting, out: 
             continue;
         }
         // The last chunk also fits what lies beyond the row, and drops it.
-        let mut fits = fit_chunk(b, first, &fitting.scale, fitting.radius);
+        let fit = |radius| fitting.arch.dispatch(Wide(|| fit_chunk(b, first, &fitting.scale, radius)));
+        let mut fits = fit(fitting.radius);
         if counts.iter().zip(&fits).any(|(count, fit)| *count > 0.0 && !fit.good) {
-            let wider = fit_chunk(b, first, &fitting.scale, fitting.radius + 1);
-            for (fit, wider) in fits.iter_mut().zip(wider).filter(|(fit, _)| !fit.good) {
+            for (fit, wider) in fits.iter_mut().zip(fit(fitting.radius + 1)).filter(|(fit, _)| !fit.good) {
                 *fit = wider;
             }
         }
@@ -152,6 +155,7 @@ fn plane_row(b: &Buffer, start: usize, camera: &Camera, fitting: &Fitting, out: 
 
 /// How surfaces are fitted in this frame.
 struct Fitting {
+    arch: Arch,
     scale: DepthScale,
     /// Windows hold (2·radius + 1)² pixels.
     radius: usize,
@@ -167,9 +171,10 @@ const MOST_ERROR_RAD: f32 = 0.035;
 /// The smallest window that the noise of this frame allows.
 ///
 /// The noise is the median distance of averaged points from the surfaces fitted to 3×3 of them, over
-/// every fourth row.
+/// every eighth row.
+#[inline(always)]
 fn radius_for_noise(b: &Buffer, scale: &DepthScale, histogram: &mut Histogram) -> usize {
-    const EVERY: usize = 4;
+    const EVERY: usize = 8;
     // 9 values and 6 unknowns: what remains is 3/9 of the variance.
     const LEFT_OVER: f32 = 3.0 / 9.0;
     histogram.clear();
@@ -230,6 +235,7 @@ impl Histogram {
     }
 }
 
+#[inline(always)]
 fn fit_chunk(b: &Buffer, first: usize, scale: &DepthScale, radius: usize) -> [Fit; LANES] {
     let mut step = [0.0; LANES];
     for (s, q) in step.iter_mut().zip(&b.q[first..first + LANES]) {
@@ -238,6 +244,7 @@ fn fit_chunk(b: &Buffer, first: usize, scale: &DepthScale, radius: usize) -> [Fi
     sum_window(b, first, &step, radius as isize).solve()
 }
 
+#[inline(always)]
 fn sum_window(b: &Buffer, first: usize, step: &Lane, radius: isize) -> Window {
     let zero = [0.0; LANES];
     let mut s = Window { left: [zero; PAIRS], right: [zero; TERMS], qq: zero };
@@ -245,9 +252,13 @@ fn sum_window(b: &Buffer, first: usize, step: &Lane, radius: isize) -> Window {
         array[at..at + LANES].try_into().expect("a slice of LANES entries")
     };
     let (cx, cy, cq) = (of(&b.x, first), of(&b.y, first), of(&b.q, first));
-    for dy in -radius..=radius {
-        for dx in -radius..=radius {
-            let at = first.wrapping_add_signed(dy * b.stride as isize + dx);
+    // Of a pixel with several layers all count that are close enough, which is one in general.
+    let layer = (first / b.stride) % b.layers;
+    let top = first - layer * b.stride;
+    let window = (-radius..=radius).flat_map(|dy| (-radius..=radius).map(move |dx| (dx, dy)));
+    for (dx, dy) in window {
+        for l in 0..b.layers {
+            let at = top.wrapping_add_signed(dy * b.pitch as isize + dx) + l * b.stride;
             let (nx, ny, nq, count) = (of(&b.x, at), of(&b.y, at), of(&b.q, at), of(&b.count, at));
             let reach = dx.abs().max(dy.abs()).max(1) as f32;
             for k in 0..LANES {
@@ -280,6 +291,7 @@ const STIFFNESS: f32 = 0.02;
 
 impl Window {
     /// Least squares by LDLᵀ, for all lanes at once.
+    #[inline(always)]
     fn solve(&self) -> [Fit; LANES] {
         let mut m = [[[0.0; LANES]; TERMS]; TERMS];
         let mut pair = 0;
@@ -348,8 +360,9 @@ impl Window {
 
 /// The paper's rule: the mean of the normals of up to eight triangles with consecutive neighbours.
 fn triangle_row(b: &Buffer, start: usize, camera: &Camera, scale: &DepthScale, out: &mut [Corner]) {
-    let s = b.stride as isize;
+    let s = b.pitch as isize;
     let around = [1, s + 1, s, s - 1, -1, -s - 1, -s, 1 - s];
+    let layer = (start / b.stride) % b.layers;
     for (i, corner) in out.iter_mut().enumerate() {
         let at = start + i;
         *corner = Corner::NONE;
@@ -359,9 +372,12 @@ fn triangle_row(b: &Buffer, start: usize, camera: &Camera, scale: &DepthScale, o
         let p = camera.position(b.x[at], b.y[at], b.q[at]);
         let step = scale.bent_step(b.q[at], STEP);
         let edges = around.map(|offset| {
-            let n = at.wrapping_add_signed(offset);
-            let near = b.count[n] > 0.0 && (b.q[n] - b.q[at]).abs() < step;
-            near.then(|| camera.position(b.x[n], b.y[n], b.q[n]) - p)
+            let top = at.wrapping_add_signed(offset) - layer * b.stride;
+            let layers = (0..b.layers).map(|l| top + l * b.stride);
+            let apart = |n: usize| (b.q[n] - b.q[at]).abs();
+            let n = layers.filter(|n| b.count[*n] > 0.0 && apart(*n) < step);
+            let n = n.min_by(|m, n| apart(*m).total_cmp(&apart(*n)))?;
+            Some(camera.position(b.x[n], b.y[n], b.q[n]) - p)
         });
         let mut sum = Vec3::ZERO;
         for k in 0..8 {

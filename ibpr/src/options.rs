@@ -115,7 +115,7 @@ pub struct Options {
     pub weighting: Weighting,
     /// Default: [`Normals::Plane`].
     pub normals: Normals,
-    /// How far faces reach beyond the outermost means, in buffer pixels; 0 as printed. Default: 0.5.
+    /// How far faces reach beyond the outermost means, in buffer pixels; 0 as printed. Default: 0.35.
     pub outline: f32,
     /// Levels of pull-push: gaps of less than 2^levels pixels are filled. Default: 1.
     pub fill: u32,
@@ -144,7 +144,7 @@ impl Default for Options {
             gamma: 2.0,
             weighting: Weighting::Even,
             normals: Normals::Plane,
-            outline: 0.5,
+            outline: 0.35,
             fill: 1,
             passes: Passes::One,
             translucency: None,
@@ -188,7 +188,12 @@ impl Options {
             check("threshold", t.threshold, positive(t.threshold), "it must be above 0")?;
         }
         if let Some(e) = self.eye_dome {
-            check("strength", e.strength, e.strength >= 0.0 && e.strength.is_finite(), "it must be at least 0")?;
+            check(
+                "strength",
+                e.strength,
+                e.strength >= 0.0 && e.strength.is_finite(),
+                "it must be at least 0",
+            )?;
             check("radius", e.radius as f32, (1..=64).contains(&e.radius), "it must be 1 to 64")?;
         }
         for c in self.base.to_array() {

@@ -19,8 +19,8 @@ pub(crate) struct Lattice {
 
 impl Lattice {
     pub(crate) fn around<'a>(points: impl Iterator<Item = &'a DVec3>) -> Self {
-        let (low, high) = points
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+        let (low, high) =
+            points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
         Self { low, high, extent: (high - low).max_element() }
     }
 

@@ -1,5 +1,9 @@
 //! Points of a block in buffer pixels.
 
+use crate::parallel::Wide;
+use crate::view::BufferMap;
+use pulp::Arch;
+
 /// Points that are transformed together: their results stay in the first-level cache.
 pub(crate) const LANES: usize = 256;
 
@@ -10,6 +14,7 @@ pub(crate) struct Projected {
     pub(crate) y: [f32; LANES],
     /// Depth relative to the reference.
     pub(crate) depth: [f32; LANES],
+    inside: [u8; LANES],
     kept: [u16; LANES],
     count: usize,
 }
@@ -27,9 +32,24 @@ pub(crate) struct Band {
     pub(crate) reference: f32,
 }
 
+impl Band {
+    pub(crate) fn new(map: &BufferMap, first_row: usize, rows: usize) -> Self {
+        let reference = map.reference as f32;
+        Self {
+            width: map.width,
+            first_row,
+            rows,
+            near: -reference * (1.0 - 4.0 * f32::EPSILON),
+            perspective: map.view.is_perspective(),
+            reference,
+        }
+    }
+}
+
 impl Projected {
     pub(crate) fn new() -> Self {
-        Self { x: [0.0; LANES], y: [0.0; LANES], depth: [0.0; LANES], kept: [0; LANES], count: 0 }
+        let zero = [0.0; LANES];
+        Self { x: zero, y: zero, depth: zero, inside: [0; LANES], kept: [0; LANES], count: 0 }
     }
 
     /// Numbers of the points in the band.
@@ -43,7 +63,21 @@ impl Projected {
     }
 
     /// Transforms up to [`LANES`] points and notes which lie in the band.
-    pub(crate) fn transform(&mut self, rows: &[f32; 12], points: [&[f32]; 3], band: &Band) {
+    pub(crate) fn transform(&mut self, arch: Arch, rows: &[f32; 12], points: [&[f32]; 3], band: &Band) {
+        // The same operations in the same order whatever the width of the vectors: results do not change.
+        arch.dispatch(Wide(|| self.transform_lanes(rows, points, band)));
+        let n = points[0].len().min(LANES);
+        let mut count = 0;
+        for i in 0..n {
+            // Without a branch: an entry that is not kept is overwritten by the next.
+            self.kept[count] = i as u16;
+            count += usize::from(self.inside[i]);
+        }
+        self.count = count;
+    }
+
+    #[inline(always)]
+    fn transform_lanes(&mut self, rows: &[f32; 12], points: [&[f32]; 3], band: &Band) {
         let [px, py, pz] = points;
         let n = px.len().min(LANES);
         let (px, py, pz) = (&px[..n], &py[..n], &pz[..n]);
@@ -56,17 +90,11 @@ impl Projected {
         }
         let right = band.width as f32;
         let (top, bottom) = (band.first_row as f32, (band.first_row + band.rows) as f32);
-        let mut count = 0;
+        let inside = &mut self.inside[..n];
         for i in 0..n {
-            let inside = (x[i] >= 0.0)
-                & (x[i] < right)
-                & (y[i] >= top)
-                & (y[i] < bottom)
-                & (depth[i] > band.near);
-            // Without a branch: an entry that is not kept is overwritten by the next.
-            self.kept[count] = i as u16;
-            count += usize::from(inside);
+            let (x, y) = (x[i], y[i]);
+            let here = (x >= 0.0) & (x < right) & (y >= top) & (y < bottom) & (depth[i] > band.near);
+            inside[i] = u8::from(here);
         }
-        self.count = count;
     }
 }

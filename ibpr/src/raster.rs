@@ -17,41 +17,25 @@ pub(crate) struct Vertex {
     pub(crate) inside: f32,
 }
 
-/// Nearest surface per pixel, and the nearest rim in front of it.
-///
-/// A rim is a pixel that the outline of a surface crosses: it covers the pixel in part, and what lies
-/// behind shows through the rest.
+/// What the pixels of a strip keep of the faces that cover them.
+pub(crate) trait Pixels {
+    /// A face covers the share `cover` (above 0, at most 1) of pixel `at`.
+    fn put(&mut self, at: usize, surface: [f32; 4], cover: f32, paint: impl FnOnce() -> Option<Paint>);
+}
+
+/// Some rows of the picture.
 #[derive(Debug, Default)]
-pub(crate) struct Strip {
+pub(crate) struct Strip<P> {
     pub(crate) width: usize,
     pub(crate) first_row: usize,
     pub(crate) rows: usize,
-    /// Bent depth (+∞ where nothing is) and normal.
-    pub(crate) solid: Vec<[f32; 4]>,
-    pub(crate) rim: Vec<[f32; 4]>,
-    /// Covered share of rim pixels; 0 where there is no rim.
-    pub(crate) rim_cover: Vec<f32>,
-    /// Colours of the two, if asked for.
-    pub(crate) solid_paint: Vec<Paint>,
-    pub(crate) rim_paint: Vec<Paint>,
+    pub(crate) pixels: P,
 }
 
-/// No surface.
-const FAR: [f32; 4] = [f32::INFINITY, 0.0, 0.0, 0.0];
-
-impl Strip {
-    /// Empties it, and gives it the place of some rows of the picture.
-    pub(crate) fn begin(&mut self, width: usize, first_row: usize, rows: usize, painted: bool) {
+impl<P: Pixels> Strip<P> {
+    /// Gives it the place of some rows of the picture.
+    pub(crate) fn place(&mut self, width: usize, first_row: usize, rows: usize) {
         (self.width, self.first_row, self.rows) = (width, first_row, rows);
-        let n = width * rows;
-        self.solid.clear();
-        self.solid.resize(n, FAR);
-        self.rim.resize(n, FAR);
-        self.rim_cover.clear();
-        self.rim_cover.resize(n, 0.0);
-        let painted = if painted { n } else { 0 };
-        self.solid_paint.resize(painted, [0.0; 4]);
-        self.rim_paint.resize(painted, [0.0; 4]);
     }
 
     /// Draws a triangle, of either orientation. `paints` are the paints of its vertices.
@@ -104,7 +88,7 @@ impl Strip {
         }
     }
 
-    /// Keeps the nearest; `weights` are those of the second and third vertex.
+    /// `weights` are those of the second and third vertex.
     #[inline(always)]
     fn put<const RIM: bool>(
         &mut self,
@@ -113,36 +97,19 @@ impl Strip {
         weights: [f32; 2],
         paints: Option<[&Paint; 3]>,
     ) {
+        let mix = |a: f32, b: f32, c: f32| a + weights[0] * (b - a) + weights[1] * (c - a);
         let mix4 = |a: &[f32; 4], b: &[f32; 4], c: &[f32; 4]| {
             let mut out = *a;
             for (i, v) in out.iter_mut().enumerate() {
-                *v += weights[0] * (b[i] - a[i]) + weights[1] * (c[i] - a[i]);
+                *v = mix(a[i], b[i], c[i]);
             }
             out
         };
-        let surface = mix4(&a.surface, &b.surface, &c.surface);
-        if RIM {
-            let inside =
-                a.inside + weights[0] * (b.inside - a.inside) + weights[1] * (c.inside - a.inside);
-            // A pixel whose centre lies this far inside the outline is covered to this share.
-            let cover = inside + 0.5;
-            if cover < 1.0 {
-                // Two surfaces may meet in a rim: the nearest one is kept.
-                if cover > 0.0 && (self.rim_cover[at] == 0.0 || surface[0] < self.rim[at][0]) {
-                    self.rim[at] = surface;
-                    self.rim_cover[at] = cover;
-                    if let Some([p, q, r]) = paints {
-                        self.rim_paint[at] = mix4(p, q, r);
-                    }
-                }
-                return;
-            }
-        }
-        if surface[0] < self.solid[at][0] {
-            self.solid[at] = surface;
-            if let Some([p, q, r]) = paints {
-                self.solid_paint[at] = mix4(p, q, r);
-            }
+        // A pixel whose centre lies this far inside the outline is covered to this share.
+        let cover = if RIM { (mix(a.inside, b.inside, c.inside) + 0.5).min(1.0) } else { 1.0 };
+        if cover > 0.0 {
+            let surface = mix4(&a.surface, &b.surface, &c.surface);
+            self.pixels.put(at, surface, cover, || paints.map(|[p, q, r]| mix4(p, q, r)));
         }
     }
 }

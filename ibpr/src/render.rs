@@ -12,13 +12,16 @@ use crate::frame::{Frame, FrameCounts};
 use crate::normals;
 use crate::options::{Options, Passes, Scale};
 use crate::parallel::*;
-use crate::raster::{Paint, Strip};
-use crate::shade::Shader;
+use crate::pixels::{Nearest, Stack};
+use crate::raster::{Pixels, Strip};
+use crate::shade::{RowsOut, Shader};
 use crate::view::{BufferMap, View};
-use glam::Vec3;
 
 /// Rows of the picture that are drawn together: their surfaces fit into the second-level cache.
 const STRIP_ROWS: usize = 32;
+
+/// The same for translucent frames, which keep several surfaces per pixel.
+const STACK_ROWS: usize = 16;
 
 /// Draws frames. Keeps its working memory, so that later frames do not allocate.
 #[derive(Debug, Default)]
@@ -27,7 +30,7 @@ pub struct Renderer {
     depths: Vec<(f64, usize)>,
     passes: [Pass; 2],
     bands: Pool<BandScratch>,
-    strips: Pool<[Strip; 2]>,
+    strips: Pool<StripScratch>,
     fill: FillScratch,
 }
 
@@ -105,32 +108,25 @@ impl Renderer {
             seen > half
         });
         let Some((depth, _)) = median else { return 1.0 };
-        let spacing_px = cloud.density_spacing() * view.pixels_per_unit(depth.max(reference_depth(cloud, view) * 0.01));
+        let spacing_px =
+            cloud.density_spacing() * view.pixels_per_unit(depth.max(reference_depth(cloud, view) * 0.01));
         (factor * spacing_px).clamp(1.0, f64::from(view.width.max(view.height)))
     }
 
     fn draw_faces(&self, cloud: &Cloud, maps: &[Option<BufferMap>; 2], options: &Options, frame: &mut Frame) {
-        let painted = cloud.has_colours() || options.surface_layers;
-        let rules = [0, 1].map(|i| maps[i].as_ref().map(|map| face_rules(cloud, map, options, i == 1, painted)));
-        let Some(map) = &maps[0] else { return };
-        let shader = Shader::new(map, options);
-        let width = frame.width;
-        let n = STRIP_ROWS * width;
-        let coloured = cloud.has_colours();
+        let [Some(map), _] = maps else { return };
+        let drawing = Drawing {
+            passes: &self.passes,
+            rules: [0, 1].map(|i| maps[i].as_ref().map(|map| face_rules(cloud, map, options, i == 1))),
+            shader: Shader::new(map, options),
+            coloured: cloud.has_colours(),
+            width: frame.width,
+            alpha: options.translucency.map(|t| t.alpha),
+        };
+        let rows = if drawing.alpha.is_some() { STACK_ROWS } else { STRIP_ROWS };
+        let n = rows * frame.width;
         let draw = |i: usize, out: &mut RowsOut<'_>| {
-            self.strips.with(|[first, second]| {
-                let (first_row, rows) = (i * STRIP_ROWS, out.depth.len() / width);
-                for (k, strip) in [&mut *first, &mut *second].into_iter().enumerate() {
-                    if let Some(rules) = &rules[k] {
-                        strip.begin(width, first_row, rows, painted);
-                        faces::draw(&self.passes[k].buffer, rules, strip);
-                    }
-                }
-                if let Some(rules) = &rules[1] {
-                    draw_over(first, second, &rules.scale);
-                }
-                finish(first, &shader, coloured, out);
-            });
+            self.strips.with(|scratch| drawing.strip(scratch, i * rows, out));
         };
         let base = chunks(&mut frame.colour, n).zip(chunks(&mut frame.depth, n));
         if options.surface_layers {
@@ -147,6 +143,75 @@ impl Renderer {
     }
 }
 
+/// Strips of both passes, opaque or translucent.
+#[derive(Debug, Default)]
+struct StripScratch {
+    nearest: [Strip<Nearest>; 2],
+    stacks: [Strip<Stack>; 2],
+}
+
+/// What all strips of a frame share.
+struct Drawing<'a> {
+    passes: &'a [Pass; 2],
+    rules: [Option<FaceRules>; 2],
+    shader: Shader,
+    coloured: bool,
+    width: usize,
+    /// Opacity of translucent surfaces.
+    alpha: Option<f32>,
+}
+
+impl Drawing<'_> {
+    fn strip(&self, scratch: &mut StripScratch, first_row: usize, out: &mut RowsOut<'_>) {
+        let painted = self.coloured || out.surface.is_some();
+        let n = out.depth.len();
+        if let Some(alpha) = self.alpha {
+            let [first, second] = &mut scratch.stacks;
+            self.draw_passes([&mut *first, &mut *second], first_row, n, |s| s.begin(n));
+            if let Some(rules) = &self.rules[1] {
+                first.pixels.draw_over(&second.pixels, &rules.scale, normals::STEP);
+            }
+            let scale = self.rules[0].as_ref().map(|r| r.scale);
+            let together = |q: f32| scale.map_or(0.0, |s| s.bent_step(q, 1.0));
+            for i in 0..n {
+                self.shader
+                    .through(first.pixels.of(i), self.place(i, first_row), alpha, self.coloured, together)
+                    .write(out, i);
+            }
+        } else {
+            let [first, second] = &mut scratch.nearest;
+            self.draw_passes([&mut *first, &mut *second], first_row, n, |s| s.begin(n, painted));
+            if let Some(rules) = &self.rules[1] {
+                first.pixels.draw_over(&second.pixels, &rules.scale, normals::STEP);
+            }
+            for i in 0..n {
+                self.shader.nearest(&first.pixels, i, self.place(i, first_row), self.coloured).write(out, i);
+            }
+        }
+    }
+
+    /// Column and row of pixel `i` of a strip.
+    fn place(&self, i: usize, first_row: usize) -> (usize, usize) {
+        (i % self.width, first_row + i / self.width)
+    }
+
+    fn draw_passes<P: Pixels>(
+        &self,
+        strips: [&mut Strip<P>; 2],
+        first_row: usize,
+        n: usize,
+        begin: impl Fn(&mut P),
+    ) {
+        for (k, strip) in strips.into_iter().enumerate() {
+            if let Some(rules) = &self.rules[k] {
+                strip.place(self.width, first_row, n / self.width);
+                begin(&mut strip.pixels);
+                faces::draw(&self.passes[k].buffer, rules, strip);
+            }
+        }
+    }
+}
+
 impl Pass {
     fn make(
         &mut self,
@@ -158,11 +223,14 @@ impl Pass {
         fill: &mut FillScratch,
     ) {
         accumulate::view_blocks(cloud, visible, map, &mut self.views);
-        self.buffer.reshape(map);
+        let layers = options.translucency;
+        self.buffer.reshape(map.width, map.height, layers.map_or(1, |t| t.layers));
         let scale = DepthScale::new(map, cloud.spacing());
-        let rules = Rules { gamma: options.gamma, weighting: options.weighting, scale };
+        let rules = Rules { gamma: options.gamma, weighting: options.weighting, scale, layers };
         accumulate::accumulate(cloud, &self.views, map, rules, &mut self.buffer, bands);
-        fill::pull_push(&mut self.buffer, &scale, options.fill, fill);
+        if layers.is_none() {
+            fill::pull_push(&mut self.buffer, &scale, options.fill, fill);
+        }
         normals::make_corners(&mut self.buffer, map, &scale, options.normals, &mut self.noise);
     }
 }
@@ -175,7 +243,7 @@ fn reference_depth(cloud: &Cloud, view: &View) -> f64 {
     depth.max(0.01 * extent).max(f64::MIN_POSITIVE * 1e16)
 }
 
-fn face_rules(cloud: &Cloud, map: &BufferMap, options: &Options, second: bool, painted: bool) -> FaceRules {
+fn face_rules(cloud: &Cloud, map: &BufferMap, options: &Options, second: bool) -> FaceRules {
     let (x, y) = map.centre();
     FaceRules {
         scale: DepthScale::new(map, cloud.spacing()),
@@ -186,76 +254,7 @@ fn face_rules(cloud: &Cloud, map: &BufferMap, options: &Options, second: bool, p
         centre: (x as f32, y as f32),
         perspective: map.view.is_perspective(),
         pixel: map.scale as f32,
-        painted,
+        painted: cloud.has_colours() || options.surface_layers,
         sparse_only: second,
-    }
-}
-
-/// Puts the coarser pass over the finer one, except where that shows another surface in front.
-fn draw_over(fine: &mut Strip, coarse: &Strip, scale: &DepthScale) {
-    for (i, (under, over)) in fine.solid.iter_mut().zip(&coarse.solid).enumerate() {
-        let together = || over[0] < under[0] + scale.bent_step(over[0], normals::STEP);
-        if over[0] < f32::INFINITY && together() {
-            *under = *over;
-            if let Some(paint) = fine.solid_paint.get_mut(i) {
-                *paint = coarse.solid_paint[i];
-            }
-        }
-    }
-}
-
-/// Rows of the frame.
-struct RowsOut<'a> {
-    colour: &'a mut [[f32; 4]],
-    depth: &'a mut [f32],
-    surface: Option<(&'a mut [[f32; 3]], &'a mut [f32])>,
-}
-
-/// Shades a strip: the rim over what is behind it.
-fn finish(strip: &Strip, shader: &Shader, coloured: bool, out: &mut RowsOut<'_>) {
-    let shade = |i: usize, surface: &[f32; 4], paint: &[Paint]| {
-        let n = Shader::normal(surface);
-        let colour = coloured.then(|| Vec3::from_slice(&paint[i][..3]));
-        let (x, y) = (i % strip.width, strip.first_row + i / strip.width);
-        (shader.colour(x, y, n, colour), n)
-    };
-    for i in 0..out.depth.len() {
-        let (solid, cover) = (&strip.solid[i], strip.rim_cover[i]);
-        let has_solid = solid[0] < f32::INFINITY;
-        let has_rim = cover > 0.0 && strip.rim[i][0] < solid[0];
-        if !(has_solid || has_rim) {
-            (out.colour[i], out.depth[i]) = ([0.0; 4], f32::INFINITY);
-            if let Some((normal, count)) = &mut out.surface {
-                (normal[i], count[i]) = ([0.0; 3], 0.0);
-            }
-            continue;
-        }
-        let mut colour = [0.0; 4];
-        let mut put = |c: Vec3, share: f32| {
-            let c = c * share;
-            colour = [colour[0] + c.x, colour[1] + c.y, colour[2] + c.z, colour[3] + share];
-        };
-        // Depth and normal are those of the surface that covers more.
-        let mut nearest = (f32::INFINITY, Vec3::ZERO, 0.0);
-        let points = |paint: &[Paint]| paint.get(i).map_or(0.0, |p| p[3]);
-        if has_solid {
-            let (c, n) = shade(i, solid, &strip.solid_paint);
-            put(c, if has_rim { 1.0 - cover } else { 1.0 });
-            nearest = (solid[0], n, points(&strip.solid_paint));
-        }
-        if has_rim {
-            let (c, n) = shade(i, &strip.rim[i], &strip.rim_paint);
-            put(c, cover);
-            if cover >= 0.5 || !has_solid {
-                nearest = (strip.rim[i][0], n, points(&strip.rim_paint));
-            }
-        }
-        let shown = has_solid || cover >= 0.5;
-        out.colour[i] = colour;
-        out.depth[i] = if shown { shader.depth(nearest.0) } else { f32::INFINITY };
-        if let Some((normal, count)) = &mut out.surface {
-            normal[i] = if shown { shader.world(nearest.1).to_array() } else { [0.0; 3] };
-            count[i] = if shown { nearest.2 } else { 0.0 };
-        }
     }
 }
