@@ -28,8 +28,9 @@ pub(crate) struct Visible<'a> {
     pub(crate) pieces: Option<&'a [crate::occlude::Region]>,
 }
 
-/// Overlaps smaller than this share of a cell are rounding.
-pub(crate) const NEGLIGIBLE_AREA: f64 = 1e-11;
+/// Overlaps smaller than this share of a cell are rounding, and stay below what a sum of weights is checked for in a cell of
+/// a hundred parts. Touches of larger rounding are told by the edge that separates them.
+pub(crate) const NEGLIGIBLE_AREA: f64 = 1e-13;
 
 /// A cell in which less than this is still open is finished.
 const FINISHED: f64 = 1e-11;

@@ -72,6 +72,14 @@ const NO_PERSPECTIVE: f64 = 1.002;
 /// Ratio of depths up to which many texels are weighted alike.
 const LITTLE_PERSPECTIVE: f64 = 1.05;
 
+/// Coordinate beyond which neighbouring texels can hardly be told apart in f64, and counting columns one by one soon stops
+/// to make progress.
+const LARGEST: f64 = 1e12;
+
+fn is_usable(texel: DVec2) -> bool {
+    texel.is_finite() && texel.abs().max_element() < LARGEST
+}
+
 impl<const N: usize> TexelSums<N> {
     /// Sums up a texture; `texel(x, y)` gives values of at least 0, row 0 on top.
     ///
@@ -192,10 +200,7 @@ impl<const N: usize> TexelSums<N> {
         let (low, high) = corners
             .iter()
             .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), c| (l.min(c.texel), h.max(c.texel)));
-        // Beyond this, neighbouring texels can hardly be told apart in f64.
-        const LARGEST: f64 = 1e12;
-        let usable = |c: &TexelCorner| c.texel.abs().max_element() < LARGEST && c.texel.is_finite();
-        if corners.is_empty() || !corners.iter().all(usable) {
+        if corners.is_empty() || !corners.iter().all(|c| is_usable(c.texel)) {
             return self.texel(0.0, 0.0);
         }
         if low.floor() == high.floor() {
@@ -248,8 +253,8 @@ impl<const N: usize> TexelSums<N> {
         let span = (high - low).max_element();
         // Not finite where a strip of a polygon reaches behind the eye.
         // Each corner is looked at: bounds do not always keep a NaN.
-        let finite = span.is_finite() && ring.iter().all(|v| v.is_finite());
-        if !finite || span > MOST_TEXELS.max(4.0 * self.width.max(self.height) as f64) {
+        let usable = ring.iter().all(|&v| is_usable(v));
+        if !usable || span > MOST_TEXELS.max(4.0 * self.width.max(self.height) as f64) {
             let middle = 0.5 * (low + high);
             return match self.wrap {
                 TexelWrap::Clamp if middle.is_finite() => self.texel(middle.x, middle.y),
@@ -291,11 +296,13 @@ impl<const N: usize> TexelSums<N> {
         }
         let (from, to, sign) = if a.y < b.y { (a, b, 1.0) } else { (b, a, -1.0) };
         let run = (to.x - from.x) / (to.y - from.y);
+        let (left, right) = (from.x.min(to.x), from.x.max(to.x));
         let mut p = from;
         while p.y < to.y {
             let band = self.band(level, p.y);
             let y = if band.end > p.y { band.end.min(to.y) } else { to.y };
-            let x = if y == to.y { to.x } else { from.x + (y - from.y) * run };
+            // On an edge that is almost level the slope overflows, and the next column line would be at infinity.
+            let x = if y == to.y { to.x } else { (from.x + (y - from.y) * run).clamp(left, right) };
             self.add_row(level, band.row, p.x, x, sign * (y - p.y), sum);
             p = DVec2::new(x, y);
         }

@@ -156,3 +156,33 @@ fn a_texel_mean_ends_where_a_cut_overflows() {
     let [mean] = white.mean(&corners);
     assert!((mean - 1.0).abs() < 1e-6, "{mean}");
 }
+
+/// A sliver in front of two triangles hid less of each than was worth a cut, and was seen beside both: weights summed up to
+/// 1 + 1.5e-11.
+#[test]
+fn a_sliver_hides_what_little_it_covers() {
+    let mut soup = Soup::default();
+    let (ground, sliver) = (soup.surface(1.0), soup.surface(1.0));
+    soup.polygon(
+        &[dvec3(-1.0, -1.0, 0.0), dvec3(1.0, -1.0, 0.0), dvec3(1.0, 1.0, 0.0), dvec3(-1.0, 1.0, 0.0)],
+        ground,
+    );
+    soup.polygon(&[dvec3(-0.5, 0.0, 0.5), dvec3(0.5, 0.0, 0.5), dvec3(0.0, 3e-11, 0.5)], sliver);
+    let camera = Projection::Orthographic { height: 1.0 };
+    let view = View::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, camera, 1, 1).unwrap();
+    weights_are_shares(&soup, view, EXACT).unwrap();
+}
+
+/// The slope of an edge that rises by 1e-308 texels overflowed, and its crossing with a row was looked for column by column up
+/// to infinity.
+#[test]
+fn a_texel_mean_ends_where_an_edge_is_all_but_level() {
+    let white = TexelSums::<1>::new(1, 1, TexelWrap::Repeat, |_, _| [1.0]).unwrap();
+    let corners = [dvec2(2.0, 1e-308), dvec2(-2.0, -1e-308), dvec2(0.0, -2.0)].map(|p| TexelCorner {
+        grid: p,
+        rational: 1.0,
+        texel: p,
+    });
+    let [mean] = white.mean(&corners);
+    assert!((mean - 1.0).abs() < 1e-6, "{mean}");
+}
