@@ -134,6 +134,15 @@ impl Cloud {
         self.offsets[0].len()
     }
 
+    /// All points in the world, in the cloud's order, as they were stored: to about 1e-7 of the extent.
+    pub fn positions(&self) -> impl Iterator<Item = DVec3> + '_ {
+        let [x, y, z] = &self.offsets;
+        self.blocks.iter().flat_map(move |block| {
+            let of = |i: usize| DVec3::new(f64::from(x[i]), f64::from(y[i]), f64::from(z[i]));
+            block.points.clone().map(move |i| block.origin + of(i) * self.unit)
+        })
+    }
+
     /// Whether any scan brought colours.
     #[must_use]
     pub fn has_colours(&self) -> bool {

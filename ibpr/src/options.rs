@@ -144,7 +144,7 @@ impl Default for Options {
             gamma: 2.0,
             weighting: Weighting::Even,
             normals: Normals::Plane,
-            outline: 0.35,
+            outline: Self::OUTLINE,
             fill: 1,
             passes: Passes::One,
             translucency: None,
@@ -161,6 +161,9 @@ impl Default for Options {
 impl Options {
     /// Factor of [`Scale::Auto`] by default, found by experiment (`studies -- ibpr`).
     pub const AUTO_FACTOR: f32 = 1.6;
+
+    /// Default of [`Options::outline`], found by experiment (`studies -- ibpr`).
+    pub const OUTLINE: f32 = 0.35;
 
     /// Most levels of pull-push.
     pub const MOST_FILL: u32 = 6;

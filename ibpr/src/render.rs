@@ -10,7 +10,7 @@ use crate::faces::{self, FaceRules};
 use crate::fill::{self, FillScratch};
 use crate::frame::{Frame, FrameCounts};
 use crate::normals;
-use crate::options::{Options, Passes, Scale};
+use crate::options::{Culling, Options, Passes, Scale};
 use crate::parallel::*;
 use crate::pixels::{Nearest, Stack};
 use crate::raster::{Pixels, Strip};
@@ -64,7 +64,9 @@ impl Renderer {
     ) -> Result<(), IbprError> {
         options.check()?;
         let mut counts = FrameCounts::default();
-        cull::visible(cloud, view, options.culling, &mut self.visible, &mut counts);
+        // Through translucent surfaces one sees those that face away.
+        let culling = if options.translucency.is_some() { Culling::None } else { options.culling };
+        cull::visible(cloud, view, culling, &mut self.visible, &mut counts);
         counts.scale = self.scale(cloud, view, options);
         self.bands.fill(threads());
         self.strips.fill(threads());

@@ -8,6 +8,7 @@ mod info;
 mod merge;
 mod render;
 mod report;
+mod scan;
 
 use crate::error::CliError;
 use crate::options::{Cli, Command};
@@ -21,6 +22,7 @@ use report::Report;
 pub fn run(cli: &Cli) -> Result<(), CliError> {
     match &cli.command {
         Command::Render(options) => render::run(options),
+        Command::Scan(options) => scan::run(options),
         Command::Dice(options) => dice::run(options),
         Command::Compare(options) => compare::run(options),
         Command::Info(options) => info::run(options),

@@ -30,6 +30,15 @@ impl OutputFormat {
             _ => Err(CliError::Usage(format!("`{}`: a picture's name ends in .png or .exr", path.display()))),
         }
     }
+
+    /// Refuses layers and floats for a PNG.
+    pub(super) fn check_layers(self, layers: bool, float: bool) -> Result<(), CliError> {
+        if self == Self::Png && (layers || float) {
+            let message = "--layers and --float need an .exr output; add -o picture.exr";
+            return Err(CliError::Usage(message.to_owned()));
+        }
+        Ok(())
+    }
 }
 
 pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
@@ -77,11 +86,7 @@ fn output_path(options: &RenderOptions) -> PathBuf {
 }
 
 fn check_options(options: &RenderOptions, format: OutputFormat, report: &Report<'_>) -> Result<(), CliError> {
-    if format == OutputFormat::Png && (!options.layers.is_empty() || options.float) {
-        return Err(CliError::Usage(
-            "--layers and --float need an .exr output; add -o picture.exr".to_owned(),
-        ));
-    }
+    format.check_layers(!options.layers.is_empty(), options.float)?;
     if format == OutputFormat::Exr && options.exposure != 0.0 {
         report.warn("--exposure changes PNG only; EXR keeps the light as it is");
     }
@@ -98,18 +103,7 @@ fn precision(options: &RenderOptions) -> Precision {
 /// What is to be drawn.
 fn job(scene: &Scene, options: &RenderOptions) -> Result<RenderJob, CliError> {
     let (width, height) = (scene.image.width, scene.image.height);
-    let region = options.camera.crop.unwrap_or(Window::whole(width, height));
-    if region.x1 > width || region.y1 > height {
-        return Err(CliError::Usage(format!(
-            "--crop {region} is not inside the picture of {width}×{height} pixels"
-        )));
-    }
-    let window = match options.camera.tile {
-        None => region,
-        Some(tile) => tile.window(region).ok_or_else(|| {
-            CliError::Usage(format!("--tile {tile}: {} rows cannot be cut into more tiles", region.height()))
-        })?,
-    };
+    let (region, window) = options.camera.windows(width, height)?;
     Ok(RenderJob { region, window, layers: layers(scene, &options.layers)? })
 }
 
@@ -188,7 +182,7 @@ fn stamp(scene: &Scene, job: &RenderJob, options: &RenderOptions) -> Stamp {
 }
 
 /// Whether the output is there already, drawn from the same scene with the same options.
-fn is_there(path: &Path, stamp: &Stamp, window: Window) -> bool {
+pub(super) fn is_there(path: &Path, stamp: &Stamp, window: Window) -> bool {
     let Ok(bytes) = std::fs::read(path) else { return false };
     ExrFile::read(&bytes).is_ok_and(|file| file.window == window && file.stamp.as_ref() == Some(stamp))
 }

@@ -25,6 +25,27 @@ struct Record {
     counts: BTreeMap<String, u64>,
     skipped: BTreeMap<String, u64>,
     peak_bytes: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame_ms: Option<FrameTimes>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame_cpu_ms: Option<FrameTimes>,
+    #[serde(skip)]
+    frames: Vec<(Duration, Duration)>,
+}
+
+/// Milliseconds of one frame of `--repeat`.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct FrameTimes {
+    min: f64,
+    median: f64,
+}
+
+impl FrameTimes {
+    fn of(times: impl Iterator<Item = Duration>) -> Option<Self> {
+        let mut ms: Vec<f64> = times.map(|t| t.as_secs_f64() * 1e3).collect();
+        ms.sort_by(f64::total_cmp);
+        Some(Self { min: *ms.first()?, median: ms[ms.len() / 2] })
+    }
 }
 
 impl Default for Stats {
@@ -68,6 +89,11 @@ impl Stats {
         *self.lock().skipped.entry(name.to_owned()).or_default() += n;
     }
 
+    /// Adds a frame of `--repeat`: wall time, and processor time of all threads.
+    pub fn frame(&self, wall: Duration, cpu: Duration) {
+        self.lock().frames.push((wall, cpu));
+    }
+
     /// The record so far as JSON, with totals and peak memory up to now.
     pub fn to_json(&self) -> serde_json::Value {
         let mut record = self.lock().clone();
@@ -81,6 +107,8 @@ impl Stats {
             record.cpu_seconds.entry(key).or_default();
         }
         record.peak_bytes = crate::memory::peak_bytes();
+        record.frame_ms = FrameTimes::of(record.frames.iter().map(|f| f.0));
+        record.frame_cpu_ms = FrameTimes::of(record.frames.iter().map(|f| f.1));
         serde_json::json!(record)
     }
 

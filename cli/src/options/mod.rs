@@ -2,10 +2,12 @@
 
 mod common;
 mod render;
+mod scan;
 mod values;
 
 pub use common::{Common, Progressive, TextOutput};
 pub use render::{CameraOptions, LayerRequest, RenderOptions};
+pub use scan::{ScanLayerRequest, ScanOptions, ShadingOptions, SurfaceOptions};
 pub use values::{Tile, Vector};
 
 use clap::{Parser, Subcommand};
@@ -41,6 +43,17 @@ pub enum Command {
         pointillist render house.toml --set render.shading=flat --size 1920x1080\n  \
         pointillist render house.toml --tile 0/4 -o part0.exr")]
     Render(RenderOptions),
+    /// Draw range scans as they come: noisy, overlapping, without normals
+    ///
+    /// Scans are drawn as closed surfaces, without preparation. FILE is a scan, a Stanford .conf that places several, or a
+    /// mesh, which gets points all over it.
+    #[command(after_help = "Examples:\n  \
+        pointillist scan bun.conf -o bunny.png\n  \
+        pointillist scan bun000.ply bun045.ply --edl --ambient 0.3\n  \
+        pointillist scan bun.conf --eye 0,0.15,0.4 --target -0.02,0.11,0 --fov 35 --passes 1\n  \
+        pointillist scan bun.conf sphere.obj --alpha 0.4 -o inside.png\n  \
+        pointillist scan bun.conf -o bunny.exr --layers all --float")]
+    Scan(ScanOptions),
     /// Cut polygons by a grid: JSON lines in, JSON lines out
     #[command(after_help = "Example:\n  \
         echo '{\"polygon\":[[0.5,0.5],[1.5,0.5],[1.5,1.5],[0.5,1.5]]}' | pointillist dice --areas")]

@@ -2,6 +2,7 @@
 
 use super::Common;
 use super::values::{self, Tile, Vector};
+use crate::error::CliError;
 use crate::image_io::Window;
 use crate::scene::Overrides;
 use std::path::PathBuf;
@@ -66,6 +67,24 @@ pub struct CameraOptions {
 }
 
 impl CameraOptions {
+    /// What the whole job covers (`--crop`, or all) and what of it this run draws (`--tile`).
+    ///
+    /// # Errors
+    ///
+    /// [`CliError::Usage`] if the crop is not inside the picture, or has fewer rows than tiles.
+    pub fn windows(&self, width: u32, height: u32) -> Result<(Window, Window), CliError> {
+        let region = self.crop.unwrap_or(Window::whole(width, height));
+        if region.x1 > width || region.y1 > height {
+            let message = format!("--crop {region} is not inside the picture of {width}×{height} pixels");
+            return Err(CliError::Usage(message));
+        }
+        let Some(tile) = self.tile else { return Ok((region, region)) };
+        let window = tile.window(region).ok_or_else(|| {
+            CliError::Usage(format!("--tile {tile}: {} rows cannot be cut into more tiles", region.height()))
+        })?;
+        Ok((region, window))
+    }
+
     /// What these options and `--set` change in a scene; the options win.
     pub fn overrides(&self, set: &[String]) -> Overrides {
         let mut assignments: Vec<(String, String)> =

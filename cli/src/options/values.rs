@@ -115,6 +115,12 @@ pub(super) fn exposure(text: &str) -> Result<f32, String> {
     if ev.abs() <= 60.0 { Ok(ev) } else { Err("must be from -60 to 60".to_owned()) }
 }
 
+/// A size.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().map_err(|_| "must be a number".to_owned())?;
+    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be more than 0".to_owned()) }
+}
+
 /// A limit.
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().map_err(|_| "must be a number".to_owned())?;

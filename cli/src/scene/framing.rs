@@ -1,6 +1,6 @@
 //! A camera that has everything in view, and a light for a mesh that comes without.
 
-use super::description::{DEFAULT_FOV_DEG, Description, view_fault};
+use super::description::{CameraDescription, DEFAULT_FOV_DEG, Description, view_fault};
 use super::{Camera, LightSource, Mesh, Projection, Resolution, Scene};
 use crate::input_error::InputError;
 use glam::{DVec3, Vec3};
@@ -14,11 +14,23 @@ const MARGIN: f64 = 1.05;
 
 /// The description's camera, with what it leaves open chosen so that the mesh fills the view.
 pub(super) fn place(description: &Description, mesh: &Mesh, aspect: f64) -> Result<Camera, InputError> {
-    let given = &description.camera;
+    around(&description.camera, || corners(mesh), aspect).map_err(|fault| {
+        let error = InputError::of_file(description.document.name(), format!("camera: {fault}"));
+        error.with_help("give camera.eye and camera.target")
+    })
+}
+
+/// The given camera, with what it leaves open chosen so that the points fill the view; `Err` says what is
+/// wrong with what is given.
+pub(crate) fn around<I: Iterator<Item = DVec3>>(
+    given: &CameraDescription,
+    points: impl Fn() -> I,
+    aspect: f64,
+) -> Result<Camera, &'static str> {
     let fov = Projection::Perspective { fov_y_rad: DEFAULT_FOV_DEG.to_radians() };
     let mut camera = Camera {
         eye: given.eye.unwrap_or(DVec3::ZERO),
-        target: given.target.unwrap_or_else(|| middle(mesh)),
+        target: given.target.unwrap_or_else(|| middle(points())),
         up: given.up,
         projection: given.projection.unwrap_or(fov),
     };
@@ -28,14 +40,11 @@ pub(super) fn place(description: &Description, mesh: &Mesh, aspect: f64) -> Resu
             towards = DVec3::Z;
         }
         camera.eye = camera.target + towards;
-        camera.eye = camera.target + towards * distance(&camera, mesh, aspect);
+        camera.eye = camera.target + towards * distance(&camera, points(), aspect);
     }
     match view_fault(camera.eye, camera.target, camera.up) {
         None => Ok(camera),
-        Some(fault) => {
-            let error = InputError::of_file(description.document.name(), format!("camera: {fault}"));
-            Err(error.with_help("give camera.eye and camera.target"))
-        }
+        Some(fault) => Err(fault),
     }
 }
 
@@ -43,8 +52,8 @@ fn corners(mesh: &Mesh) -> impl Iterator<Item = DVec3> + '_ {
     mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize])
 }
 
-fn middle(mesh: &Mesh) -> DVec3 {
-    let around = corners(mesh)
+fn middle(points: impl Iterator<Item = DVec3>) -> DVec3 {
+    let around = points
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     // Halved before adding: the sum of two finite numbers may be infinite.
     let middle = around.0 * 0.5 + around.1 * 0.5;
@@ -52,7 +61,7 @@ fn middle(mesh: &Mesh) -> DVec3 {
 }
 
 /// How far from its target the camera has to be, along the direction it has.
-fn distance(camera: &Camera, mesh: &Mesh, aspect: f64) -> f64 {
+fn distance(camera: &Camera, points: impl Iterator<Item = DVec3>, aspect: f64) -> f64 {
     let [right, up, backward] = camera.axes();
     let reach = |p: DVec3| {
         let p = p - camera.target;
@@ -63,10 +72,10 @@ fn distance(camera: &Camera, mesh: &Mesh, aspect: f64) -> f64 {
             // A point is in view if |y| ≤ (distance − z) · tan(fov/2), and |x| likewise.
             let tan_y = (0.5 * fov_y_rad).tan();
             let tan_x = tan_y * aspect;
-            corners(mesh).map(reach).map(|(x, y, z)| z + (x / tan_x).max(y / tan_y)).fold(0.0, f64::max)
+            points.map(reach).map(|(x, y, z)| z + (x / tan_x).max(y / tan_y)).fold(0.0, f64::max)
         }
         Projection::Orthographic { height } => {
-            corners(mesh).map(reach).map(|(_, _, z)| z).fold(height, f64::max)
+            points.map(reach).map(|(_, _, z)| z).fold(height, f64::max)
         }
     };
     let distance = MARGIN * needed;

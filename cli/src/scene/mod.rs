@@ -17,6 +17,7 @@ mod textures;
 
 pub use builtin::builtin;
 pub use description::{Description, parse_str};
+pub(crate) use framing::around as frame_around;
 pub use load::{Overrides, load};
 pub use text::Format;
 pub use texture_lookup::{linear_from_srgb, srgb_from_linear};

@@ -1,0 +1,247 @@
+//! `scan`.
+
+use super::values::{self, Vector};
+use super::{CameraOptions, Common};
+use crate::scan::ScanLayer;
+use clap::ValueEnum;
+use pointillist_ibpr as ibpr;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// `scan`.
+#[derive(Debug, clap::Args)]
+pub struct ScanOptions {
+    /// Scans (.ply, .ply.gz, .xyz, with features .las, .laz, .e57), lists of scans (.conf) and meshes (.obj, .ply with faces)
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// The picture: .png or .exr (default: the first FILE's name with .png)
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// How points become surfaces.
+    #[command(flatten)]
+    pub surface: SurfaceOptions,
+    /// How surfaces are lit.
+    #[command(flatten)]
+    pub shading: ShadingOptions,
+    /// The view.
+    #[command(flatten)]
+    pub camera: CameraOptions,
+    /// Further layers in the EXR: `all`, or a list of N, P, count
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub layers: Vec<ScanLayerRequest>,
+    /// For EXR: 32-bit colours in the place of 16-bit
+    #[arg(long)]
+    pub float: bool,
+    /// For PNG: brighten by this many stops
+    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = values::exposure, allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Draw even if the EXR is already there with the same fingerprint
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Leave out points that are NaN or infinite, in the place of refusing the file
+    #[arg(long)]
+    pub drop_invalid: bool,
+    /// Take the vertices of meshes, in the place of points all over them
+    #[arg(long)]
+    pub vertices: bool,
+    /// Draw the frame N times; --stats then has frame_ms and frame_cpu_ms
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub repeat: u32,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// How points become surfaces.
+#[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Surface")]
+pub struct SurfaceOptions {
+    /// Distance of neighbouring points of a scan, world units (default: estimated)
+    #[arg(long, value_name = "R", value_parser = values::positive)]
+    pub spacing: Option<f64>,
+    /// Size of a buffer pixel in picture pixels, at least 1, or `auto`
+    #[arg(long, value_name = "S", default_value = "auto")]
+    pub scale: ScaleValue,
+    /// Thickness of a surface in spacings
+    #[arg(long, value_name = "G", default_value_t = 2.0, value_parser = values::positive)]
+    pub gamma: f64,
+    /// Buffers per frame: 2 draws a finer one under the normal one
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
+    pub passes: u8,
+    /// With two passes, size of the finer buffer's pixels relative to the normal one's
+    #[arg(long, value_name = "F", default_value_t = 0.66, value_parser = values::positive)]
+    pub finer: f64,
+    /// Opacity of surfaces, 0 to 1: draws them translucent
+    #[arg(long, value_name = "A")]
+    pub alpha: Option<f32>,
+    /// With --alpha, surfaces per pixel
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    pub depth_layers: usize,
+    /// With --alpha, depth of a layer in spacings (the paper: 10)
+    #[arg(long, value_name = "T", default_value_t = 5.0, value_parser = values::positive)]
+    pub layer_threshold: f64,
+    /// Draw scans and blocks that face away too
+    #[arg(long, conflicts_with = "cull")]
+    pub no_cull: bool,
+    /// What is skipped because it faces away
+    #[arg(long, value_name = "RULE", default_value = "blocks")]
+    pub cull: CullValue,
+    /// Where normals come from
+    #[arg(long, value_name = "RULE", default_value = "plane")]
+    pub normals: NormalsValue,
+    /// How points of one pixel are averaged
+    #[arg(long, value_name = "RULE", default_value = "even")]
+    pub weights: WeightsValue,
+    /// How far faces reach beyond the outermost points, in buffer pixels; 0 as printed
+    #[arg(long, value_name = "B", default_value_t = ibpr::Options::OUTLINE)]
+    pub outline: f32,
+    /// Fill gaps of less than 2^L buffer pixels
+    #[arg(long, value_name = "L", default_value_t = 1)]
+    pub fill: u32,
+}
+
+/// How surfaces are lit.
+#[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Shading: colour × (A + (1 − A)·max(0, n·l))")]
+pub struct ShadingOptions {
+    /// Direction towards the light in the world (default: from the eye)
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub light: Option<Vector>,
+    /// Share of light from everywhere, 0 to 1
+    #[arg(long, value_name = "A", default_value_t = 0.1)]
+    pub ambient: f32,
+    /// Eye-dome lighting: darken what lies behind its surroundings; a strength of 1 is usual
+    #[arg(long, value_name = "STRENGTH", num_args = 0..=1, default_missing_value = "1")]
+    pub edl: Option<f32>,
+}
+
+/// `--scale`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaleValue(pub ibpr::Scale);
+
+impl FromStr for ScaleValue {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "auto" {
+            return Ok(Self(ibpr::Scale::Auto(ibpr::Options::AUTO_FACTOR)));
+        }
+        match text.parse::<f32>() {
+            Ok(s) if s >= 1.0 && s.is_finite() => Ok(Self(ibpr::Scale::Fixed(s))),
+            _ => Err("must be a number of at least 1, or `auto`".to_owned()),
+        }
+    }
+}
+
+/// `--cull`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CullValue {
+    /// Nothing
+    None,
+    /// Scans taken from behind, as in the paper: loses points that can be seen
+    Printed,
+    /// Scans taken from more than 165° away
+    Scans,
+    /// Blocks of points whose normals all face away
+    Blocks,
+}
+
+/// `--normals`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum NormalsValue {
+    /// Fitted over windows that grow with the noise
+    Plane,
+    /// From the paper's eight triangles
+    Triangles,
+}
+
+/// `--weights`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum WeightsValue {
+    /// All points of the slab alike
+    Even,
+    /// About the slab's mean
+    Symmetric,
+    /// Falling from the nearest point
+    Falling,
+    /// As eq. 2 survives in print: the nearest point counts least
+    Printed,
+}
+
+/// One entry of `--layers`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ScanLayerRequest {
+    /// Everything there is.
+    All,
+    /// One of them.
+    One(ScanLayer),
+}
+
+impl FromStr for ScanLayerRequest {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "all" => Ok(Self::All),
+            "N" => Ok(Self::One(ScanLayer::Normal)),
+            "P" => Ok(Self::One(ScanLayer::Position)),
+            "count" => Ok(Self::One(ScanLayer::Count)),
+            _ => Err("layers of a scan are all, N, P and count".to_owned()),
+        }
+    }
+}
+
+impl ScanOptions {
+    /// The layers that were asked for, each once.
+    pub fn layer_list(&self) -> Vec<ScanLayer> {
+        const ALL: [ScanLayer; 3] = [ScanLayer::Normal, ScanLayer::Position, ScanLayer::Count];
+        let asked = |layer: &ScanLayer| {
+            self.layers.contains(&ScanLayerRequest::All)
+                || self.layers.contains(&ScanLayerRequest::One(*layer))
+        };
+        ALL.into_iter().filter(asked).collect()
+    }
+
+    /// What the renderer is asked for.
+    pub fn frame_options(&self) -> ibpr::Options {
+        let surface = &self.surface;
+        let mut options = ibpr::Options::default();
+        options.scale = surface.scale.0;
+        options.gamma = surface.gamma as f32;
+        options.weighting = match surface.weights {
+            WeightsValue::Even => ibpr::Weighting::Even,
+            WeightsValue::Symmetric => ibpr::Weighting::Symmetric,
+            WeightsValue::Falling => ibpr::Weighting::Falling,
+            WeightsValue::Printed => ibpr::Weighting::Printed,
+        };
+        options.normals = match surface.normals {
+            NormalsValue::Plane => ibpr::Normals::Plane,
+            NormalsValue::Triangles => ibpr::Normals::Triangles,
+        };
+        options.culling = match surface.cull {
+            _ if surface.no_cull => ibpr::Culling::None,
+            CullValue::None => ibpr::Culling::None,
+            CullValue::Printed => ibpr::Culling::Printed,
+            CullValue::Scans => ibpr::Culling::Scans,
+            CullValue::Blocks => ibpr::Culling::Blocks,
+        };
+        options.outline = surface.outline;
+        options.fill = surface.fill;
+        options.passes = match surface.passes {
+            1 => ibpr::Passes::One,
+            _ => ibpr::Passes::Two { finer: surface.finer as f32 },
+        };
+        options.translucency = surface.alpha.map(|alpha| ibpr::Translucency {
+            alpha,
+            layers: surface.depth_layers,
+            threshold: surface.layer_threshold as f32,
+        });
+        if let Some(Vector(light)) = self.shading.light {
+            options.light = ibpr::Light::Towards(light.into());
+        }
+        options.ambient = self.shading.ambient;
+        options.eye_dome = self.shading.edl.map(|strength| ibpr::EyeDome { strength, radius: 2 });
+        options.surface_layers = !self.layers.is_empty();
+        options
+    }
+}

@@ -1,0 +1,61 @@
+//! A drawn frame as the layers of a picture file.
+
+use crate::image_io::{Frame, Layer, Window};
+use crate::scene::{Camera, Projection};
+use pointillist_ibpr as ibpr;
+
+/// What can be asked for beside colour and depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ScanLayer {
+    /// `N.X N.Y N.Z`.
+    Normal,
+    /// `P.X P.Y P.Z`.
+    Position,
+    /// `count`: points per buffer pixel.
+    Count,
+}
+
+/// The part of a drawn frame in `window`, with the layers that were asked for.
+pub fn window_of(frame: &ibpr::Frame, window: Window, layers: &[ScanLayer], camera: &Camera) -> Frame {
+    let rows = (window.y0..window.y1).map(|y| {
+        let start = y as usize * frame.width;
+        start + window.x0 as usize..start + window.x1 as usize
+    });
+    let pixels: Vec<usize> = rows.flatten().collect();
+    let plane = |value: &dyn Fn(usize) -> f32| pixels.iter().map(|i| value(*i)).collect::<Vec<f32>>();
+    let named = |name: &str, value: &dyn Fn(usize) -> [f32; 3]| Layer {
+        channels: ["X", "Y", "Z"].map(|axis| format!("{name}.{axis}")).to_vec(),
+        planes: [0, 1, 2].map(|axis| plane(&|i| value(i)[axis])).to_vec(),
+    };
+    let layer = |layer: &ScanLayer| match layer {
+        ScanLayer::Normal => named("N", &|i| frame.normal[i]),
+        ScanLayer::Position => named("P", &|i| position(frame, i, camera)),
+        ScanLayer::Count => {
+            Layer { channels: vec!["count".to_owned()], planes: vec![plane(&|i| frame.count[i])] }
+        }
+    };
+    Frame {
+        size: [frame.width as u32, frame.height as u32],
+        window,
+        color: pixels.iter().map(|i| frame.colour[*i]).collect(),
+        depth: pixels.iter().map(|i| frame.depth[*i]).collect(),
+        layers: layers.iter().map(layer).collect(),
+    }
+}
+
+/// Where the surface at the centre of pixel `i` is; 0 where there is none.
+fn position(frame: &ibpr::Frame, i: usize, camera: &Camera) -> [f32; 3] {
+    let depth = f64::from(frame.depth[i]);
+    if depth.is_infinite() {
+        return [0.0; 3];
+    }
+    let [right, up, backward] = camera.axes();
+    let (x, y) = ((i % frame.width) as f64 + 0.5, (i / frame.width) as f64 + 0.5);
+    let (u, v) = (x - 0.5 * frame.width as f64, 0.5 * frame.height as f64 - y);
+    let units_per_pixel = match camera.projection {
+        Projection::Perspective { fov_y_rad } => depth * (0.5 * fov_y_rad).tan() * 2.0 / frame.height as f64,
+        Projection::Orthographic { height } => height / frame.height as f64,
+    };
+    let p = camera.eye + (u * right + v * up) * units_per_pixel - depth * backward;
+    p.as_vec3().to_array()
+}

@@ -1,0 +1,189 @@
+//! Range scans for `scan`: files in, points in the world out.
+
+mod layers;
+mod mesh_points;
+
+pub use layers::{ScanLayer, window_of};
+
+use crate::cloud_io::{self, CloudOptions, Pose};
+use crate::error::CliError;
+use crate::input_error::InputError;
+use crate::scene::{self, Mesh, Overrides, Scene};
+use glam::{DVec3, Vec3};
+use mesh_points::points_on;
+use pointillist_ibpr as ibpr;
+use std::path::Path;
+use twox_hash::XxHash3_64;
+
+/// A file's points in the world.
+#[derive(Clone, Debug, Default)]
+pub struct LoadedScan {
+    positions: Vec<DVec3>,
+    /// Linear RGB, or empty.
+    colours: Vec<[f32; 3]>,
+    spacing: Option<f64>,
+    /// Direction to the scanner.
+    towards_scanner: Option<DVec3>,
+}
+
+/// Everything that one picture is made of.
+#[derive(Clone, Debug, Default)]
+pub struct ScanSet {
+    /// In the order of the command line.
+    pub scans: Vec<LoadedScan>,
+    /// What may be wrong, with the name of the file.
+    pub warnings: Vec<String>,
+    /// Points left out because they were not finite.
+    pub dropped: u64,
+}
+
+/// How files become scans.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LoadOptions {
+    /// Leave out points that are not finite.
+    pub drop_invalid: bool,
+    /// Distance of neighbouring points in the place of an estimate.
+    pub spacing: Option<f64>,
+    /// Take the vertices of meshes in the place of points all over them.
+    pub vertices: bool,
+}
+
+/// Points that a mesh gets if nothing says how dense they should be.
+const MESH_POINTS: f64 = 400_000.0;
+
+impl ScanSet {
+    /// Reads scans (`.ply`, `.xyz`, …), lists of scans (`.conf`) and meshes (`.obj`, `.ply` with faces).
+    ///
+    /// # Errors
+    ///
+    /// [`InputError`] for the first file that cannot be used.
+    pub fn load(paths: &[std::path::PathBuf], options: &LoadOptions) -> Result<Self, InputError> {
+        let mut set = Self::default();
+        let mut meshes = vec![];
+        for path in paths {
+            match path.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
+                "conf" => {
+                    let conf = cloud_io::read_conf(path)?;
+                    set.warnings.extend(conf.warnings);
+                    for scan in &conf.scans {
+                        set.read(&scan.path, Some(scan.pose), options)?;
+                    }
+                }
+                "obj" => meshes.push(path),
+                _ => {
+                    let faces = set.read(path, None, options)?;
+                    if faces > 0 && !options.vertices {
+                        set.scans.pop();
+                        meshes.push(path);
+                    }
+                }
+            }
+        }
+        let spacing = options.spacing.or_else(|| set.typical_spacing());
+        for path in meshes {
+            set.scans.push(of_mesh(path, spacing, options.vertices)?);
+        }
+        Ok(set)
+    }
+
+    /// Adds a file's points and returns how many faces it has beside.
+    fn read(&mut self, path: &Path, pose: Option<Pose>, options: &LoadOptions) -> Result<u64, InputError> {
+        let mut scan = LoadedScan::default();
+        let cloud_options = CloudOptions::default().with_drop_invalid(options.drop_invalid);
+        let summary = cloud_io::read_cloud::<InputError>(path, &cloud_options, &mut |block| {
+            match pose {
+                Some(pose) => scan.positions.extend(block.positions.iter().map(|p| pose.to_world(*p))),
+                None => scan.positions.extend_from_slice(block.positions),
+            }
+            scan.colours.extend_from_slice(block.colours.unwrap_or_default());
+            Ok(())
+        })?;
+        let name = path.display();
+        self.warnings.extend(summary.warnings.iter().map(|warning| format!("{name}: {warning}")));
+        self.dropped += summary.dropped;
+        scan.spacing = options.spacing.or(summary.grid.and_then(|grid| grid.spacing));
+        // A Stanford range grid is seen from its +z, and so is every scan of a .conf.
+        if pose.is_some() || summary.grid.is_some() {
+            scan.towards_scanner = Some(pose.map_or(DVec3::Z, |pose| pose.rotation * DVec3::Z));
+        }
+        self.scans.push(scan);
+        Ok(summary.faces)
+    }
+
+    /// Spacing of the scans read so far, measured all together.
+    fn typical_spacing(&self) -> Option<f64> {
+        let cloud = self.cloud(Vec3::ONE).ok()?;
+        Some(cloud.spacing()).filter(|s| *s > 0.0)
+    }
+
+    /// Makes the points ready to be drawn; `base` is the colour of those that have none.
+    ///
+    /// # Errors
+    ///
+    /// [`CliError::Failed`] if the renderer refuses them, for example for being too many.
+    pub fn cloud(&self, base: Vec3) -> Result<ibpr::Cloud, CliError> {
+        let scans: Vec<ibpr::Scan<'_>> = self.scans.iter().map(LoadedScan::as_scan).collect();
+        ibpr::Cloud::new(&scans, base).map_err(|error| CliError::Failed(error.to_string()))
+    }
+
+    /// Hash of all that is drawn.
+    pub fn fingerprint(&self) -> u64 {
+        use std::hash::Hasher as _;
+        let mut hash = XxHash3_64::default();
+        for scan in &self.scans {
+            for value in scan.positions.iter().flat_map(|p| p.to_array()) {
+                hash.write(&value.to_le_bytes());
+            }
+            for value in scan.colours.iter().flatten() {
+                hash.write(&value.to_le_bytes());
+            }
+            hash.write(format!("{:?} {:?};", scan.spacing, scan.towards_scanner).as_bytes());
+        }
+        hash.finish()
+    }
+}
+
+impl LoadedScan {
+    fn as_scan(&self) -> ibpr::Scan<'_> {
+        let mut scan = ibpr::Scan::new(&self.positions);
+        if !self.colours.is_empty() {
+            scan = scan.with_colours(&self.colours);
+        }
+        if let Some(spacing) = self.spacing {
+            scan = scan.with_spacing(spacing);
+        }
+        if let Some(towards) = self.towards_scanner {
+            scan = scan.with_scanner(towards);
+        }
+        scan
+    }
+}
+
+/// Points all over a mesh, or its vertices, with the diffuse colours of its materials.
+fn of_mesh(path: &Path, spacing: Option<f64>, vertices: bool) -> Result<LoadedScan, InputError> {
+    let Scene { mesh, materials, .. } = scene::load(path, &Overrides::default())?;
+    if vertices {
+        return Ok(LoadedScan { positions: mesh.positions, spacing, ..LoadedScan::default() });
+    }
+    let spacing = spacing.unwrap_or_else(|| (area(&mesh) / MESH_POINTS).sqrt());
+    let mut scan = LoadedScan { spacing: Some(spacing).filter(|s| *s > 0.0), ..LoadedScan::default() };
+    for (triangle, &material) in mesh.triangles.iter().zip(&mesh.material_of) {
+        let start = scan.positions.len();
+        points_on(triangle.map(|v| mesh.positions[v as usize]), spacing, &mut scan.positions);
+        let colour = materials.get(material as usize).map_or([0.8; 3], |m| m.surface.diffuse.to_array());
+        scan.colours.resize(scan.colours.len() + scan.positions.len() - start, colour);
+    }
+    if scan.positions.is_empty() {
+        let error = InputError::of_file(path.display().to_string(), "has no area to put points on");
+        return Err(error.with_help("--vertices takes its vertices as points"));
+    }
+    Ok(scan)
+}
+
+fn area(mesh: &Mesh) -> f64 {
+    let of = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
+        0.5 * (b - a).cross(c - a).length()
+    };
+    mesh.triangles.iter().map(of).sum()
+}
