@@ -1,8 +1,9 @@
 //! Pull-push: pixels without points that lie between pixels with points of one surface.
 //!
-//! Only what is enclosed is filled, so outlines do not grow: an empty pixel takes the mean of opposite
-//! neighbours that belong together. For wider gaps the buffer is averaged to half its size (pull), the
-//! gaps that are enclosed there are filled, and handed down (push).
+//! Only what is enclosed is filled, so outlines do not grow. At the buffer's own size a gap takes the mean
+//! of opposite neighbours that belong together. For wider gaps the buffer is averaged to half its size
+//! (pull); what is enclosed by its own surface there covers the gaps below it (push). A gap is a pixel
+//! without points, or one through which a surface further behind is seen.
 
 use crate::buffer::{Buffer, DepthScale, PAD};
 use crate::parallel::*;
@@ -43,23 +44,31 @@ pub(crate) fn pull_push(buffer: &mut Buffer, scale: &DepthScale, levels: u32, sc
     if levels == 0 {
         return;
     }
+    if buffer.layers > 1 {
+        return fill_bands(buffer, &mut scratch.bands, |buffer, i, fills| layers_between(buffer, i, scale, fills));
+    }
     let coarser = levels as usize - 1;
     let FillScratch { bands, levels: pyramid } = scratch;
     pyramid.resize_with(coarser.max(pyramid.len()), Buffer::default);
+    // First what the neighbours themselves say: it is finer than what the pyramid says.
+    fill_bands(buffer, bands, |buffer, i, fills| fills.extend(between(buffer, i, scale)));
     for l in 0..coarser {
         let (finer, rest) = pyramid.split_at_mut(l);
         pull(finer.last().unwrap_or(buffer), &mut rest[0], scale);
     }
     for l in (0..coarser).rev() {
         let (finer, rest) = pyramid.split_at_mut(l);
-        close_gaps(&mut rest[0], scale, bands);
-        push(&rest[0], finer.last_mut().unwrap_or(buffer), bands);
+        let (coarse, fine) = (&rest[0], finer.last_mut().unwrap_or(buffer));
+        fill_bands(fine, bands, |fine, i, fills| fills.extend(below(coarse, fine, i, scale)));
     }
-    close_gaps(buffer, scale, bands);
 }
 
-/// Fills the pixels between opposite neighbours of one surface.
-fn close_gaps(buffer: &mut Buffer, scale: &DepthScale, bands: &mut Vec<Vec<Fill>>) {
+/// Asks `find` for what each pixel gets, from the buffer as it is, and then fills it in.
+fn fill_bands(
+    buffer: &mut Buffer,
+    bands: &mut Vec<Vec<Fill>>,
+    find: impl Fn(&Buffer, usize, &mut Vec<Fill>) + Sync + Send,
+) {
     let count = buffer.height.div_ceil(BAND_ROWS);
     bands.resize_with(count.max(bands.len()), Vec::new);
     let shared = &*buffer;
@@ -68,7 +77,7 @@ fn close_gaps(buffer: &mut Buffer, scale: &DepthScale, bands: &mut Vec<Vec<Fill>
         fills.clear();
         for row in i * BAND_ROWS..((i + 1) * BAND_ROWS).min(shared.height) {
             let start = shared.at(0, row);
-            fills.extend((start..start + shared.width).filter_map(|i| between(shared, i, scale)));
+            (start..start + shared.width).for_each(|i| find(shared, i, fills));
         }
     });
     for fill in bands[..count].iter().flatten() {
@@ -85,7 +94,7 @@ fn apply(buffer: &mut Buffer, fill: &Fill) {
 /// The mean of the pairs of opposite neighbours of the surface that is nearest to the eye, for a pixel
 /// that is empty or through which another surface behind that one is seen.
 fn between(buffer: &Buffer, index: usize, scale: &DepthScale) -> Option<Fill> {
-    let s = buffer.stride;
+    let s = buffer.pitch;
     let occupied = buffer.count[index] > 0.0;
     let q = buffer.q[index];
     let step = scale.bent_step(q, STEP);
@@ -137,7 +146,7 @@ fn pull(fine: &Buffer, coarse: &mut Buffer, scale: &DepthScale) {
     for row in 0..height {
         for column in 0..width {
             let first = fine.at(2 * column, 2 * row);
-            let children = [first, first + 1, first + fine.stride, first + fine.stride + 1];
+            let children = [first, first + 1, first + fine.pitch, first + fine.pitch + 1];
             let valid = children.into_iter().filter(|c| fine.count[*c] > 0.0);
             let nearest = valid.clone().map(|c| fine.q[c]).fold(f32::INFINITY, f32::min);
             let together = nearest + scale.bent_step(nearest, STEP);
@@ -162,15 +171,67 @@ fn pull(fine: &Buffer, coarse: &mut Buffer, scale: &DepthScale) {
     }
 }
 
-/// Hands filled pixels down to the four below them, where those are empty.
-fn push(coarse: &Buffer, fine: &mut Buffer, bands: &[Vec<Fill>]) {
-    for fill in bands[..coarse.height.div_ceil(BAND_ROWS)].iter().flatten() {
-        let (row, column) = (fill.index / coarse.stride - PAD, fill.index % coarse.stride - PAD);
-        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-            let (x, y) = (2 * column + dx, 2 * row + dy);
-            let index = fine.at(x, y);
-            if x < fine.width && y < fine.height && fine.count[index] == 0.0 {
-                apply(fine, &Fill { index, x: x as f32 + 0.5, y: y as f32 + 0.5, ..*fill });
+/// What the pixel of half the size above it says about a pixel of `fine`: its surface, if it is enclosed
+/// by that surface and the pixel is a gap in it.
+fn below(coarse: &Buffer, fine: &Buffer, index: usize, scale: &DepthScale) -> Option<Fill> {
+    let (row, column) = (index / fine.pitch - PAD, index % fine.pitch - PAD);
+    let above = coarse.at(column / 2, row / 2);
+    if coarse.count[above] == 0.0 {
+        return None;
+    }
+    let surface = coarse.q[above];
+    let step = scale.bent_step(surface, STEP);
+    if fine.count[index] > 0.0 && fine.q[index] < surface + step {
+        return None;
+    }
+    let s = coarse.pitch;
+    let same = |i: usize| coarse.count[i] > 0.0 && (coarse.q[i] - surface).abs() < step;
+    let closed = |offset: usize| same(above - offset) && same(above + offset);
+    if [1, s, s + 1, s - 1].into_iter().filter(|o| closed(*o)).count() < ENCLOSED {
+        return None;
+    }
+    // Linear between the coarse neighbours, where both are there.
+    let slope = |offset: usize, at: &[f32]| {
+        let run = at[above + offset] - at[above - offset];
+        if closed(offset) && run > 0.5 { (coarse.q[above + offset] - coarse.q[above - offset]) / run } else { 0.0 }
+    };
+    let (x, y) = (column as f32 + 0.5, row as f32 + 0.5);
+    let (dx, dy) = (0.5 * x - coarse.x[above], 0.5 * y - coarse.y[above]);
+    let q = surface + dx * slope(1, &coarse.x) + dy * slope(s, &coarse.y);
+    Some(Fill { index, x, y, q, colour: coarse.colour[above] })
+}
+
+/// Surfaces that opposite neighbours share and the pixel between them has not.
+fn layers_between(buffer: &Buffer, index: usize, scale: &DepthScale, fills: &mut Vec<Fill>) {
+    let layers = |pixel: usize| {
+        (0..buffer.layers).map(move |l| pixel + l * buffer.stride).take_while(|i| buffer.count[*i] > 0.0)
+    };
+    let own = layers(index).count();
+    let around = [index - 1, index + 1, index - buffer.pitch, index + buffer.pitch];
+    if own == buffer.layers || around.into_iter().all(|i| layers(i).count() <= own) {
+        return;
+    }
+    let first = fills.len();
+    for offset in [1, buffer.pitch] {
+        for a in layers(index - offset) {
+            let qa = buffer.q[a];
+            let step = scale.bent_step(qa, STEP);
+            let apart = |b: &usize| (buffer.q[*b] - qa).abs();
+            let opposite = layers(index + offset).min_by(|b, c| apart(b).total_cmp(&apart(c)));
+            let Some(b) = opposite.filter(|b| apart(b) < step) else { continue };
+            let mean = |array: &[f32]| 0.5 * (array[a] + array[b]);
+            let q = mean(&buffer.q);
+            let there = layers(index).map(|i| buffer.q[i]).chain(fills[first..].iter().map(|f| f.q));
+            let room = own + fills.len() - first < buffer.layers;
+            if room && there.into_iter().all(|other| (other - q).abs() >= step) {
+                let (c, d) = (buffer.colour[a], buffer.colour[b]);
+                fills.push(Fill {
+                    index: index + (own + fills.len() - first) * buffer.stride,
+                    x: mean(&buffer.x),
+                    y: mean(&buffer.y),
+                    q,
+                    colour: [0, 1, 2].map(|k| 0.5 * (c[k] + d[k])),
+                });
             }
         }
     }

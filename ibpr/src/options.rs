@@ -117,7 +117,8 @@ pub struct Options {
     pub normals: Normals,
     /// How far faces reach beyond the outermost means, in buffer pixels; 0 as printed. Default: 0.35.
     pub outline: f32,
-    /// Levels of pull-push: gaps of less than 2^levels pixels are filled. Default: 1.
+    /// Levels of pull-push: gaps of less than 2^levels pixels are filled; of
+    /// translucent frames only gaps of one pixel, at any level above 0. Default: 2.
     pub fill: u32,
     /// Default: [`Passes::One`].
     pub passes: Passes,
@@ -145,7 +146,7 @@ impl Default for Options {
             weighting: Weighting::Even,
             normals: Normals::Plane,
             outline: Self::OUTLINE,
-            fill: 1,
+            fill: 2,
             passes: Passes::One,
             translucency: None,
             culling: Culling::Blocks,
@@ -160,7 +161,7 @@ impl Default for Options {
 
 impl Options {
     /// Factor of [`Scale::Auto`] by default, found by experiment (`studies -- ibpr`).
-    pub const AUTO_FACTOR: f32 = 1.6;
+    pub const AUTO_FACTOR: f32 = 1.3;
 
     /// Default of [`Options::outline`], found by experiment (`studies -- ibpr`).
     pub const OUTLINE: f32 = 0.35;

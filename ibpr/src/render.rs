@@ -230,9 +230,7 @@ impl Pass {
         let scale = DepthScale::new(map, cloud.spacing());
         let rules = Rules { gamma: options.gamma, weighting: options.weighting, scale, layers };
         accumulate::accumulate(cloud, &self.views, map, rules, &mut self.buffer, bands);
-        if layers.is_none() {
-            fill::pull_push(&mut self.buffer, &scale, options.fill, fill);
-        }
+        fill::pull_push(&mut self.buffer, &scale, options.fill, fill);
         normals::make_corners(&mut self.buffer, map, &scale, options.normals, &mut self.noise);
     }
 }
