@@ -160,6 +160,26 @@ impl Outline {
     pub fn vertices(&self) -> &[DVec2] {
         &self.vertices[..self.len]
     }
+
+    /// Leaves out corners that bend inward or coincide. Just before the eye a corner's direction is good to a few digits only,
+    /// and what cuts by the outline's edges would count the bay beside it twice.
+    fn fill_bays(&mut self) {
+        let (mut i, mut bends) = (0, 0);
+        while self.len >= 3 && bends < self.len {
+            let n = self.len;
+            let [a, b, c] = [i + n - 1, i, i + 1].map(|k| self.vertices[k % n]);
+            if (b - a).perp_dot(c - b) > 0.0 {
+                bends += 1;
+                i = (i + 1) % n;
+            } else {
+                self.vertices.copy_within(i + 1..n, i);
+                self.len -= 1;
+                // Its neighbours bend differently now.
+                bends = 0;
+                i %= self.len;
+            }
+        }
+    }
 }
 
 /// How a lens takes in triangles.
@@ -271,6 +291,8 @@ fn clip_outline(
     if front {
         outline.vertices[..len].reverse();
     }
+    outline.fill_bays();
+    let len = outline.len;
     let area = pointillist_dice::convex::area(outline.vertices());
     (len >= 3 && area > 0.0).then_some((outline, nearness))
 }

@@ -186,3 +186,29 @@ fn a_texel_mean_ends_where_an_edge_is_all_but_level() {
     let [mean] = white.mean(&corners);
     assert!((mean - 1.0).abs() < 1e-6, "{mean}");
 }
+
+/// A sliver that passes within 1e-9 of the eye was clipped into an outline that bent inward; what lay behind the bay was seen
+/// through it, and so was the sliver.
+#[test]
+fn a_sliver_right_before_the_eye_is_convex() {
+    let mut soup = Soup::default();
+    let (sliver, ground) = (soup.surface(1.0), soup.surface(1.0));
+    let (a, b) = (
+        dvec3(-0.290_566_974_682_869_96, 0.0, 0.0),
+        dvec3(0.25, -0.086_298_687_329_217_18, 0.441_316_198_832_317_54),
+    );
+    soup.polygon(
+        &[a, b, dvec3(-0.020_283_484_341_434_982, -0.043_149_338_664_608_59, 0.220_658_106_416_158_77)],
+        sliver,
+    );
+    soup.polygon(
+        &[dvec3(0.972_291_401_619_133_1, 0.0, 0.0), DVec3::ZERO, dvec3(-63.033_496_725_250_37, 0.0, 25.0)],
+        ground,
+    );
+    let target = dvec3(-0.016_389_750_169_609_54, 0.935_636_613_323_964_7, 0.858_913_399_902_431_3);
+    let camera = Projection::Perspective { fov_y_rad: 1.361_124_739_913_106_8 };
+    for eye in [a, a.midpoint(b)] {
+        let view = View::look_at(eye, target, DVec3::Y, camera, 5, 4).unwrap();
+        weights_are_shares(&soup, view, EXACT).unwrap();
+    }
+}
