@@ -14,6 +14,9 @@ pub(crate) const FILLED: f32 = 1e-3;
 /// Depths of opposite neighbours may differ by this many units: twice the step between neighbours.
 const STEP: f32 = 10.0;
 
+/// A surface this many units behind its surroundings is another one: beyond γ and what noise adds to it.
+const BEHIND: f32 = 3.0;
+
 /// Of the four pairs of opposite neighbours, so many must close a gap: a slit between two surfaces is
 /// bridged by one pair only, and stays open.
 const ENCLOSED: usize = 3;
@@ -97,13 +100,13 @@ fn between(buffer: &Buffer, index: usize, scale: &DepthScale) -> Option<Fill> {
     let s = buffer.pitch;
     let occupied = buffer.count[index] > 0.0;
     let q = buffer.q[index];
-    let step = scale.bent_step(q, STEP);
-    let in_front = |i: usize| buffer.count[i] > 0.0 && buffer.q[i] < q - step;
+    let apart = scale.bent_step(q, BEHIND);
+    let in_front = |i: usize| buffer.count[i] > 0.0 && buffer.q[i] < q - apart;
     // Nearly all pixels end here: without a nearer neighbour beside it, two pairs at most could close it.
     if occupied && ![index - 1, index + 1, index - s, index + s].into_iter().any(in_front) {
         return None;
     }
-    let behind = |pair: f32| !occupied || q > pair + scale.bent_step(pair, STEP);
+    let behind = |pair: f32| !occupied || q > pair + scale.bent_step(pair, BEHIND);
     let mut nearest = f32::INFINITY;
     let mut pairs = [(0, 0, f32::INFINITY); 4];
     for (pair, offset) in pairs.iter_mut().zip([1, s, s + 1, s - 1]) {
@@ -181,7 +184,7 @@ fn below(coarse: &Buffer, fine: &Buffer, index: usize, scale: &DepthScale) -> Op
     }
     let surface = coarse.q[above];
     let step = scale.bent_step(surface, STEP);
-    if fine.count[index] > 0.0 && fine.q[index] < surface + step {
+    if fine.count[index] > 0.0 && fine.q[index] < surface + scale.bent_step(surface, BEHIND) {
         return None;
     }
     let s = coarse.pitch;
