@@ -67,6 +67,10 @@ fn draw_layers<P: Pixels>(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], 
     for k in 0..4 {
         for layer in 0..buffer.layers {
             let seed = quad[k] + layer * buffer.stride;
+            if buffer.count[seed] == 0.0 {
+                // Layers are filled from the first on.
+                break;
+            }
             let depth = buffer.corners[seed].surface[0];
             if depth == f32::INFINITY || used[k] >> layer & 1 == 1 {
                 continue;
@@ -77,7 +81,8 @@ fn draw_layers<P: Pixels>(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], 
             for j in k + 1..4 {
                 let apart =
                     |l: &usize| (buffer.corners[quad[j] + l * buffer.stride].surface[0] - depth).abs();
-                let free = (0..buffer.layers).filter(|l| used[j] >> l & 1 == 0);
+                let layers = (0..buffer.layers).take_while(|l| buffer.count[quad[j] + l * buffer.stride] > 0.0);
+                let free = layers.filter(|l| used[j] >> l & 1 == 0);
                 let nearest = free.min_by(|a, b| apart(a).total_cmp(&apart(b)));
                 if let Some(l) = nearest.filter(|l| apart(l) < rules.scale.bent_step(depth, STEP)) {
                     used[j] |= 1 << l;

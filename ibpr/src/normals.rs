@@ -252,14 +252,18 @@ fn sum_window(b: &Buffer, first: usize, step: &Lane, radius: isize) -> Window {
         array[at..at + LANES].try_into().expect("a slice of LANES entries")
     };
     let (cx, cy, cq) = (of(&b.x, first), of(&b.y, first), of(&b.q, first));
-    // Of a pixel with several layers all count that are close enough, which is one in general.
+    // From pixel to pixel a surface changes its layer by one at most: more end together only at creases.
     let layer = (first / b.stride) % b.layers;
     let top = first - layer * b.stride;
     let window = (-radius..=radius).flat_map(|dy| (-radius..=radius).map(move |dx| (dx, dy)));
     for (dx, dy) in window {
-        for l in 0..b.layers {
+        for l in layer.saturating_sub(1)..(layer + 2).min(b.layers) {
             let at = top.wrapping_add_signed(dy * b.pitch as isize + dx) + l * b.stride;
-            let (nx, ny, nq, count) = (of(&b.x, at), of(&b.y, at), of(&b.q, at), of(&b.count, at));
+            let count = of(&b.count, at);
+            if count == zero {
+                continue;
+            }
+            let (nx, ny, nq) = (of(&b.x, at), of(&b.y, at), of(&b.q, at));
             let reach = dx.abs().max(dy.abs()).max(1) as f32;
             for k in 0..LANES {
                 let (x, y, q) = (nx[k] - cx[k], ny[k] - cy[k], nq[k] - cq[k]);

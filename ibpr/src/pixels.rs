@@ -36,6 +36,11 @@ impl Nearest {
         self.rim_paint.resize(painted, [0.0; 4]);
     }
 
+    /// Whether any face touches a pixel.
+    pub(crate) fn is_covered(&self, at: usize) -> bool {
+        self.solid[at][0] < f32::INFINITY || self.rim_cover[at] > 0.0
+    }
+
     /// Puts a coarser pass over this one, except where this shows another surface in front.
     pub(crate) fn draw_over(&mut self, coarse: &Self, scale: &DepthScale, steps: f32) {
         for (i, (under, over)) in self.solid.iter_mut().zip(&coarse.solid).enumerate() {

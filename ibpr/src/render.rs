@@ -14,7 +14,7 @@ use crate::options::{Culling, Options, Passes, Scale};
 use crate::parallel::*;
 use crate::pixels::{Nearest, Stack};
 use crate::raster::{Pixels, Strip};
-use crate::shade::{RowsOut, Shader};
+use crate::shade::{RowsOut, Shaded, Shader};
 use crate::view::{BufferMap, View};
 
 /// Rows of the picture that are drawn together: their surfaces fit into the second-level cache.
@@ -175,26 +175,38 @@ impl Drawing<'_> {
             }
             let scale = self.rules[0].as_ref().map(|r| r.scale);
             let together = |q: f32| scale.map_or(0.0, |s| s.bent_step(q, 1.0));
-            for i in 0..n {
-                self.shader
-                    .through(first.pixels.of(i), self.place(i, first_row), alpha, self.coloured, together)
-                    .write(out, i);
-            }
+            self.finish(first_row, out, |i, place| {
+                let fragments = first.pixels.of(i);
+                (!fragments.is_empty())
+                    .then(|| self.shader.through(fragments, place, alpha, self.coloured, together))
+            });
         } else {
             let [first, second] = &mut scratch.nearest;
             self.draw_passes([&mut *first, &mut *second], first_row, n, |s| s.begin(n, painted));
             if let Some(rules) = &self.rules[1] {
                 first.pixels.draw_over(&second.pixels, &rules.scale, normals::STEP);
             }
-            for i in 0..n {
-                self.shader.nearest(&first.pixels, i, self.place(i, first_row), self.coloured).write(out, i);
-            }
+            let pixels = &first.pixels;
+            self.finish(first_row, out, |i, place| {
+                pixels.is_covered(i).then(|| self.shader.nearest(pixels, i, place, self.coloured))
+            });
         }
     }
 
-    /// Column and row of pixel `i` of a strip.
-    fn place(&self, i: usize, first_row: usize) -> (usize, usize) {
-        (i % self.width, first_row + i / self.width)
+    /// Writes what `shade` says about each pixel of a strip, given its index there and its place in the
+    /// picture.
+    fn finish(
+        &self,
+        first_row: usize,
+        out: &mut RowsOut<'_>,
+        shade: impl Fn(usize, (usize, usize)) -> Option<Shaded>,
+    ) {
+        for row in 0..out.depth.len() / self.width {
+            for column in 0..self.width {
+                let i = row * self.width + column;
+                shade(i, (column, first_row + row)).unwrap_or(Shaded::NOTHING).write(out, i);
+            }
+        }
     }
 
     fn draw_passes<P: Pixels>(

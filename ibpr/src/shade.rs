@@ -65,6 +65,7 @@ impl Shader {
         colour.unwrap_or(self.base) * (self.ambient + (1.0 - self.ambient) * facing.max(0.0))
     }
 
+    #[inline]
     fn shaded(&self, surface: &[f32; 4], place: (usize, usize), paint: Option<&Paint>) -> (Vec3, Vec3) {
         let n = Self::normal(surface);
         (self.colour(place.0, place.1, n, paint.map(|p| Vec3::from_slice(&p[..3]))), n)
@@ -160,7 +161,7 @@ pub(crate) struct Shaded {
 }
 
 impl Shaded {
-    const NOTHING: Self = Self { colour: [0.0; 4], depth: f32::INFINITY, normal: Vec3::ZERO, count: 0.0 };
+    pub(crate) const NOTHING: Self = Self { colour: [0.0; 4], depth: f32::INFINITY, normal: Vec3::ZERO, count: 0.0 };
 
     fn blend(&mut self, c: Vec3, share: f32) {
         let c = c * share;
@@ -175,6 +176,7 @@ impl Shaded {
         self.count = paint.map_or(0.0, |p| p[3]);
     }
 
+    #[inline]
     pub(crate) fn write(&self, out: &mut RowsOut<'_>, i: usize) {
         (out.colour[i], out.depth[i]) = (self.colour, self.depth);
         if let Some((normal, count)) = &mut out.surface {
