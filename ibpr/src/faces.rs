@@ -49,7 +49,7 @@ pub(crate) fn draw<P: Pixels>(buffer: &Buffer, rules: &FaceRules, strip: &mut St
     let bottom = (last + reach).min(buffer.height as f32) as isize;
     for row in top..bottom {
         let upper = buffer.at(0, 0).wrapping_add_signed(row * buffer.pitch as isize - 1);
-        for at in upper..upper + buffer.width + 1 {
+        for at in occupied(buffer, upper) {
             let quad = [at, at + 1, at + 1 + buffer.pitch, at + buffer.pitch];
             if buffer.layers == 1 {
                 draw_quad(buffer, rules, quad, strip);
@@ -57,6 +57,21 @@ pub(crate) fn draw<P: Pixels>(buffer: &Buffer, rules: &FaceRules, strip: &mut St
                 draw_layers(buffer, rules, quad, strip);
             }
         }
+    }
+}
+
+/// Quads of a row, from its upper left corners on, between the first pixel that holds a point and the last.
+fn occupied(buffer: &Buffer, upper: usize) -> std::ops::Range<usize> {
+    let n = buffer.width + 2;
+    let rows = [upper, upper + buffer.pitch].map(|start| &buffer.count[start..start + n]);
+    let holds = |i: &usize| rows.iter().any(|row| row[*i] > 0.0);
+    match (0..n).find(holds) {
+        // A quad is numbered by its left corners.
+        Some(first) => {
+            let last = (first..n).rev().find(holds).unwrap_or(first);
+            upper + first.max(1) - 1..upper + last.min(n - 2) + 1
+        }
+        None => upper..upper,
     }
 }
 
@@ -81,7 +96,8 @@ fn draw_layers<P: Pixels>(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], 
             for j in k + 1..4 {
                 let apart =
                     |l: &usize| (buffer.corners[quad[j] + l * buffer.stride].surface[0] - depth).abs();
-                let layers = (0..buffer.layers).take_while(|l| buffer.count[quad[j] + l * buffer.stride] > 0.0);
+                let layers =
+                    (0..buffer.layers).take_while(|l| buffer.count[quad[j] + l * buffer.stride] > 0.0);
                 let free = layers.filter(|l| used[j] >> l & 1 == 0);
                 let nearest = free.min_by(|a, b| apart(a).total_cmp(&apart(b)));
                 if let Some(l) = nearest.filter(|l| apart(l) < rules.scale.bent_step(depth, STEP)) {
@@ -118,6 +134,11 @@ fn draw_quad<P: Pixels>(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], st
         return;
     }
     if farthest - nearest < step {
+        let rows = strip.first_row as i32..(strip.first_row + strip.rows) as i32;
+        let y = corners.map(|c| c.y / SUBPIXEL as i32);
+        if y.iter().all(|y| *y < rows.start - 1) || y.iter().all(|y| *y > rows.end) {
+            return;
+        }
         let vertices = corners.map(|c| vertex(c, f32::INFINITY));
         return draw_whole(buffer, rules, quad, &vertices, strip);
     }

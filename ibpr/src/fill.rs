@@ -48,7 +48,9 @@ pub(crate) fn pull_push(buffer: &mut Buffer, scale: &DepthScale, levels: u32, sc
         return;
     }
     if buffer.layers > 1 {
-        return fill_bands(buffer, &mut scratch.bands, |buffer, i, fills| layers_between(buffer, i, scale, fills));
+        return fill_bands(buffer, &mut scratch.bands, |buffer, i, fills| {
+            layers_between(buffer, i, scale, fills)
+        });
     }
     let coarser = levels as usize - 1;
     let FillScratch { bands, levels: pyramid } = scratch;
@@ -196,7 +198,11 @@ fn below(coarse: &Buffer, fine: &Buffer, index: usize, scale: &DepthScale) -> Op
     // Linear between the coarse neighbours, where both are there.
     let slope = |offset: usize, at: &[f32]| {
         let run = at[above + offset] - at[above - offset];
-        if closed(offset) && run > 0.5 { (coarse.q[above + offset] - coarse.q[above - offset]) / run } else { 0.0 }
+        if closed(offset) && run > 0.5 {
+            (coarse.q[above + offset] - coarse.q[above - offset]) / run
+        } else {
+            0.0
+        }
     };
     let (x, y) = (column as f32 + 0.5, row as f32 + 0.5);
     let (dx, dy) = (0.5 * x - coarse.x[above], 0.5 * y - coarse.y[above]);

@@ -11,6 +11,8 @@ mod eye_dome;
 mod faces;
 mod fill;
 mod frame;
+#[cfg(feature = "invariants")]
+pub mod invariants;
 mod layers;
 mod normals;
 mod options;

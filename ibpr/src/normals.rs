@@ -5,7 +5,7 @@ use crate::options::Normals;
 use crate::parallel::*;
 use crate::view::BufferMap;
 use glam::Vec3;
-use pulp::Arch;
+use pulp::{Arch, NullaryFnOnce};
 
 /// Depths of neighbouring pixels of one surface differ by less than this many units (the paper's 5).
 pub(crate) const STEP: f32 = 5.0;
@@ -31,7 +31,7 @@ pub(crate) fn make_corners(
     let camera = Camera::new(map);
     let arch = Arch::new();
     let radius = match rule {
-        Normals::Plane => arch.dispatch(Wide(|| radius_for_noise(shared, scale, histogram))),
+        Normals::Plane => radius_for_noise(shared, scale, arch, histogram),
         Normals::Triangles => 1,
     };
     let fitting = Fitting { arch, scale: *scale, radius };
@@ -135,7 +135,7 @@ fn plane_row(b: &Buffer, start: usize, camera: &Camera, fitting: &Fitting, out: 
             continue;
         }
         // The last chunk also fits what lies beyond the row, and drops it.
-        let fit = |radius| fitting.arch.dispatch(Wide(|| fit_chunk(b, first, &fitting.scale, radius)));
+        let fit = |radius| fitting.arch.dispatch(Chunk { b, first, scale: &fitting.scale, radius });
         let mut fits = fit(fitting.radius);
         if counts.iter().zip(&fits).any(|(count, fit)| *count > 0.0 && !fit.good) {
             for (fit, wider) in fits.iter_mut().zip(fit(fitting.radius + 1)).filter(|(fit, _)| !fit.good) {
@@ -172,8 +172,7 @@ const MOST_ERROR_RAD: f32 = 0.035;
 ///
 /// The noise is the median distance of averaged points from the surfaces fitted to 3×3 of them, over
 /// every eighth row.
-#[inline(always)]
-fn radius_for_noise(b: &Buffer, scale: &DepthScale, histogram: &mut Histogram) -> usize {
+fn radius_for_noise(b: &Buffer, scale: &DepthScale, arch: Arch, histogram: &mut Histogram) -> usize {
     const EVERY: usize = 8;
     // 9 values and 6 unknowns: what remains is 3/9 of the variance.
     const LEFT_OVER: f32 = 3.0 / 9.0;
@@ -184,7 +183,7 @@ fn radius_for_noise(b: &Buffer, scale: &DepthScale, histogram: &mut Histogram) -
             if b.count[first..first + LANES].iter().all(|c| *c == 0.0) {
                 continue;
             }
-            let fits = fit_chunk(b, first, scale, 1);
+            let fits = arch.dispatch(Chunk { b, first, scale, radius: 1 });
             for (k, fit) in fits.iter().enumerate().filter(|(_, f)| f.good) {
                 let pixel = scale.footprint * (1.0 - scale.bend * b.q[first + k]);
                 histogram.add((fit.residual / LEFT_OVER).sqrt() / pixel);
@@ -235,13 +234,27 @@ impl Histogram {
     }
 }
 
-#[inline(always)]
-fn fit_chunk(b: &Buffer, first: usize, scale: &DepthScale, radius: usize) -> [Fit; LANES] {
-    let mut step = [0.0; LANES];
-    for (s, q) in step.iter_mut().zip(&b.q[first..first + LANES]) {
-        *s = scale.bent_step(*q, STEP);
+/// The fits of [`LANES`] neighbouring pixels, compiled once more for each kind of vector instructions: the
+/// same operations in the same order, so results do not change.
+struct Chunk<'a> {
+    b: &'a Buffer,
+    first: usize,
+    scale: &'a DepthScale,
+    radius: usize,
+}
+
+impl NullaryFnOnce for Chunk<'_> {
+    type Output = [Fit; LANES];
+
+    // A closure would not be inlined into the vectorised caller, and what is not inlined stays narrow.
+    #[inline(always)]
+    fn call(self) -> [Fit; LANES] {
+        let mut step = [0.0; LANES];
+        for (s, q) in step.iter_mut().zip(&self.b.q[self.first..self.first + LANES]) {
+            *s = self.scale.bent_step(*q, STEP);
+        }
+        sum_window(self.b, self.first, &step, self.radius as isize).solve()
     }
-    sum_window(b, first, &step, radius as isize).solve()
 }
 
 #[inline(always)]

@@ -1,4 +1,4 @@
-//! The same code with rayon and without, and with wide vectors and without.
+//! The same code with rayon and without.
 
 #[cfg(feature = "rayon")]
 pub(crate) use rayon::prelude::*;
@@ -53,18 +53,5 @@ impl<T: Default> Pool<T> {
         let result = work(&mut item);
         lock().push(item);
         result
-    }
-}
-
-/// Work that is compiled once more for each kind of vector instructions: [`pulp::Arch::dispatch`] does
-/// not inline a plain closure, and what it does not inline stays at the narrowest kind.
-pub(crate) struct Wide<F>(pub(crate) F);
-
-impl<R, F: FnOnce() -> R> pulp::NullaryFnOnce for Wide<F> {
-    type Output = R;
-
-    #[inline(always)]
-    fn call(self) -> R {
-        (self.0)()
     }
 }

@@ -1,8 +1,7 @@
 //! Points of a block in buffer pixels.
 
-use crate::parallel::Wide;
 use crate::view::BufferMap;
-use pulp::Arch;
+use pulp::{Arch, NullaryFnOnce};
 
 /// Points that are transformed together: their results stay in the first-level cache.
 pub(crate) const LANES: usize = 256;
@@ -64,8 +63,7 @@ impl Projected {
 
     /// Transforms up to [`LANES`] points and notes which lie in the band.
     pub(crate) fn transform(&mut self, arch: Arch, rows: &[f32; 12], points: [&[f32]; 3], band: &Band) {
-        // The same operations in the same order whatever the width of the vectors: results do not change.
-        arch.dispatch(Wide(|| self.transform_lanes(rows, points, band)));
+        arch.dispatch(Transform { lanes: self, rows, points, band });
         let n = points[0].len().min(LANES);
         let mut count = 0;
         for i in 0..n {
@@ -76,6 +74,7 @@ impl Projected {
         self.count = count;
     }
 
+    // As a function of its own: the compiler knows of parameters that they do not overlap.
     #[inline(always)]
     fn transform_lanes(&mut self, rows: &[f32; 12], points: [&[f32]; 3], band: &Band) {
         let [px, py, pz] = points;
@@ -96,5 +95,24 @@ impl Projected {
             let here = (x >= 0.0) & (x < right) & (y >= top) & (y < bottom) & (depth[i] > band.near);
             inside[i] = u8::from(here);
         }
+    }
+}
+
+/// The arithmetic of [`Projected::transform`], compiled once more for each kind of vector instructions: the
+/// same operations in the same order, so results do not change.
+struct Transform<'a> {
+    lanes: &'a mut Projected,
+    rows: &'a [f32; 12],
+    points: [&'a [f32]; 3],
+    band: &'a Band,
+}
+
+impl NullaryFnOnce for Transform<'_> {
+    type Output = ();
+
+    // A closure would not be inlined into the vectorised caller, and what is not inlined stays narrow.
+    #[inline(always)]
+    fn call(self) {
+        self.lanes.transform_lanes(self.rows, self.points, self.band);
     }
 }

@@ -204,7 +204,8 @@ impl Drawing<'_> {
         for row in 0..out.depth.len() / self.width {
             for column in 0..self.width {
                 let i = row * self.width + column;
-                shade(i, (column, first_row + row)).unwrap_or(Shaded::NOTHING).write(out, i);
+                let shaded = shade(i, (column, first_row + row)).unwrap_or(Shaded::NOTHING);
+                self.shader.write(&shaded, out, i);
             }
         }
     }

@@ -47,28 +47,19 @@ impl Shader {
         }
     }
 
-    /// Unit normal in the camera's frame.
-    fn normal(surface: &[f32; 4]) -> Vec3 {
-        Vec3::new(surface[1], surface[2], surface[3]).normalize_or(Vec3::Z)
-    }
-
-    /// Colour × (A + (1 − A)·max(0, n·l)) at the centre of pixel (x, y).
-    fn colour(&self, x: usize, y: usize, n: Vec3, colour: Option<Vec3>) -> Vec3 {
-        let facing = match self.light {
-            Some(l) => n.dot(l),
-            None => {
-                let u = (x as f32 + 0.5 - self.centre.0) * self.ray_slope;
-                let v = (y as f32 + 0.5 - self.centre.1) * self.ray_slope;
-                n.dot(Vec3::new(-u, v, 1.0)) / (1.0 + u * u + v * v).sqrt()
-            }
-        };
-        colour.unwrap_or(self.base) * (self.ambient + (1.0 - self.ambient) * facing.max(0.0))
-    }
-
+    /// Colour × (A + (1 − A)·max(0, n·l)) at the centre of a pixel, for a normal of any length.
     #[inline]
-    fn shaded(&self, surface: &[f32; 4], place: (usize, usize), paint: Option<&Paint>) -> (Vec3, Vec3) {
-        let n = Self::normal(surface);
-        (self.colour(place.0, place.1, n, paint.map(|p| Vec3::from_slice(&p[..3]))), n)
+    fn shaded(&self, surface: &[f32; 4], place: (usize, usize), paint: Option<&Paint>) -> Vec3 {
+        let n = Vec3::new(surface[1], surface[2], surface[3]);
+        let towards_light = self.light.unwrap_or_else(|| {
+            let u = (place.0 as f32 + 0.5 - self.centre.0) * self.ray_slope;
+            let v = (place.1 as f32 + 0.5 - self.centre.1) * self.ray_slope;
+            Vec3::new(-u, v, 1.0)
+        });
+        let lengths2 = n.length_squared() * towards_light.length_squared();
+        let facing = if lengths2 > 0.0 { n.dot(towards_light).max(0.0) / lengths2.sqrt() } else { 0.0 };
+        let colour = paint.map_or(self.base, |p| Vec3::from_slice(&p[..3]));
+        colour * (self.ambient + (1.0 - self.ambient) * facing)
     }
 
     /// The nearest surface of a pixel, with a rim in front of it blended over what is behind.
@@ -86,17 +77,17 @@ impl Shader {
         let paint_of = |paints: &'_ [Paint]| paints.get(i).copied();
         if has_solid {
             let paint = paint_of(&pixels.solid_paint);
-            let (c, n) = self.shaded(solid, place, paint.as_ref().filter(|_| coloured));
+            let c = self.shaded(solid, place, paint.as_ref().filter(|_| coloured));
             out.blend(c, if has_rim { 1.0 - cover } else { 1.0 });
-            out.show(self, solid[0], n, paint);
+            out.show(solid, paint);
         }
         if has_rim {
             let paint = paint_of(&pixels.rim_paint);
-            let (c, n) = self.shaded(&pixels.rim[i], place, paint.as_ref().filter(|_| coloured));
+            let c = self.shaded(&pixels.rim[i], place, paint.as_ref().filter(|_| coloured));
             out.blend(c, cover);
             // Depth and normal are those of the surface that covers more.
             if cover >= 0.5 {
-                out.show(self, pixels.rim[i][0], n, paint);
+                out.show(&pixels.rim[i], paint);
             }
         }
         out
@@ -121,26 +112,42 @@ impl Shader {
                 continue;
             }
             last = f.surface[0];
-            let (c, n) = self.shaded(&f.surface, place, Some(&f.paint).filter(|_| coloured));
+            let c = self.shaded(&f.surface, place, Some(&f.paint).filter(|_| coloured));
             let share = alpha * f.cover;
             // Front to back, which is the same sum.
             out.blend(c, left * share);
             left *= 1.0 - share;
-            if out.depth == f32::INFINITY && f.cover >= 0.5 {
-                out.show(self, f.surface[0], n, Some(f.paint));
+            if out.surface[0] == f32::INFINITY && f.cover >= 0.5 {
+                out.show(&f.surface, Some(f.paint));
             }
         }
         out
     }
 
-    fn world(&self, n: Vec3) -> Vec3 {
+    /// Unit normal in the world.
+    fn normal(&self, surface: &[f32; 4]) -> Vec3 {
+        let n = Vec3::new(surface[1], surface[2], surface[3]).normalize_or(Vec3::Z);
         n.x * self.axes[0] + n.y * self.axes[1] + n.z * self.axes[2]
     }
 
-    /// Distance along the view axis in world units.
+    /// Distance along the view axis in world units; +∞ stays +∞.
     fn depth(&self, q: f32) -> f32 {
+        if q == f32::INFINITY {
+            return q;
+        }
         let d = f64::from(q / (1.0 - self.bend * q));
         ((d + self.reference) * self.unit) as f32
+    }
+
+    /// Puts a pixel into the frame.
+    #[inline]
+    pub(crate) fn write(&self, shaded: &Shaded, out: &mut RowsOut<'_>, i: usize) {
+        (out.colour[i], out.depth[i]) = (shaded.colour, self.depth(shaded.surface[0]));
+        if let Some((normal, count)) = &mut out.surface {
+            let shown = shaded.surface[0] < f32::INFINITY;
+            normal[i] = if shown { self.normal(&shaded.surface).to_array() } else { [0.0; 3] };
+            count[i] = shaded.count;
+        }
     }
 }
 
@@ -152,16 +159,16 @@ pub(crate) struct RowsOut<'a> {
     pub(crate) surface: Option<(&'a mut [[f32; 3]], &'a mut [f32])>,
 }
 
-/// A pixel as it goes into the frame.
+/// A pixel: its colour, and the surface that is shown there.
 pub(crate) struct Shaded {
     colour: [f32; 4],
-    depth: f32,
-    normal: Vec3,
+    surface: [f32; 4],
     count: f32,
 }
 
 impl Shaded {
-    pub(crate) const NOTHING: Self = Self { colour: [0.0; 4], depth: f32::INFINITY, normal: Vec3::ZERO, count: 0.0 };
+    pub(crate) const NOTHING: Self =
+        Self { colour: [0.0; 4], surface: [f32::INFINITY, 0.0, 0.0, 0.0], count: 0.0 };
 
     fn blend(&mut self, c: Vec3, share: f32) {
         let c = c * share;
@@ -170,17 +177,8 @@ impl Shaded {
         }
     }
 
-    fn show(&mut self, shader: &Shader, q: f32, n: Vec3, paint: Option<Paint>) {
-        self.depth = shader.depth(q);
-        self.normal = shader.world(n);
+    fn show(&mut self, surface: &[f32; 4], paint: Option<Paint>) {
+        self.surface = *surface;
         self.count = paint.map_or(0.0, |p| p[3]);
-    }
-
-    #[inline]
-    pub(crate) fn write(&self, out: &mut RowsOut<'_>, i: usize) {
-        (out.colour[i], out.depth[i]) = (self.colour, self.depth);
-        if let Some((normal, count)) = &mut out.surface {
-            (normal[i], count[i]) = (self.normal.to_array(), self.count);
-        }
     }
 }

@@ -1,0 +1,284 @@
+//! Facts that hold for every cloud, view and set of options, as functions: property tests and fuzz
+//! targets call the same ones.
+//!
+//! Each takes any input at all. Scans or options that are refused satisfy every fact.
+
+use crate::{Cloud, Frame, IbprError, Options, Renderer, Scan, View};
+use glam::{DVec3, Vec3};
+
+/// Rounding allowed to opacities, to lengths of unit normals, and to a colour that all points share.
+pub const TOLERANCE: f32 = 1e-4;
+
+/// A scan that owns its points.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OwnedScan {
+    /// World space.
+    pub positions: Vec<DVec3>,
+    /// Linear RGB.
+    pub colours: Option<Vec<[f32; 3]>>,
+    /// See [`Scan::with_spacing`].
+    pub spacing: Option<f64>,
+    /// See [`Scan::with_scanner`].
+    pub towards_scanner: Option<DVec3>,
+}
+
+impl OwnedScan {
+    /// Points without anything else.
+    #[must_use]
+    pub fn new(positions: Vec<DVec3>) -> Self {
+        Self { positions, ..Self::default() }
+    }
+
+    /// `columns` × `rows` points about `centre`, `right` and `up` apart.
+    #[must_use]
+    pub fn plane(centre: DVec3, right: DVec3, up: DVec3, columns: u32, rows: u32) -> Self {
+        let middle = |n: u32| 0.5 * f64::from(n.saturating_sub(1));
+        let at = |c: u32, r: u32| {
+            centre + right * (f64::from(c) - middle(columns)) + up * (f64::from(r) - middle(rows))
+        };
+        Self::new((0..rows).flat_map(|r| (0..columns).map(move |c| at(c, r))).collect())
+    }
+
+    /// What a scanner far away sees of a sphere: parallel rays `spacing` apart, incidence up to 75°.
+    #[must_use]
+    pub fn sphere(centre: DVec3, radius: f64, spacing: f64, towards_scanner: DVec3) -> Self {
+        let towards = towards_scanner.normalize();
+        let (right, up) = towards.any_orthonormal_pair();
+        let reach = radius * 75f64.to_radians().sin();
+        let steps = (reach / spacing) as i32;
+        let at = |i: i32, j: i32| {
+            let flat = spacing * (f64::from(i) * right + f64::from(j) * up);
+            let height2 = radius * radius - flat.length_squared();
+            (flat.length() <= reach).then(|| centre + flat + height2.sqrt() * towards)
+        };
+        let places = (-steps..=steps).flat_map(|i| (-steps..=steps).map(move |j| (i, j)));
+        let positions = places.filter_map(|(i, j)| at(i, j)).collect();
+        Self { positions, spacing: Some(spacing), towards_scanner: Some(towards), colours: None }
+    }
+
+    /// Each point moved along `direction` by up to its length, forth or back.
+    #[must_use]
+    pub fn jittered(&self, direction: DVec3, seed: u64) -> Self {
+        let mut random = Random(seed);
+        let positions = self.positions.iter().map(|p| *p + direction * (2.0 * random.share() - 1.0));
+        Self { positions: positions.collect(), ..self.clone() }
+    }
+
+    /// As the crate takes it.
+    #[must_use]
+    pub fn as_scan(&self) -> Scan<'_> {
+        let mut scan = Scan::new(&self.positions);
+        if let Some(colours) = &self.colours {
+            scan = scan.with_colours(colours);
+        }
+        if let Some(spacing) = self.spacing {
+            scan = scan.with_spacing(spacing);
+        }
+        if let Some(towards) = self.towards_scanner {
+            scan = scan.with_scanner(towards);
+        }
+        scan
+    }
+
+    /// The same points elsewhere.
+    #[must_use]
+    pub fn moved(&self, map: impl Fn(DVec3) -> DVec3) -> Self {
+        Self { positions: self.positions.iter().map(|p| map(*p)).collect(), ..self.clone() }
+    }
+}
+
+/// Prepares scans.
+///
+/// # Errors
+/// As [`Cloud::new`].
+pub fn cloud(scans: &[OwnedScan]) -> Result<Cloud, IbprError> {
+    let scans: Vec<Scan<'_>> = scans.iter().map(OwnedScan::as_scan).collect();
+    Cloud::new(&scans, Vec3::splat(0.8))
+}
+
+/// A frame of its own by a renderer of its own; `None` if anything is refused.
+#[must_use]
+pub fn frame(scans: &[OwnedScan], view: &View, options: &Options) -> Option<Frame> {
+    let mut frame = Frame::default();
+    Renderer::new().draw(&cloud(scans).ok()?, view, options, &mut frame).ok()?;
+    Some(frame)
+}
+
+/// The same scans and points in another order.
+#[must_use]
+pub fn shuffled(scans: &[OwnedScan], seed: u64) -> Vec<OwnedScan> {
+    let mut random = Random(seed);
+    let mut order = |n: usize| {
+        let mut order: Vec<usize> = (0..n).collect();
+        for i in (1..n).rev() {
+            order.swap(i, (random.share() * (i as f64 + 1.0)) as usize);
+        }
+        order
+    };
+    let scan_order = order(scans.len());
+    let mut scan = |s: &OwnedScan| {
+        let points = order(s.positions.len());
+        let complete = s.colours.as_ref().filter(|c| c.len() == s.positions.len());
+        OwnedScan {
+            positions: points.iter().map(|i| s.positions[*i]).collect(),
+            colours: complete.map(|c| points.iter().map(|i| c[*i]).collect()).or(s.colours.clone()),
+            ..*s
+        }
+    };
+    scan_order.iter().map(|i| scan(&scans[*i])).collect()
+}
+
+/// Knuth's MMIX generator: good enough to shuffle.
+struct Random(u64);
+
+impl Random {
+    /// 0 to 1, without 1.
+    fn share(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 32) as f64 / (1u64 << 32) as f64
+    }
+}
+
+fn check(holds: bool, message: impl FnOnce() -> String) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(message()) }
+}
+
+/// Two frames are the same, bit for bit.
+///
+/// # Errors
+/// The first pixel that differs.
+pub fn frames_are_identical(a: &Frame, b: &Frame) -> Result<(), String> {
+    check((a.width, a.height) == (b.width, b.height), || "sizes differ".to_owned())?;
+    let place = |i: usize| format!("pixel ({}, {})", i % a.width, i / a.width);
+    let differ = |p: &[f32], q: &[f32]| p.iter().zip(q).any(|(x, y)| x.to_bits() != y.to_bits());
+    for i in 0..a.width * a.height {
+        let (p, q) = (&a.colour[i], &b.colour[i]);
+        check(!differ(p, q), || format!("{}: colours {p:?} and {q:?}", place(i)))?;
+        let (p, q) = (a.depth[i], b.depth[i]);
+        check(!differ(&[p], &[q]), || format!("{}: depths {p} and {q}", place(i)))?;
+    }
+    for (i, (p, q)) in a.normal.iter().zip(&b.normal).enumerate() {
+        check(!differ(p, q), || format!("{}: normals {p:?} and {q:?}", place(i)))?;
+    }
+    check(!differ(&a.count, &b.count) && a.count.len() == b.count.len(), || "counts differ".to_owned())
+}
+
+/// No value is NaN, opacities are shares, depths are in front of the eye, normals are unit vectors.
+///
+/// # Errors
+/// The first pixel that is otherwise.
+pub fn frame_is_sound(frame: &Frame) -> Result<(), String> {
+    for i in 0..frame.width * frame.height {
+        let (c, depth) = (frame.colour[i], frame.depth[i]);
+        let place = || format!("pixel ({}, {}): {c:?}, depth {depth}", i % frame.width, i / frame.width);
+        check(c.iter().all(|v| *v >= 0.0 && v.is_finite()), place)?;
+        check(c[3] <= 1.0 + TOLERANCE, place)?;
+        check(depth >= 0.0, place)?;
+        check(depth == f32::INFINITY || c[3] > 0.0, place)?;
+        if let (Some(n), Some(count)) = (frame.normal.get(i), frame.count.get(i)) {
+            let place = || format!("{}, normal {n:?}, count {count}", place());
+            let length = Vec3::from_array(*n).length();
+            let wanted = if depth < f32::INFINITY { 1.0 } else { 0.0 };
+            check((length - wanted).abs() <= TOLERANCE, place)?;
+            check(*count >= 0.0 && count.is_finite(), place)?;
+        }
+    }
+    Ok(())
+}
+
+/// Any input gives a sound frame or a typed error.
+///
+/// # Errors
+/// As [`frame_is_sound`].
+pub fn frames_are_sound(scans: &[OwnedScan], view: &View, options: &Options) -> Result<(), String> {
+    frame(scans, view, options).map_or(Ok(()), |f| frame_is_sound(&f))
+}
+
+/// The order of scans and of their points does not show.
+///
+/// # Errors
+/// As [`frames_are_identical`].
+pub fn order_does_not_matter(
+    scans: &[OwnedScan],
+    view: &View,
+    options: &Options,
+    seed: u64,
+) -> Result<(), String> {
+    match (frame(scans, view, options), frame(&shuffled(scans, seed), view, options)) {
+        (Some(a), Some(b)) => frames_are_identical(&a, &b),
+        (None, None) => Ok(()),
+        _ => Err("one order is refused, another is not".to_owned()),
+    }
+}
+
+/// A renderer and a frame that drew something else before draw the same as new ones.
+///
+/// # Errors
+/// As [`frames_are_identical`].
+pub fn use_before_does_not_matter(
+    scans: &[OwnedScan],
+    before: (&View, &Options),
+    after: (&View, &Options),
+) -> Result<(), String> {
+    let Ok(cloud) = cloud(scans) else { return Ok(()) };
+    let Some(fresh) = frame(scans, after.0, after.1) else { return Ok(()) };
+    let (mut renderer, mut used) = (Renderer::new(), Frame::default());
+    let _ = renderer.draw(&cloud, before.0, before.1, &mut used);
+    renderer.draw(&cloud, after.0, after.1, &mut used).map_err(|e| e.to_string())?;
+    frames_are_identical(&fresh, &used)
+}
+
+/// A pixel that no point projects near shows nothing: further than two buffer pixels (what a face spans),
+/// the gaps that are filled, and a pixel for what is covered in part.
+///
+/// # Errors
+/// The first pixel with something in it.
+pub fn far_pixels_stay_empty(scans: &[OwnedScan], view: &View, options: &Options) -> Result<(), String> {
+    let Some(frame) = frame(scans, view, options) else { return Ok(()) };
+    let reach = frame.counts.scale * (2.0 + f64::from(1u32 << options.fill)) + 1.0;
+    let (width, height) = (frame.width as f64, frame.height as f64);
+    let mut near = vec![false; frame.width * frame.height];
+    for (x, y) in scans.iter().flat_map(|s| &s.positions).filter_map(|p| pixel_of(view, *p)) {
+        let span = |v: f64, end: f64| (v - reach).max(0.0) as usize..(v + reach + 1.0).clamp(0.0, end) as usize;
+        for row in span(y, height) {
+            near[row * frame.width..][span(x, width)].fill(true);
+        }
+    }
+    let seen = |i: &usize| frame.colour[*i] != [0.0; 4] || frame.depth[*i] < f32::INFINITY;
+    let wrong = (0..near.len()).find(|i| !near[*i] && seen(i));
+    wrong.map_or(Ok(()), |i| {
+        Err(format!("pixel ({}, {}) is not empty, reach {reach}", i % frame.width, i / frame.width))
+    })
+}
+
+/// Where a point projects, in pixels; `None` behind the eye.
+#[must_use]
+pub fn pixel_of(view: &View, p: DVec3) -> Option<(f64, f64)> {
+    let d = p - view.eye();
+    let (x, y, depth) = (d.dot(view.right), d.dot(view.up), d.dot(view.forward()));
+    let k = if view.is_perspective() { view.focal_px() / depth } else { view.focal_px() };
+    let (cx, cy) = (0.5 * f64::from(view.width()), 0.5 * f64::from(view.height()));
+    (depth > 0.0).then_some((cx + k * x, cy - k * y))
+}
+
+/// Points of one colour, lit from everywhere, show that colour wherever anything is seen.
+///
+/// # Errors
+/// The first pixel of another colour.
+pub fn one_colour_stays_one_colour(
+    scans: &[OwnedScan],
+    view: &View,
+    options: &Options,
+    colour: [f32; 3],
+) -> Result<(), String> {
+    let paint = |s: &OwnedScan| OwnedScan { colours: Some(vec![colour; s.positions.len()]), ..s.clone() };
+    let painted: Vec<OwnedScan> = scans.iter().map(paint).collect();
+    let options = Options { ambient: 1.0, eye_dome: None, ..*options };
+    let Some(frame) = frame(&painted, view, &options) else { return Ok(()) };
+    for (i, c) in frame.colour.iter().enumerate() {
+        let most = colour.iter().fold(1.0f32, |m, c| m.max(*c));
+        let same = c[..3].iter().zip(colour).all(|(v, w)| (v - w * c[3]).abs() <= TOLERANCE * most);
+        check(same, || format!("pixel ({}, {}): {c:?}, not {colour:?}", i % frame.width, i / frame.width))?;
+    }
+    Ok(())
+}
