@@ -21,8 +21,8 @@ const FAINT: f64 = 1e-12;
 /// covers. Reached only where hundreds of occluders overlap in a spot that halving does not separate.
 const MOST_REGIONS: usize = 256;
 
-/// The same for translucent occluders, whose overlaps matter less: a mean opacity is spread evenly over
-/// its region as it is.
+/// The same for translucent occluders where more than [`FEW`] overlap and halving does not separate them: in
+/// foliage each of them is a mean over its region as it is. Few of them are exact, whatever regions they make.
 const MOST_TRANSLUCENT_REGIONS: usize = 24;
 
 /// Occluders that are worth dividing a polygon for at once. With more, the polygon is halved first:
@@ -96,7 +96,8 @@ impl Regions {
             self.list.push(Region { polygon, transmittance: 1.0 });
             for i in first..end {
                 let (number, front) = self.stack[i];
-                let most = if occluders.is_opaque(number) { MOST_REGIONS } else { MOST_TRANSLUCENT_REGIONS };
+                let crowd = count > FEW && !occluders.is_opaque(number);
+                let most = if crowd { MOST_TRANSLUCENT_REGIONS } else { MOST_REGIONS };
                 self.attenuate_up_to(most, occluders.outline(number), front, |p| {
                     occluders.opacity(number, p)
                 });

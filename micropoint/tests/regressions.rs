@@ -1,7 +1,9 @@
 //! Bugs that were fixed, each with its smallest input.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
-use pointillist_micropoint::invariants::{Soup, nothing_shows_through, picture, shares, weights_are_shares};
+use pointillist_micropoint::invariants::{
+    Soup, nothing_shows_through, picture, shares, shares_agree, weights_are_shares,
+};
 use pointillist_micropoint::{
     Geometry, MicropointOptions, PixelRect, PlainOpacity, Projection, Renderer, Surface, TexelCorner,
     TexelSums, TexelWrap, Tile, View,
@@ -211,4 +213,33 @@ fn a_sliver_right_before_the_eye_is_convex() {
         let view = View::look_at(eye, target, DVec3::Y, camera, 5, 4).unwrap();
         weights_are_shares(&soup, view, EXACT).unwrap();
     }
+}
+
+/// Few occluders before a triangle cut it into more than 24 regions, whereupon a translucent one dimmed the rest by its mean: the
+/// back faces of a solid, all hidden, changed how the triangle was halved and with it a pixel by 1.6e-6.
+#[test]
+fn a_dozen_translucent_occluders_are_exact() {
+    let mut soup = Soup::default();
+    let loose = [
+        (0.161_428_05, [(0.0, -0.989_741_6, 0.0), (0.0, 0.0, 0.0), (0.0, 0.722_059_9, -0.296_113_8)]),
+        (1.0, [(0.0, 0.0, 0.0), (0.0, 0.0, 0.380_205_1), (0.0, 0.532_154, 0.265_476_9)]),
+        (0.925_528_5, [(0.821_780_5, -0.25, -0.25), (-0.927_090_5, 0.0, 0.0), (-0.049_655, -0.12, -0.118)]),
+        (1.0, [(0.75, 0.388_788_3, 0.0), (0.0, 0.0, -95.414_161_6), (-62.181_048_1, 0.0, 0.0)]),
+        (0.895_516_16, [(0.0, 0.0, 0.485_539_3), (0.0, 0.292_456_8, -0.906_468_7), (0.0, -0.102_508_1, 0.0)]),
+        (1.0, [(0.0, -0.340_394_3, -0.485_058_3), (0.0, 0.0, 0.0), (0.022_334_4, 0.0, 0.0)]),
+    ];
+    for (opacity, corners) in loose {
+        let surface = soup.surface(opacity);
+        soup.polygon(&corners.map(|(x, y, z)| dvec3(x, y, z)), surface);
+    }
+    let solid = soup.surface(1.0);
+    soup.sphere(dvec3(0.765_329_273, 0.0, -0.607_764_001), 0.622_765_187, 3, 4, solid);
+    let eye = dvec3(0.404_212_610_616_708_1, -0.853_428_809_456_505_7, 1.496_202_513_536_156_5);
+    let forward = dvec3(-0.027_482_429_734_462_26, 0.124_883_676_468_234_45, -0.991_790_695_362_518_4);
+    let camera = Projection::Perspective { fov_y_rad: 1.392_295_294_988_434_9 };
+    let view = View::look_at(eye, eye + forward, DVec3::Y, camera, 9, 1).unwrap();
+    let [culled, whole] = [true, false].map(|cull| {
+        shares(&picture(&soup, view, EXACT.with_cull_solids(cull)).unwrap(), soup.surfaces.len())
+    });
+    shares_agree(&culled, &whole, 1e-11).unwrap();
 }
