@@ -7,12 +7,18 @@ mod closed_form;
 mod data;
 mod dice;
 mod draw;
+mod frame_error;
+mod ibpr;
+mod ibpr_report;
+mod ibpr_settings;
 mod line_reference;
+mod loop_subdivision;
 mod micropoint;
 mod picture;
 mod point_sampling;
 mod ray_reference;
 mod report;
+mod scans;
 mod scenes;
 mod shadow;
 mod shadow_map;
@@ -20,16 +26,18 @@ mod shadow_scenes;
 mod speed;
 mod stress;
 mod stress_rows;
+mod true_surface;
 
 use report::Outcome;
 
 /// Name, what it measures, and the study itself.
 type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
 
-const STUDIES: [Study; 5] = [
+const STUDIES: [Study; 6] = [
     ("dice", "areas of a triangle in the cells of a grid", run_dice),
     ("micropoint", "pictures against point sampling", micropoint::run),
     ("shadow", "shadows against a shadow map", shadow::run),
+    ("ibpr", "raw range scans against the surface that they measured", ibpr::run),
     ("stress", "input at the limits of numbers; fails if a row does", stress::run),
     ("speed", "whole pictures: seconds, threads, memory", speed::run),
 ];

@@ -86,7 +86,7 @@ impl Tree {
     }
 
     /// The nearest triangle and how far it is, in lengths of `direction`.
-    fn nearest(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<(u32, f64)> {
+    pub(crate) fn nearest(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<(u32, f64)> {
         let mut best = None;
         let ray = Ray { origin, direction, inverse: direction.recip(), end: f64::INFINITY };
         let mut end = f64::INFINITY;

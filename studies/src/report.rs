@@ -119,6 +119,16 @@ pub(crate) fn chart(
     name: &str,
     rows: &[Row],
 ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    chart_of(out_dir, name, "RMSE", rows)
+}
+
+/// The same for errors of another kind, or in another unit: `error` says which.
+pub(crate) fn chart_of(
+    out_dir: &Path,
+    name: &str,
+    error: &str,
+    rows: &[Row],
+) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     let scenes = scenes(rows);
     let mut series: Vec<&str> = vec![];
     for r in rows {
@@ -140,7 +150,7 @@ pub(crate) fn chart(
     }
     for (area, scene) in panels.split_evenly((lines, COLUMNS)).iter().zip(scenes) {
         let of_scene: Vec<&Row> = rows.iter().filter(|r| r.scene == scene).collect();
-        panel(area, scene, &series, &of_scene)?;
+        panel(area, [scene, error], &series, &of_scene)?;
     }
     root.present()?;
     Ok(())
@@ -150,7 +160,7 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 fn panel(
     area: &Area<'_>,
-    scene: &str,
+    [scene, error]: [&str; 2],
     series: &[&str],
     rows: &[&Row],
 ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
@@ -172,7 +182,7 @@ fn panel(
     chart
         .configure_mesh()
         .x_desc("seconds")
-        .y_desc("RMSE")
+        .y_desc(error)
         .x_label_formatter(&power)
         .y_label_formatter(&power)
         .max_light_lines(0)

@@ -141,7 +141,7 @@ fn object(name: &str) -> Object {
 }
 
 /// An octahedron, subdivided and pushed out to the unit sphere.
-fn unit_sphere(level: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+pub(crate) fn unit_sphere(level: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     use std::collections::HashMap;
     let mut positions = vec![DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
     let mut triangles =
