@@ -1,0 +1,194 @@
+//! `scan`: pictures of clouds made here, and every kind of bad input.
+
+mod common;
+
+use common::Folder;
+use pointillist_cli::image_io::read_exr_picture;
+
+/// A square of 41 × 41 points on z = 0, in rows, as XYZ text.
+fn sheet(z: f64) -> String {
+    let row =
+        |j: i32| (-20..=20).map(move |i| format!("{} {} {z}\n", f64::from(i) * 0.05, f64::from(j) * 0.05));
+    (-20..=20).flat_map(row).collect()
+}
+
+/// The same as an ascii PLY in a range grid, so that its spacing and its scanner are known.
+fn range_grid(points: usize) -> String {
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nobj_info num_cols {points}\nobj_info num_rows {points}\nelement vertex {}\n\
+         property float x\nproperty float y\nproperty float z\nelement range_grid {}\n\
+         property list uchar int vertex_indices\nend_header\n",
+        points * points,
+        points * points
+    );
+    for k in 0..points * points {
+        text += &format!("{} {} 0\n", (k % points) as f64 * 0.05, (k / points) as f64 * 0.05);
+    }
+    for k in 0..points * points {
+        text += &format!("1 {k}\n");
+    }
+    text
+}
+
+const VIEW: [&str; 8] = ["--eye", "0,0,3", "--target", "0,0,0", "--fov", "30", "--size", "64x48"];
+
+fn scan(files: &[&str], more: &[&str]) -> Vec<String> {
+    let line = ["scan"].into_iter().chain(files.iter().copied()).chain(VIEW).chain(more.iter().copied());
+    line.map(str::to_owned).collect()
+}
+
+fn run(folder: &Folder, line: &[String]) -> String {
+    let line: Vec<&str> = line.iter().map(String::as_str).collect();
+    folder.prints(&line)
+}
+
+#[test]
+fn a_sheet_is_opaque_at_its_depth() {
+    let folder = Folder::new();
+    folder.write("sheet.xyz", sheet(0.5));
+    run(&folder, &scan(&["sheet.xyz"], &["-o", "sheet.exr", "--float", "--layers", "all"]));
+    let picture = read_exr_picture(&std::fs::read(folder.path("sheet.exr")).unwrap()).unwrap();
+    assert_eq!(picture.size, [64, 48]);
+    // Facing the eye: colour 0.8 wherever the sheet is, which is the middle of the picture.
+    let middle = picture.color[24 * 64 + 32];
+    assert_eq!(middle[3], 1.0);
+    assert!((middle[0] - 0.8).abs() < 1e-3, "{middle:?}");
+    let info = folder.prints(&["info", "sheet.exr"]);
+    for channel in ["N.X", "P.Z", "count", "\"Z\""] {
+        assert!(info.contains(channel), "{channel} is missing in {info}");
+    }
+}
+
+#[test]
+fn every_option_draws_something_else_than_nothing() {
+    let folder = Folder::new();
+    folder.write("sheet.ply", range_grid(41));
+    let options: [&[&str]; 14] = [
+        &["--passes", "1"],
+        &["--finer", "0.66"],
+        &["--alpha", "0.5", "--depth-layers", "3", "--layer-threshold", "10"],
+        &["--no-cull"],
+        &["--cull", "printed"],
+        &["--cull", "scans"],
+        &["--normals", "triangles", "--weights", "falling", "--outline", "0", "--fill", "0"],
+        &["--weights", "symmetric"],
+        &["--weights", "printed"],
+        &["--gamma", "1", "--spacing", "0.05", "--scale", "2"],
+        &["--light", "1,1,1", "--ambient", "0.3"],
+        &["--edl"],
+        &["--edl", "2", "--ambient", "1"],
+        &["--exposure", "1"],
+    ];
+    for more in options {
+        let mut more = more.to_vec();
+        more.extend(["-o", "out.png", "--eye", "1,1,4", "--target", "1,1,0", "--stats", "stats.json"]);
+        let line: Vec<&str> =
+            ["scan", "sheet.ply", "--size", "48x48"].into_iter().chain(more.iter().copied()).collect();
+        folder.prints(&line);
+        let picture = image::open(folder.path("out.png")).unwrap().to_rgba8();
+        let covered = picture.pixels().filter(|p| p.0[3] > 0).count();
+        assert!(covered > 200, "{more:?} covers {covered} pixels");
+    }
+}
+
+#[test]
+fn tiles_join_to_the_whole_picture() {
+    let folder = Folder::new();
+    folder.write("sheet.xyz", sheet(0.0));
+    let whole = scan(&["sheet.xyz"], &["-o", "whole.exr"]);
+    run(&folder, &whole);
+    for i in 0..3 {
+        let tile = format!("{i}/3");
+        let part = format!("part{i}.exr");
+        run(&folder, &scan(&["sheet.xyz"], &["-o", &part, "--tile", &tile]));
+    }
+    folder.prints(&["merge", "part2.exr", "part0.exr", "part1.exr", "-o", "joined.exr"]);
+    let [a, b] = ["whole.exr", "joined.exr"].map(|n| std::fs::read(folder.path(n)).unwrap());
+    assert_eq!(read_exr_picture(&a).unwrap().color, read_exr_picture(&b).unwrap().color);
+}
+
+#[test]
+fn repeat_reports_the_frames() {
+    let folder = Folder::new();
+    folder.write("sheet.xyz", sheet(0.0));
+    run(&folder, &scan(&["sheet.xyz"], &["-o", "a.png", "--repeat", "3", "--stats", "stats.json"]));
+    let stats: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path("stats.json")).unwrap()).unwrap();
+    for key in ["frame_ms", "frame_cpu_ms"] {
+        assert!(stats[key]["min"].as_f64().unwrap() <= stats[key]["median"].as_f64().unwrap());
+    }
+    assert_eq!(stats["counts"]["points"], 41 * 41);
+}
+
+#[test]
+fn scans_of_a_conf_are_placed_and_a_mesh_joins_them() {
+    let folder = Folder::new();
+    folder.write("a.ply", range_grid(21));
+    // Turned by 180° about y and moved back: its scanner looks from behind.
+    folder.write("two.conf", "bmesh a.ply 0 0 0 0 0 0 1\nbmesh a.ply 1 0 0 0 1 0 0\n");
+    let line = ["scan", "two.conf", "triangle.obj", "-o", "a.png", "--size", "32x32", "--stats", "s.json"];
+    folder.prints(&line);
+    let stats: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path("s.json")).unwrap()).unwrap();
+    // The triangle of area 1.5 gets points at the spacing of the scans, 0.05.
+    assert!(stats["counts"]["points"].as_u64().unwrap() > 2 * 441 + 600);
+}
+
+#[test]
+fn an_empty_picture_is_drawn_with_a_warning() {
+    let folder = Folder::new();
+    folder.write("sheet.xyz", sheet(0.0));
+    let line = ["scan", "sheet.xyz", "--eye", "0,0,3", "--target", "0,0,6", "-o", "a.png", "--size", "8x8"];
+    let output = folder.command(&line).output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no point is in view"));
+    assert!(folder.path("a.png").exists());
+}
+
+#[test]
+fn bad_files_name_the_place_and_leave_no_picture() {
+    let folder = Folder::new();
+    let whole = range_grid(9);
+    folder.write("cut.ply", &whole[..whole.len() / 2]);
+    folder.fails(&["scan", "cut.ply", "-o", "a.png"], 3, &["cut.ply:"]);
+    folder.write("nan.xyz", "0 0 0\n1 nan 0\n0 1 0\n");
+    folder.fails(&["scan", "nan.xyz", "-o", "a.png"], 3, &["nan.xyz", "--drop-invalid"]);
+    folder.write("none.xyz", "");
+    folder.fails(&["scan", "none.xyz", "-o", "a.png"], 3, &["none.xyz"]);
+    folder.write("lost.conf", "bmesh lost.ply 0 0 0 0 0 0 1\n");
+    folder.fails(&["scan", "lost.conf", "-o", "a.png"], 3, &["lost.conf:1", "lost.ply"]);
+    folder.write("turned.conf", "bmesh a.ply 0 0 0 0 0 0 2\n");
+    folder.fails(&["scan", "turned.conf", "-o", "a.png"], 3, &["turned.conf:1"]);
+    assert!(!folder.path("a.png").exists());
+}
+
+#[test]
+fn invalid_points_can_be_dropped() {
+    let folder = Folder::new();
+    folder.write("nan.xyz", sheet(0.0) + "1 nan 0\n");
+    let line = scan(&["nan.xyz"], &["-o", "a.png", "--drop-invalid"]);
+    let line: Vec<&str> = line.iter().map(String::as_str).collect();
+    let output = folder.command(&line).output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("1 points that are not finite were left out"));
+}
+
+#[test]
+fn bad_options_are_wrong_usage() {
+    let folder = Folder::new();
+    folder.write("sheet.xyz", sheet(0.0));
+    let wrong: [(&[&str], &str); 8] = [
+        (&["--scale", "0.5"], "at least 1"),
+        (&["--alpha", "1.5"], "alpha = 1.5"),
+        (&["--outline", "2"], "outline"),
+        (&["--depth-layers", "99", "--alpha", "0.5"], "layers"),
+        (&["--light", "0,0,0"], "light"),
+        (&["--up", "0,0,1", "--eye", "0,0,3", "--target", "0,0,0"], "parallel"),
+        (&["--layers", "albedo"], "N, P and count"),
+        (&["--layers", "N", "-o", "a.png"], ".exr"),
+    ];
+    for (more, piece) in wrong {
+        let line: Vec<&str> = ["scan", "sheet.xyz"].into_iter().chain(more.iter().copied()).collect();
+        folder.fails(&line, 2, &[piece]);
+    }
+}
