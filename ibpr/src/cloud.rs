@@ -55,15 +55,15 @@ impl Cloud {
     /// [`IbprError::NoPoints`], [`IbprError::PointNotFinite`], [`IbprError::BadColour`],
     /// [`IbprError::LengthMismatch`], [`IbprError::BadScan`], [`IbprError::TooManyPoints`].
     pub fn new(scans: &[Scan<'_>], base: Vec3) -> Result<Self, IbprError> {
+        let points: usize = scans.iter().map(|s| s.positions.len()).sum();
+        if u32::try_from(points).is_err() {
+            return Err(IbprError::TooManyPoints { points });
+        }
         for (i, scan) in scans.iter().enumerate() {
             scan.check(i)?;
         }
-        let points: usize = scans.iter().map(|s| s.positions.len()).sum();
         if points == 0 {
             return Err(IbprError::NoPoints);
-        }
-        if u32::try_from(points).is_err() {
-            return Err(IbprError::TooManyPoints { points });
         }
         let lattice = Lattice::around(scans.iter().flat_map(|s| s.positions));
         if !lattice.extent.is_finite() {

@@ -10,19 +10,26 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Incidence up to which a scanner measures (the paper's observation).
 const MOST_INCIDENCE_RAD: f64 = 75.0 * PI / 180.0;
 
-/// Indices of the blocks that may be seen, in the cloud's order.
+/// Indices of the blocks that may be seen, in the cloud's order, and the depth and the number of points
+/// of those in view, whether they face away or not.
 pub(crate) fn visible(
     cloud: &Cloud,
     view: &View,
     culling: Culling,
     blocks: &mut Vec<u32>,
+    depths: &mut Vec<(f64, usize)>,
     counts: &mut FrameCounts,
 ) {
     blocks.clear();
+    depths.clear();
     *counts = FrameCounts::default();
     let frustum = Frustum::new(view);
     for (i, block) in cloud.blocks.iter().enumerate() {
-        let skipped = if frustum.misses(block, cloud.unit) {
+        let outside = frustum.misses(block, cloud.unit);
+        if !outside {
+            depths.push((view.depth_of(block.origin), block.points.len()));
+        }
+        let skipped = if outside {
             &mut counts.blocks_outside
         } else if faces_away(block, view, culling, cloud.unit) {
             &mut counts.blocks_facing_away
@@ -87,9 +94,10 @@ fn faces_away(block: &Block, view: &View, culling: Culling, unit: f64) -> bool {
         Culling::None => false,
         Culling::Printed => block.towards_scanner.is_some_and(|d| d.dot(-view.forward) < 0.0),
         Culling::Scans => scan_beyond(FRAC_PI_2 + MOST_INCIDENCE_RAD),
-        Culling::Blocks => match block.cone {
-            Some(c) => angle_to(c.axis.as_dvec3()) > FRAC_PI_2 + f64::from(c.half_angle) + spread,
-            None => scan_beyond(FRAC_PI_2 + MOST_INCIDENCE_RAD),
-        },
+        // Not by its scan, where a block has no cone: the steepest points of a scan that faces away by 165°
+        // touch the rim from behind, and are averaged with what is seen there.
+        Culling::Blocks => block
+            .cone
+            .is_some_and(|c| angle_to(c.axis.as_dvec3()) > FRAC_PI_2 + f64::from(c.half_angle) + spread),
     }
 }

@@ -239,7 +239,8 @@ pub fn far_pixels_stay_empty(scans: &[OwnedScan], view: &View, options: &Options
     let (width, height) = (frame.width as f64, frame.height as f64);
     let mut near = vec![false; frame.width * frame.height];
     for (x, y) in scans.iter().flat_map(|s| &s.positions).filter_map(|p| pixel_of(view, *p)) {
-        let span = |v: f64, end: f64| (v - reach).max(0.0) as usize..(v + reach + 1.0).clamp(0.0, end) as usize;
+        let place = |v: f64, end: f64| v.clamp(0.0, end) as usize;
+        let span = |v: f64, end: f64| place(v - reach, end)..place(v + reach + 1.0, end);
         for row in span(y, height) {
             near[row * frame.width..][span(x, width)].fill(true);
         }

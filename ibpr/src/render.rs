@@ -66,7 +66,7 @@ impl Renderer {
         let mut counts = FrameCounts::default();
         // Through translucent surfaces one sees those that face away.
         let culling = if options.translucency.is_some() { Culling::None } else { options.culling };
-        cull::visible(cloud, view, culling, &mut self.visible, &mut counts);
+        cull::visible(cloud, view, culling, &mut self.visible, &mut self.depths, &mut counts);
         counts.scale = self.scale(cloud, view, options);
         self.bands.fill(threads());
         self.strips.fill(threads());
@@ -98,10 +98,8 @@ impl Renderer {
             Scale::Fixed(s) => return f64::from(s),
             Scale::Auto(factor) => f64::from(factor),
         };
-        // The median depth of the points in view: few points at the lens must not blur the rest.
-        self.depths.clear();
-        let blocks = self.visible.iter().map(|&i| &cloud.blocks[i as usize]);
-        self.depths.extend(blocks.map(|b| (view.depth_of(b.origin), b.points.len())));
+        // The median depth of the points in view: few points at the lens must not blur the rest. Also of
+        // those that face away, or culling would change what is seen.
         self.depths.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let half = self.depths.iter().map(|d| d.1).sum::<usize>() / 2;
         let mut seen = 0;

@@ -136,7 +136,9 @@ impl Shader {
             return q;
         }
         let d = f64::from(q / (1.0 - self.bend * q));
-        ((d + self.reference) * self.unit) as f32
+        let depth = ((d + self.reference) * self.unit) as f32;
+        // An outline may reach a little beyond the plane of the eye.
+        if depth < 0.0 { 0.0 } else { depth }
     }
 
     /// Puts a pixel into the frame.

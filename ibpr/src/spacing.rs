@@ -87,6 +87,6 @@ pub(crate) fn of_all(ordered: &[Ordered], lattice: &Lattice, spacing: f64, point
     cells.sort_unstable();
     cells.dedup();
     let side = lattice.extent / f64::from(1u32 << level);
-    let area = cells.len() as f64 * side * side / CELLS_PER_AREA;
-    (area / points as f64).sqrt()
+    // Not the root of the area, whose square of `side` may leave the range of numbers.
+    side * (cells.len() as f64 / CELLS_PER_AREA / points as f64).sqrt()
 }

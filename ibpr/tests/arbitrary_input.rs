@@ -1,0 +1,175 @@
+//! Any values at all into every public function: an answer or a typed error, never a panic or NaN.
+
+use glam::{DAffine3, DMat3, DVec3, Vec3, dvec3};
+use pointillist_ibpr::invariants::{OwnedScan, cloud, frame, frame_is_sound};
+use pointillist_ibpr::{
+    Cloud, EyeDome, Frame, IbprError, Light, Options, Passes, Projection, Renderer, Scale, Scan,
+    Translucency, View, Weighting,
+};
+use proptest::prelude::*;
+use proptest::test_runner::FileFailurePersistence;
+
+fn number() -> BoxedStrategy<f64> {
+    prop_oneof![
+        4 => -2.0..2.0,
+        1 => any::<f64>(),
+        1 => prop_oneof![
+            Just(0.0), Just(f64::NAN), Just(f64::INFINITY), Just(f64::NEG_INFINITY), Just(1e300), Just(-1e89),
+            Just(5e-324), Just(1e7), Just(-1e16),
+        ],
+    ]
+    .boxed()
+}
+
+/// Finite, so that more than the door is tested.
+fn finite() -> BoxedStrategy<f64> {
+    prop_oneof![
+        6 => -2.0..2.0,
+        1 => prop_oneof![
+            Just(0.0), Just(1e80), Just(-1e89), Just(5e-324), Just(1e7), Just(-1e16), Just(1e-160), Just(1e300),
+        ],
+    ]
+    .boxed()
+}
+
+/// Of one size, huge or tiny.
+fn of_one_size() -> BoxedStrategy<f64> {
+    (-2.0..2.0f64).boxed()
+}
+
+fn vector(n: fn() -> BoxedStrategy<f64>) -> BoxedStrategy<DVec3> {
+    (n(), n(), n()).prop_map(|(x, y, z)| dvec3(x, y, z)).boxed()
+}
+
+fn projection() -> impl Strategy<Value = Projection> {
+    prop_oneof![
+        number().prop_map(|fov_y_rad| Projection::Perspective { fov_y_rad }),
+        (0.01..3.1f64).prop_map(|fov_y_rad| Projection::Perspective { fov_y_rad }),
+        number().prop_map(|height| Projection::Orthographic { height }),
+    ]
+}
+
+fn share() -> impl Strategy<Value = f32> {
+    prop_oneof![4 => 0.0..=1.0f32, 1 => any::<f32>()]
+}
+
+fn positive() -> impl Strategy<Value = f32> {
+    prop_oneof![6 => 0.1..4.0f32, 1 => any::<f32>(), 1 => Just(1e30f32), 1 => Just(1e-30f32)]
+}
+
+fn options() -> impl Strategy<Value = Options> {
+    let size = (positive(), any::<bool>(), prop::option::of(share()), 0..8u32);
+    let surface = (positive(), share(), any::<bool>(), vector(number));
+    let layers = prop::option::of((share(), 0..10usize, positive()));
+    let dome = prop::option::of((positive(), 0..70u32));
+    (size, surface, layers, dome).prop_map(|(size, surface, layers, dome)| {
+        let mut o = Options::default();
+        o.scale = if size.1 { Scale::Auto(size.0) } else { Scale::Fixed(size.0) };
+        o.passes = size.2.map_or(Passes::One, |finer| Passes::Two { finer });
+        o.fill = size.3;
+        (o.gamma, o.outline, o.surface_layers) = (surface.0, surface.1, surface.2);
+        o.weighting = if surface.2 { Weighting::Symmetric } else { Weighting::Even };
+        o.light = if surface.2 { Light::Towards(surface.3) } else { Light::Eye };
+        o.translucency = layers.map(|(alpha, layers, threshold)| Translucency { alpha, layers, threshold });
+        o.eye_dome = dome.map(|(strength, radius)| EyeDome { strength, radius });
+        o
+    })
+}
+
+/// Seeds of failures are kept beside this file.
+fn cases(cases: u32) -> ProptestConfig {
+    let file = FileFailurePersistence::WithSource("proptest-regressions");
+    ProptestConfig { cases, failure_persistence: Some(Box::new(file)), ..ProptestConfig::default() }
+}
+
+fn sound(frame: &Frame) -> Result<(), TestCaseError> {
+    frame_is_sound(frame).map_err(TestCaseError::fail)
+}
+
+proptest! {
+    #![proptest_config(cases(512))]
+
+    #[test]
+    fn scans_become_a_cloud_or_are_refused(
+        positions in prop::collection::vec(vector(number), 0..6), colours in prop::option::of(prop::collection::vec(any::<[f32; 3]>(), 0..6)),
+        spacing in prop::option::of(number()), towards in prop::option::of(vector(number)),
+    ) {
+        let scan = OwnedScan { positions, colours, spacing, towards_scanner: towards };
+        let result = cloud(std::slice::from_ref(&scan));
+        let finite = scan.positions.iter().all(|p| p.is_finite());
+        match result {
+            Ok(cloud) => {
+                prop_assert!(finite && cloud.len() == scan.positions.len());
+                prop_assert!(cloud.spacing() >= 0.0 && cloud.density_spacing() >= 0.0, "{cloud:?}");
+                prop_assert!(cloud.spacing().is_finite() && cloud.density_spacing().is_finite(), "{cloud:?}");
+            }
+            Err(IbprError::PointNotFinite { index, .. }) => prop_assert!(!scan.positions[index].is_finite()),
+            Err(_) => {}
+        }
+    }
+
+    #[test]
+    fn views_are_made_or_refused(
+        eye in vector(number), target in vector(number), up in vector(number), p in projection(), w: u32, h: u32,
+        columns in [vector(number), vector(number), vector(number)],
+    ) {
+        let matrix = DAffine3 { matrix3: DMat3::from_cols(columns[0], columns[1], columns[2]), translation: eye };
+        for view in [View::look_at(eye, target, up, p, w, h), View::from_matrix(matrix, p, w, h)].into_iter().flatten() {
+            prop_assert!(view.eye().is_finite() && (view.forward().length() - 1.0).abs() < 1e-6, "{view:?}");
+        }
+    }
+
+    #[test]
+    fn anything_that_is_accepted_can_be_drawn(
+        positions in prop::collection::vec(vector(finite), 1..12), spacing in prop::option::of(positive()),
+        eye in vector(finite), target in vector(finite), p in projection(), w in 1..20u32, h in 1..20u32, o in options(),
+    ) {
+        let scan = OwnedScan { spacing: spacing.map(f64::from), ..OwnedScan::new(positions) };
+        if let Ok(view) = View::look_at(eye, target, DVec3::Y, p, w, h)
+            && let Some(frame) = frame(&[scan], &view, &o)
+        {
+            sound(&frame)?;
+        }
+    }
+
+    #[test]
+    fn clouds_of_any_size_can_be_drawn(
+        positions in prop::collection::vec(vector(of_one_size), 1..40), power in -1000..1000i32,
+        flat in 0..8u8, eye in vector(of_one_size), target in vector(of_one_size), perspective: bool, o in options(),
+    ) {
+        let k = f64::from(power).exp2();
+        // On a plane, a line or a point.
+        let squash = dvec3(f64::from(flat & 1), f64::from(flat >> 1 & 1), f64::from(flat >> 2));
+        let scan = OwnedScan::new(positions).moved(|p| p * squash * k);
+        let projection = match perspective {
+            true => Projection::Perspective { fov_y_rad: 1.0 },
+            false => Projection::Orthographic { height: 2.0 * k },
+        };
+        if let Ok(view) = View::look_at(eye * k, target * k, DVec3::Y, projection, 24, 17)
+            && let Some(frame) = frame(&[scan], &view, &o)
+        {
+            sound(&frame)?;
+        }
+    }
+}
+
+#[test]
+fn as_many_points_as_cannot_be_numbered_are_refused() {
+    let points = vec![DVec3::ZERO; 1 << 16];
+    let scans = vec![Scan::new(&points); 1 << 16];
+    assert_eq!(Cloud::new(&scans, Vec3::ONE).err(), Some(IbprError::TooManyPoints { points: 1 << 32 }));
+}
+
+#[test]
+fn a_renderer_that_refused_goes_on() {
+    let scan = OwnedScan::plane(DVec3::ZERO, DVec3::X * 0.1, DVec3::Y * 0.1, 9, 9);
+    let cloud = cloud(&[scan]).unwrap();
+    let camera = Projection::Orthographic { height: 1.0 };
+    let view = View::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, camera, 9, 9).unwrap();
+    let (mut renderer, mut frame) = (Renderer::new(), Frame::default());
+    let mut bad = Options::default();
+    bad.gamma = f32::NAN;
+    assert!(renderer.draw(&cloud, &view, &bad, &mut frame).is_err());
+    renderer.draw(&cloud, &view, &Options::default(), &mut frame).unwrap();
+    assert!(frame.colour[40][3] == 1.0);
+}

@@ -1,0 +1,179 @@
+//! Errors, one by one, and bugs that were fixed, each with the smallest input that showed it.
+
+use glam::{DAffine3, DMat3, DVec3, Vec3, dvec3};
+use pointillist_ibpr::invariants::{OwnedScan, frame, frame_is_sound};
+use pointillist_ibpr::{
+    Cloud, Culling, EyeDome, Frame, IbprError, Light, Options, Passes, Projection, Renderer, Scale, Scan,
+    Translucency, View,
+};
+
+const PERSPECTIVE: Projection = Projection::Perspective { fov_y_rad: 0.7 };
+
+fn refused(scans: &[Scan<'_>]) -> IbprError {
+    Cloud::new(scans, Vec3::ONE).expect_err("the scans are bad")
+}
+
+fn view(projection: Projection) -> View {
+    View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, projection, 32, 32).unwrap()
+}
+
+#[test]
+fn scans_without_points_are_refused() {
+    assert_eq!(refused(&[]), IbprError::NoPoints);
+    assert_eq!(refused(&[Scan::new(&[]), Scan::new(&[])]), IbprError::NoPoints);
+}
+
+#[test]
+fn a_point_that_is_not_finite_is_named() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let points = [DVec3::ZERO, dvec3(1.0, bad, 2.0)];
+        match refused(&[Scan::new(&points[..1]), Scan::new(&points)]) {
+            IbprError::PointNotFinite { scan: 1, index: 1, value } => {
+                assert_eq!(value.map(f64::to_bits), [1.0, bad, 2.0].map(f64::to_bits));
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+#[test]
+fn colours_are_checked() {
+    let points = [DVec3::ZERO, DVec3::ONE];
+    let one = [[0.5; 3]];
+    let error = refused(&[Scan::new(&points).with_colours(&one)]);
+    assert_eq!(error, IbprError::LengthMismatch { scan: 0, colours: 1, points: 2 });
+    for bad in [f32::NAN, f32::INFINITY, -0.1] {
+        let colours = [[0.5; 3], [0.1, bad, 0.2]];
+        let error = refused(&[Scan::new(&points).with_colours(&colours)]);
+        assert!(matches!(error, IbprError::BadColour { scan: 0, index: 1, .. }), "{error:?}");
+    }
+}
+
+#[test]
+fn spacings_and_directions_are_checked() {
+    let points = [DVec3::ZERO];
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = refused(&[Scan::new(&points).with_spacing(bad)]);
+        assert!(matches!(error, IbprError::BadScan { scan: 0, .. }), "{error:?}");
+    }
+    for bad in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY] {
+        let error = refused(&[Scan::new(&points), Scan::new(&points).with_scanner(bad)]);
+        assert!(matches!(error, IbprError::BadScan { scan: 1, .. }), "{error:?}");
+    }
+    let apart = [DVec3::splat(-1e308), DVec3::splat(1e308)];
+    assert!(matches!(refused(&[Scan::new(&apart)]), IbprError::BadScan { .. }));
+}
+
+#[test]
+fn views_are_checked() {
+    let at = |eye: DVec3, target: DVec3, up: DVec3, p: Projection| View::look_at(eye, target, up, p, 8, 8);
+    let bad = |result: Result<View, IbprError>| {
+        assert!(matches!(result, Err(IbprError::BadView { .. })), "{result:?}")
+    };
+    bad(at(DVec3::Z, DVec3::Z, DVec3::Y, PERSPECTIVE));
+    bad(at(DVec3::Y, DVec3::ZERO, DVec3::Y, PERSPECTIVE));
+    bad(at(DVec3::Z, DVec3::ZERO, DVec3::ZERO, PERSPECTIVE));
+    bad(at(DVec3::NAN, DVec3::ZERO, DVec3::Y, PERSPECTIVE));
+    for fov_y_rad in [0.0, -1.0, 4.0, f64::NAN] {
+        bad(at(DVec3::Z, DVec3::ZERO, DVec3::Y, Projection::Perspective { fov_y_rad }));
+    }
+    for height in [0.0, -1.0, f64::INFINITY, f64::NAN] {
+        bad(at(DVec3::Z, DVec3::ZERO, DVec3::Y, Projection::Orthographic { height }));
+    }
+    bad(View::from_matrix(DAffine3::from_mat3(DMat3::from_diagonal(DVec3::splat(2.0))), PERSPECTIVE, 8, 8));
+    bad(View::from_matrix(DAffine3::from_translation(DVec3::NAN), PERSPECTIVE, 8, 8));
+    for (width, height) in [(0, 8), (8, 0), (16385, 8), (8, u32::MAX)] {
+        let result = View::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, PERSPECTIVE, width, height);
+        assert_eq!(result, Err(IbprError::BadSize { width, height }));
+    }
+}
+
+#[test]
+fn options_are_checked_by_name() {
+    let changes: [(&str, fn(&mut Options)); 15] = [
+        ("scale factor", |o| o.scale = Scale::Auto(0.0)),
+        ("scale", |o| o.scale = Scale::Fixed(0.99)),
+        ("scale", |o| o.scale = Scale::Fixed(f32::NAN)),
+        ("gamma", |o| o.gamma = -1.0),
+        ("outline", |o| o.outline = 1.5),
+        ("fill", |o| o.fill = Options::MOST_FILL + 1),
+        ("ambient", |o| o.ambient = f32::NAN),
+        ("finer", |o| o.passes = Passes::Two { finer: 0.0 }),
+        ("alpha", |o| o.translucency = Some(Translucency::new(1.1))),
+        ("layers", |o| o.translucency = Some(Translucency { layers: 9, ..Translucency::new(0.5) })),
+        ("threshold", |o| o.translucency = Some(Translucency { threshold: 0.0, ..Translucency::new(0.5) })),
+        ("strength", |o| o.eye_dome = Some(EyeDome { strength: -1.0, radius: 1 })),
+        ("radius", |o| o.eye_dome = Some(EyeDome { strength: 1.0, radius: 65 })),
+        ("base", |o| o.base = Vec3::NAN),
+        ("light", |o| o.light = Light::Towards(DVec3::ZERO)),
+    ];
+    let cloud = Cloud::new(&[Scan::new(&[DVec3::ZERO])], Vec3::ONE).unwrap();
+    for (wanted, change) in changes {
+        let mut options = Options::default();
+        change(&mut options);
+        let result = Renderer::new().draw(&cloud, &view(PERSPECTIVE), &options, &mut Frame::default());
+        assert!(
+            matches!(result, Err(IbprError::BadOption { name, .. }) if name == wanted),
+            "{wanted}: {result:?}"
+        );
+    }
+}
+
+#[test]
+fn a_cloud_behind_the_eye_gives_an_empty_frame() {
+    let behind = OwnedScan::plane(DVec3::Z * 9.0, DVec3::X * 0.1, DVec3::Y * 0.1, 20, 20);
+    let mut options = Options::default();
+    options.surface_layers = true;
+    for projection in [PERSPECTIVE, Projection::Orthographic { height: 4.0 }] {
+        let frame = frame(std::slice::from_ref(&behind), &view(projection), &options).unwrap();
+        frame_is_sound(&frame).unwrap();
+        assert!(
+            frame.depth.iter().all(|d| *d == f32::INFINITY) && frame.colour.iter().all(|c| *c == [0.0; 4])
+        );
+        assert_eq!(frame.counts.points, 0);
+    }
+}
+
+/// The automatic scale was that of the blocks left over by culling, and so culling changed the picture.
+#[test]
+fn the_automatic_scale_does_not_depend_on_culling() {
+    let scans = [DVec3::Z, -DVec3::Z].map(|d| OwnedScan::sphere(DVec3::ZERO, 1.0, 0.02, d));
+    let scale = |culling| {
+        let mut options = Options::default();
+        (options.culling, options.scale) = (culling, Scale::Auto(4.0));
+        let frame = frame(&scans, &view(PERSPECTIVE), &options).unwrap();
+        assert!(culling == Culling::None || frame.counts.points_skipped > 0, "{:?}", frame.counts);
+        frame.counts.scale
+    };
+    assert_eq!(scale(Culling::None), scale(Culling::Blocks));
+}
+
+/// A block without a cone went by its scan, whose steepest points touch the rim from behind at 165°.
+#[test]
+fn blocks_without_a_cone_are_kept() {
+    // One row of points spans no plane, and so has no cone.
+    let row = OwnedScan::plane(DVec3::ZERO, DVec3::X * 0.1, DVec3::ZERO, 30, 1);
+    let row = OwnedScan { towards_scanner: Some(-DVec3::Z), ..row };
+    let drawn = frame(&[row], &view(PERSPECTIVE), &Options::default()).unwrap();
+    assert_eq!(drawn.counts.points, 30);
+}
+
+/// Squares of distances near 1e300 made the spacing of all scans infinite.
+#[test]
+fn spacings_of_huge_clouds_are_finite() {
+    let points = [DVec3::ZERO, DVec3::ZERO, DVec3::Z * 1e300];
+    let cloud = Cloud::new(&[Scan::new(&points)], Vec3::ONE).unwrap();
+    assert!(cloud.density_spacing().is_finite(), "{}", cloud.density_spacing());
+}
+
+/// The outline of a surface that cuts the eye's plane reached behind it.
+#[test]
+fn no_depth_is_behind_the_eye() {
+    let steep = OwnedScan::plane(DVec3::Z * 4.8, dvec3(0.2, 0.0, 0.19), DVec3::Y * 0.2, 3, 9);
+    let mut options = Options::default();
+    (options.scale, options.outline) = (Scale::Fixed(3.0), 1.0);
+    let frame = frame(&[steep], &view(Projection::Orthographic { height: 2.0 }), &options).unwrap();
+    frame_is_sound(&frame).unwrap();
+    let touches = |d: &f32| *d < 0.02;
+    assert!(frame.depth.iter().any(touches), "the surface comes near the eye");
+}
