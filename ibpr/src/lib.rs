@@ -1,4 +1,46 @@
-//! Raw range scans, drawn directly.
+//! Raw range scans drawn directly: noisy, overlapping, without normals and without preparation.
+//!
+//! ```
+//! use glam::{DVec3, Vec3, dvec3};
+//! use pointillist_ibpr::{Cloud, Frame, Options, Projection, Renderer, Scan, View};
+//!
+//! // A sheet of 100 × 100 points, one unit apart, seen from 200 units away.
+//! let points: Vec<DVec3> = (0..10_000).map(|i| dvec3((i % 100) as f64, (i / 100) as f64, 0.0)).collect();
+//! let cloud = Cloud::new(&[Scan::new(&points)], Vec3::ONE)?;
+//! assert_eq!(cloud.spacing(), 1.0);
+//! let (eye, target) = (dvec3(49.5, 49.5, 200.0), dvec3(49.5, 49.5, 0.0));
+//! let view = View::look_at(eye, target, DVec3::Y, Projection::Perspective { fov_y_rad: 0.4 }, 64, 64)?;
+//! let mut frame = Frame::default();
+//! Renderer::new().draw(&cloud, &view, &Options::default(), &mut frame)?;
+//! let middle = 32 * 64 + 32;
+//! assert!((frame.depth[middle] - 200.0).abs() < 1e-3);
+//! assert_eq!(frame.colour[middle][3], 1.0);
+//! # Ok::<(), pointillist_ibpr::IbprError>(())
+//! ```
+//!
+//! # How a frame is made
+//! 1. Blocks outside the view, or that face away, are skipped whole ([`Culling`]).
+//! 2. Points are projected into a buffer at picture/S ([`Scale`]); the points of a pixel within γ of its
+//!    nearest one are averaged ([`Weighting`]).
+//! 3. Gaps between pixels of one surface are filled by pull-push ([`Options::fill`]).
+//! 4. Surfaces are fitted to windows of averages ([`Normals`]).
+//! 5. Neighbouring averages make faces, drawn at the picture's size ([`Options::outline`]), lit, and written
+//!    as layers ([`Frame`]).
+//!
+//! # Accuracy and cost
+//! Positions are `f64` relative to their block, then `f32` in units of the cloud's size; depth is kept relative to the
+//! middle of the cloud. Sums run in the cloud's own order, so a picture does not depend on the order of the
+//! input or on threads. Time goes into the picture's faces and the buffer's fits more than into points:
+//! `studies/results/ibpr.md` has time against error for every option, and the paper's own times beside ours.
+//!
+//! # Features
+//! `rayon` (default): bands of the picture on all cores; results do not change. `invariants`: the checks
+//! that tests and fuzzing share.
+//!
+//! # References
+//! \[1\] The paper on image-based point rendering (IBPR) of several range scans: buffer, γ, eight
+//! triangles, two passes, layers. \[2\] J. P. Grossman and W. J. Dally, *Point Sample Rendering*, 1998: pull-push.
+//! \[3\] C. Boucheny, 2009, §4.4: eye-dome lighting.
 #![forbid(unsafe_code)]
 
 mod accumulate;

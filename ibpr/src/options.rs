@@ -115,7 +115,7 @@ pub struct Options {
     pub weighting: Weighting,
     /// Default: [`Normals::Plane`].
     pub normals: Normals,
-    /// How far faces reach beyond the outermost means, in buffer pixels; 0 as printed. Default: 0.35.
+    /// How far faces reach beyond the outermost means, in buffer pixels; 0 as printed. Default: 0.3.
     pub outline: f32,
     /// Levels of pull-push: gaps of less than 2^levels pixels are filled; of
     /// translucent frames only gaps of one pixel, at any level above 0. Default: 2.
@@ -161,10 +161,10 @@ impl Default for Options {
 
 impl Options {
     /// Factor of [`Scale::Auto`] by default, found by experiment (`studies -- ibpr`).
-    pub const AUTO_FACTOR: f32 = 1.3;
+    pub const AUTO_FACTOR: f32 = 1.2;
 
     /// Default of [`Options::outline`], found by experiment (`studies -- ibpr`).
-    pub const OUTLINE: f32 = 0.35;
+    pub const OUTLINE: f32 = 0.3;
 
     /// Most levels of pull-push.
     pub const MOST_FILL: u32 = 6;

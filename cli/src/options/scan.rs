@@ -69,7 +69,7 @@ pub struct SurfaceOptions {
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
     pub passes: u8,
     /// With two passes, size of the finer buffer's pixels relative to the normal one's
-    #[arg(long, value_name = "F", default_value_t = 0.75, value_parser = values::positive)]
+    #[arg(long, value_name = "F", default_value_t = 0.83, value_parser = values::positive)]
     pub finer: f64,
     /// Opacity of surfaces, 0 to 1: draws them translucent
     #[arg(long, value_name = "A")]

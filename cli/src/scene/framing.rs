@@ -53,8 +53,8 @@ fn corners(mesh: &Mesh) -> impl Iterator<Item = DVec3> + '_ {
 }
 
 fn middle(points: impl Iterator<Item = DVec3>) -> DVec3 {
-    let around = points
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let around =
+        points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     // Halved before adding: the sum of two finite numbers may be infinite.
     let middle = around.0 * 0.5 + around.1 * 0.5;
     if middle.is_finite() { middle } else { DVec3::ZERO }
@@ -74,9 +74,7 @@ fn distance(camera: &Camera, points: impl Iterator<Item = DVec3>, aspect: f64) -
             let tan_x = tan_y * aspect;
             points.map(reach).map(|(x, y, z)| z + (x / tan_x).max(y / tan_y)).fold(0.0, f64::max)
         }
-        Projection::Orthographic { height } => {
-            points.map(reach).map(|(_, _, z)| z).fold(height, f64::max)
-        }
+        Projection::Orthographic { height } => points.map(reach).map(|(_, _, z)| z).fold(height, f64::max),
     };
     let distance = MARGIN * needed;
     if distance.is_finite() && distance > 0.0 { distance } else { 1.0 }
