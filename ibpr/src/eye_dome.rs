@@ -10,6 +10,9 @@ use crate::parallel::*;
 /// Factor of the exponent that makes a strength of 1 usual.
 const GAIN: f32 = 300.0;
 
+/// More than any two depths differ by that are not 0: without it, a depth of 0 would give 0 · ∞.
+const MOST: f32 = 300.0;
+
 /// Darkens the colours of a finished frame.
 pub(crate) fn apply(frame: &mut Frame, dome: &EyeDome) {
     let (width, height) = (frame.width, frame.height);
@@ -25,10 +28,10 @@ pub(crate) fn apply(frame: &mut Frame, dome: &EyeDome) {
             let behind = |(dx, dy): (isize, isize)| {
                 let (i, j) = (x.checked_add_signed(dx)?, y.checked_add_signed(dy)?);
                 let there = (i < width && j < height).then(|| depth[j * width + i])?;
-                (there < here).then(|| (here / there).log2())
+                (there < here).then(|| (here / there).log2().min(MOST))
             };
             let sum: f32 = around.into_iter().filter_map(behind).sum();
-            let shade = (-GAIN * dome.strength * sum / 8.0).exp();
+            let shade = (-GAIN * (dome.strength * sum / 8.0)).exp();
             for c in &mut pixel[..3] {
                 *c *= shade;
             }

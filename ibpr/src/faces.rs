@@ -159,9 +159,9 @@ fn surface_of(first: usize, valid: usize, joined: [bool; 4]) -> usize {
     let mut group = 1 << first;
     // Three rounds reach every corner of a ring of four.
     for _ in 0..3 {
-        for k in 0..4 {
+        for (k, joined) in joined.into_iter().enumerate() {
             let pair = 1 << k | 1 << ((k + 1) % 4);
-            if joined[k] && group & pair != 0 {
+            if joined && group & pair != 0 {
                 group |= pair & valid;
             }
         }

@@ -174,25 +174,28 @@ pub fn frame_is_sound(frame: &Frame) -> Result<(), String> {
         check(c.iter().all(|v| *v >= 0.0 && v.is_finite()), place)?;
         check(c[3] <= 1.0 + TOLERANCE, place)?;
         check(depth >= 0.0, place)?;
-        check(depth == f32::INFINITY || c[3] > 0.0, place)?;
         if let (Some(n), Some(count)) = (frame.normal.get(i), frame.count.get(i)) {
             let place = || format!("{}, normal {n:?}, count {count}", place());
             let length = Vec3::from_array(*n).length();
             // A surface so far away that f32 has no number for its depth still has a normal.
             let is = |wanted: f32| (length - wanted).abs() <= TOLERANCE;
-            check(if depth < f32::INFINITY { is(1.0) } else { is(0.0) || c[3] > 0.0 && is(1.0) }, place)?;
+            check(is(1.0) || depth == f32::INFINITY && is(0.0), place)?;
             check(*count >= 0.0 && count.is_finite(), place)?;
         }
     }
     Ok(())
 }
 
-/// Any input gives a sound frame or a typed error.
+/// Any input gives a sound frame or a typed error; what is opaque has depth only where it covers.
 ///
 /// # Errors
 /// As [`frame_is_sound`].
 pub fn frames_are_sound(scans: &[OwnedScan], view: &View, options: &Options) -> Result<(), String> {
-    frame(scans, view, options).map_or(Ok(()), |f| frame_is_sound(&f))
+    let Some(frame) = frame(scans, view, options) else { return Ok(()) };
+    let uncovered = frame.colour.iter().zip(&frame.depth).any(|(c, d)| c[3] < 0.5 && *d < f32::INFINITY);
+    let opaque = options.translucency.is_none();
+    check(!(opaque && uncovered), || "depth where less than half a pixel is covered".to_owned())?;
+    frame_is_sound(&frame)
 }
 
 /// The order of scans and of their points does not show.

@@ -52,10 +52,12 @@ mod error;
 mod eye_dome;
 mod faces;
 mod fill;
+mod fit;
 mod frame;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod layers;
+mod noise;
 mod normals;
 mod options;
 mod order;

@@ -9,6 +9,7 @@ use crate::eye_dome;
 use crate::faces::{self, FaceRules};
 use crate::fill::{self, FillScratch};
 use crate::frame::{Frame, FrameCounts};
+use crate::noise::Histogram;
 use crate::normals;
 use crate::options::{Culling, Options, Passes, Scale};
 use crate::parallel::*;
@@ -39,7 +40,7 @@ pub struct Renderer {
 struct Pass {
     views: Vec<BlockView>,
     buffer: Buffer,
-    noise: normals::Histogram,
+    noise: Histogram,
 }
 
 impl Renderer {

@@ -51,7 +51,7 @@ impl View {
         if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
             return bad("eye, target and up must be finite");
         }
-        let Some(forward) = (target - eye).try_normalize() else {
+        let Some(forward) = unit_vector(target - eye) else {
             return bad("eye and target coincide");
         };
         Self::with_axes(eye, forward, up, projection, width, height)
@@ -85,7 +85,7 @@ impl View {
         height: u32,
     ) -> Result<Self, IbprError> {
         let bad = |reason| Err(IbprError::BadView { reason });
-        let Some(right) = forward.cross(up.normalize_or_zero()).try_normalize() else {
+        let Some(right) = unit_vector(up).and_then(|up| forward.cross(up).try_normalize()) else {
             return bad("up is zero or parallel to the view direction");
         };
         let good = match projection {
@@ -151,6 +151,11 @@ impl View {
             Projection::Orthographic { .. } => self.focal_px(),
         }
     }
+}
+
+/// Also of vectors whose squared length is no number of f64.
+fn unit_vector(v: DVec3) -> Option<DVec3> {
+    (v / v.abs().max_element()).try_normalize()
 }
 
 /// The map from the world to a buffer of the picture's shape with pixels of `scale` picture pixels.
