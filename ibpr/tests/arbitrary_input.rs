@@ -1,7 +1,7 @@
 //! Any values at all into every public function: an answer or a typed error, never a panic or NaN.
 
 use glam::{DAffine3, DMat3, DVec3, Vec3, dvec3};
-use pointillist_ibpr::invariants::{OwnedScan, cloud, frame, frame_is_sound};
+use pointillist_ibpr::invariants::{self, OwnedScan, cloud};
 use pointillist_ibpr::{
     Cloud, EyeDome, Frame, IbprError, Light, Options, Passes, Projection, Renderer, Scale, Scan,
     Translucency, View, Weighting,
@@ -82,10 +82,6 @@ fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig { cases, failure_persistence: Some(Box::new(file)), ..ProptestConfig::default() }
 }
 
-fn sound(frame: &Frame) -> Result<(), TestCaseError> {
-    frame_is_sound(frame).map_err(TestCaseError::fail)
-}
-
 proptest! {
     #![proptest_config(cases(512))]
 
@@ -126,9 +122,8 @@ proptest! {
     ) {
         let scan = OwnedScan { spacing: spacing.map(f64::from), ..OwnedScan::new(positions) };
         if let Ok(view) = View::look_at(eye, target, DVec3::Y, p, w, h)
-            && let Some(frame) = frame(&[scan], &view, &o)
         {
-            sound(&frame)?;
+            invariants::frames_are_sound(&[scan], &view, &o).map_err(TestCaseError::fail)?;
         }
     }
 
@@ -146,9 +141,8 @@ proptest! {
             false => Projection::Orthographic { height: 2.0 * k },
         };
         if let Ok(view) = View::look_at(eye * k, target * k, DVec3::Y, projection, 24, 17)
-            && let Some(frame) = frame(&[scan], &view, &o)
         {
-            sound(&frame)?;
+            invariants::frames_are_sound(&[scan], &view, &o).map_err(TestCaseError::fail)?;
         }
     }
 }

@@ -177,3 +177,26 @@ fn no_depth_is_behind_the_eye() {
     let touches = |d: &f32| *d < 0.02;
     assert!(frame.depth.iter().any(touches), "the surface comes near the eye");
 }
+
+/// A strength near f32's largest number overflowed before it was multiplied by a step of 0.
+#[test]
+fn eye_dome_lighting_of_any_strength_gives_numbers() {
+    let plane = OwnedScan::plane(DVec3::ZERO, DVec3::X * 0.1, DVec3::Y * 0.1, 20, 20);
+    for strength in [0.0, 1.0, 1e38] {
+        let mut options = Options::default();
+        options.eye_dome = Some(EyeDome { strength, radius: 1 });
+        let drawn = frame(std::slice::from_ref(&plane), &view(PERSPECTIVE), &options).unwrap();
+        frame_is_sound(&drawn).unwrap();
+        assert!(drawn.colour[16 * 32 + 16][0] > 0.5, "a flat surface stays bright");
+    }
+}
+
+/// The square of a tiny distance from eye to target has few digits, and so the view had no unit axes.
+#[test]
+fn views_of_tiny_and_huge_scenes_have_unit_axes() {
+    for k in [1e-300, 1e-160, 1.0, 1e160, 1e300] {
+        let view = View::look_at(DVec3::Z * k, dvec3(0.3 * k, 0.2 * k, 0.0), DVec3::Y * k, PERSPECTIVE, 8, 8)
+            .unwrap();
+        assert!((view.forward().length() - 1.0).abs() < 1e-12, "{k}: {view:?}");
+    }
+}
