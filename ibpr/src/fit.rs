@@ -112,7 +112,8 @@ impl Window {
     /// D, with the right side carried along, (3) what is not explained, (4) back substitution.
     #[inline(always)]
     fn solve(&self) -> [Fit; LANES] {
-        let mut m = self.lower();
+        let mut m = [[[0.0; LANES]; TERMS]; TERMS];
+        self.fill_lower(&mut m);
         let good = self.spans_plane();
         let mut rhs = self.right;
         decompose(&mut m, &mut rhs);
@@ -130,8 +131,7 @@ impl Window {
     }
 
     #[inline(always)]
-    fn lower(&self) -> Matrix {
-        let mut m = [[[0.0; LANES]; TERMS]; TERMS];
+    fn fill_lower(&self, m: &mut Matrix) {
         let mut pair = 0;
         for i in 0..TERMS {
             for row in &mut m[i..] {
@@ -145,7 +145,6 @@ impl Window {
                 *v += STIFFNESS * w;
             }
         }
-        m
     }
 
     /// Whether the points of each lane are not all on a line.
