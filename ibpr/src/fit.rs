@@ -20,21 +20,21 @@ type Lane = [f32; LANES];
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Fit {
     pub(crate) slope: [f32; 2],
-    /// Mean square distance of the averaged points from the surface, along the view.
+    /// Mean square distance of the averaged points from the surface, along the view; 0 if not asked for.
     pub(crate) residual: f32,
     pub(crate) good: bool,
 }
 
-/// The fits of [`LANES`] neighbouring pixels, compiled once more for each kind of vector instructions: the
+/// The fits of [`LANES`] neighbouring pixels, with their residuals or without, compiled once more for each kind of vector instructions: the
 /// same operations in the same order, so results do not change.
-pub(crate) struct Chunk<'a> {
+pub(crate) struct Chunk<'a, const RESIDUAL: bool> {
     pub(crate) b: &'a Buffer,
     pub(crate) first: usize,
     pub(crate) scale: &'a DepthScale,
     pub(crate) radius: usize,
 }
 
-impl NullaryFnOnce for Chunk<'_> {
+impl<const RESIDUAL: bool> NullaryFnOnce for Chunk<'_, RESIDUAL> {
     type Output = [Fit; LANES];
 
     // A closure would not be inlined into the vectorised caller, and what is not inlined stays narrow.
@@ -44,7 +44,7 @@ impl NullaryFnOnce for Chunk<'_> {
         for (s, q) in step.iter_mut().zip(&self.b.q[self.first..self.first + LANES]) {
             *s = self.scale.bent_step(*q, STEP);
         }
-        sum_window(self.b, self.first, &step, self.radius as isize).solve()
+        sum_window(self.b, self.first, &step, self.radius as isize).solve::<RESIDUAL>()
     }
 }
 
@@ -111,14 +111,14 @@ impl Window {
     /// Least squares for all lanes at once, by LDLᵀ: (1) the lower half of the normal equations, (2) L and
     /// D, with the right side carried along, (3) what is not explained, (4) back substitution.
     #[inline(always)]
-    fn solve(&self) -> [Fit; LANES] {
+    fn solve<const RESIDUAL: bool>(&self) -> [Fit; LANES] {
         let mut m = [[[0.0; LANES]; TERMS]; TERMS];
         self.fill_lower(&mut m);
         let good = self.spans_plane();
         let mut rhs = self.right;
         decompose(&mut m, &mut rhs);
         let mut fits = [Fit::default(); LANES];
-        for (k, fit) in fits.iter_mut().enumerate() {
+        for (k, fit) in fits.iter_mut().enumerate().filter(|_| RESIDUAL) {
             let explained: f32 = (0..TERMS).map(|i| rhs[i][k] * rhs[i][k] * m[i][i][k]).sum();
             fit.residual = ((self.qq[k] - explained) / self.left[0][k]).max(0.0);
         }
@@ -172,28 +172,29 @@ type Matrix = [[Lane; TERMS]; TERMS];
 const CURVED: usize = 3;
 
 /// `m` becomes L with D on the diagonal, `rhs` becomes D⁻¹·L⁻¹·rhs.
+///
+/// Lanes are the innermost loops: those are the ones that the compiler makes vectors of.
 #[inline(always)]
 #[expect(clippy::needless_range_loop, reason = "i, j, l are the rows and columns of the equations")]
 fn decompose(m: &mut Matrix, rhs: &mut [Lane; TERMS]) {
     for i in 0..TERMS {
+        // D·L of this row, which every entry needs.
+        let mut scaled = [[0.0; LANES]; TERMS];
         for j in 0..i {
-            for k in 0..LANES {
-                let mut v = m[i][j][k];
-                for l in 0..j {
-                    v -= m[i][l][k] * m[j][l][k] * m[l][l][k];
-                }
-                m[i][j][k] = v / m[j][j][k];
+            let mut v = m[i][j];
+            for l in 0..j {
+                v = minus_product(v, &scaled[l], &m[j][l]);
             }
+            scaled[j] = v;
+            m[i][j] = lanes(|k| v[k] / m[j][j][k]);
         }
-        for k in 0..LANES {
-            let (mut v, mut r) = (m[i][i][k], rhs[i][k]);
-            for l in 0..i {
-                v -= m[i][l][k] * m[i][l][k] * m[l][l][k];
-                r -= m[i][l][k] * rhs[l][k] * m[l][l][k];
-            }
-            m[i][i][k] = v;
-            rhs[i][k] = r / v;
+        let (mut v, mut r) = (m[i][i], rhs[i]);
+        for l in 0..i {
+            v = minus_product(v, &m[i][l], &scaled[l]);
+            r = minus_product(r, &rhs[l], &scaled[l]);
         }
+        m[i][i] = v;
+        rhs[i] = lanes(|k| r[k] / v[k]);
     }
 }
 
@@ -201,10 +202,19 @@ fn decompose(m: &mut Matrix, rhs: &mut [Lane; TERMS]) {
 #[inline(always)]
 fn substitute_back(m: &Matrix, rhs: &mut [Lane; TERMS]) {
     for i in (0..TERMS).rev() {
-        for k in 0..LANES {
-            for l in i + 1..TERMS {
-                rhs[i][k] -= m[l][i][k] * rhs[l][k];
-            }
+        for l in i + 1..TERMS {
+            rhs[i] = minus_product(rhs[i], &m[l][i], &rhs[l]);
         }
     }
+}
+
+#[inline(always)]
+fn lanes(value: impl Fn(usize) -> f32) -> Lane {
+    std::array::from_fn(value)
+}
+
+/// v − a·b
+#[inline(always)]
+fn minus_product(v: Lane, a: &Lane, b: &Lane) -> Lane {
+    lanes(|k| v[k] - a[k] * b[k])
 }

@@ -31,7 +31,7 @@ pub(crate) fn radius_for_noise(
             if b.count[first..first + LANES].iter().all(|c| *c == 0.0) {
                 continue;
             }
-            let fits = arch.dispatch(Chunk { b, first, scale, radius: 1 });
+            let fits = arch.dispatch(Chunk::<true> { b, first, scale, radius: 1 });
             for (k, fit) in fits.iter().enumerate().filter(|(_, f)| f.good) {
                 let pixel = scale.footprint * (1.0 - scale.bend * b.q[first + k]);
                 histogram.add((fit.residual / LEFT_OVER).sqrt() / pixel);

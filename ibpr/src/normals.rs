@@ -106,7 +106,7 @@ fn plane_row(b: &Buffer, start: usize, camera: &Camera, fitting: &Fitting, out: 
             continue;
         }
         // The last chunk also fits what lies beyond the row, and drops it.
-        let fit = |radius| fitting.arch.dispatch(Chunk { b, first, scale: &fitting.scale, radius });
+        let fit = |radius| fitting.arch.dispatch(Chunk::<false> { b, first, scale: &fitting.scale, radius });
         let mut fits = fit(fitting.radius);
         if counts.iter().zip(&fits).any(|(count, fit)| *count > 0.0 && !fit.good) {
             for (fit, wider) in fits.iter_mut().zip(fit(fitting.radius + 1)).filter(|(fit, _)| !fit.good) {

@@ -68,23 +68,20 @@ impl<P: Pixels> Strip<P> {
         let centre = (i64::from(left) * STEP + i64::from(HALF), i64::from(top) * STEP + i64::from(HALF));
         let edges = [Edge::new(b, c, centre), Edge::new(c, a, centre), Edge::new(a, b, centre)];
         let inverse = 1.0 / area as f32;
-        let mut row = edges.map(|e| e.value);
+        let [e, f, g] = &edges;
+        let mut row = [e.value, f.value, g.value];
         for y in top..=bottom {
-            let mut at = row;
+            let [mut p, mut q, mut r] = row;
             let base = (y as usize - self.first_row) * self.width;
             for x in left..=right {
-                let inside = at.iter().zip(&edges).all(|(v, e)| v + e.bias >= 0);
-                if inside {
-                    let weights = [at[1] as f32 * inverse, at[2] as f32 * inverse];
+                // Inside where no value is negative: one look at three signs.
+                if (p | q | r) >= 0 {
+                    let weights = [(q - f.bias) as f32 * inverse, (r - g.bias) as f32 * inverse];
                     self.put::<RIM>(base + x as usize, [a, b, c], weights, paints);
                 }
-                for (v, e) in at.iter_mut().zip(&edges) {
-                    *v += e.right;
-                }
+                (p, q, r) = (p + e.right, q + f.right, r + g.right);
             }
-            for (v, e) in row.iter_mut().zip(&edges) {
-                *v += e.down;
-            }
+            row = [row[0] + e.down, row[1] + f.down, row[2] + g.down];
         }
     }
 
@@ -114,7 +111,7 @@ impl<P: Pixels> Strip<P> {
     }
 }
 
-/// Twice the area of the triangle of an edge and a pixel's centre, in square steps.
+/// Twice the area of the triangle of an edge and a pixel's centre, in square steps, plus the bias.
 #[derive(Clone, Copy)]
 struct Edge {
     value: i64,
@@ -131,6 +128,7 @@ impl Edge {
         let value = dx * (centre.1 - i64::from(from.y)) - dy * (centre.0 - i64::from(from.x));
         let top_left = dy < 0 || (dy == 0 && dx > 0);
         let step = SUBPIXEL as i64;
-        Self { value, right: -dy * step, down: dx * step, bias: if top_left { 0 } else { -1 } }
+        let bias = if top_left { 0 } else { -1 };
+        Self { value: value + bias, right: -dy * step, down: dx * step, bias }
     }
 }
