@@ -1,0 +1,55 @@
+//! What can be wrong.
+
+/// What can be wrong with a mesh or with what is asked of it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SurfelError {
+    /// A position is NaN or infinite.
+    #[error("position {index} is not finite")]
+    NotFinite {
+        /// Its number in the list of positions.
+        index: usize,
+    },
+    /// A triangle refers to a position that does not exist.
+    #[error("triangle {triangle} refers to position {index}, and there are {count}")]
+    IndexOutOfRange {
+        /// Its number in the list of triangles.
+        triangle: usize,
+        /// What it refers to.
+        index: u32,
+        /// How many positions there are.
+        count: usize,
+    },
+    /// There is nothing to put points on: no triangle has an area, or the sum is beyond the range of numbers, which is
+    /// 1e-280 to 1e280.
+    #[error("the triangles have an area of {area}; points need one from 1e-280 to 1e280")]
+    NoArea {
+        /// The sum of all areas.
+        area: f64,
+    },
+    /// No points are asked for.
+    #[error("a count of 0 points; at least 1 is needed")]
+    ZeroCount,
+    /// The spacing is not a length.
+    #[error("a spacing of {spacing}; it must be finite and more than 0")]
+    BadSpacing {
+        /// As given.
+        spacing: f64,
+    },
+    /// More points than [`crate::MAX_COUNT`].
+    #[error("about {count:.3e} points are asked for, and at most {most} can be made")]
+    TooMany {
+        /// How many there would be.
+        count: f64,
+        /// How many there may be.
+        most: usize,
+    },
+    /// The mesh is too long for so fine a grid of rays.
+    #[error("the mesh is {cells:.3e} spacings long, and a grid has at most {most} rays a side")]
+    TooFine {
+        /// Rays along the longest side.
+        cells: f64,
+        /// How many there may be.
+        most: u32,
+    },
+}
