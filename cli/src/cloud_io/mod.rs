@@ -17,12 +17,14 @@ mod las_check;
 mod las_file;
 mod number;
 mod ply;
+mod ply_write;
 mod source;
 mod xyz;
 
 pub use block::{CloudBlock, CloudOptions, CloudSummary, MAX_BLOCK_POINTS, RangeGrid};
 pub use conf::{Conf, ConfScan, Pose, read_conf, read_conf_bytes};
 pub use format::CloudFormat;
+pub use ply_write::{CloudPoint, PlyEncoding, write_ply};
 
 use crate::input_error::InputError;
 use block::{Gather, Stop};

@@ -8,6 +8,7 @@ mod info;
 mod merge;
 mod render;
 mod report;
+mod sample;
 mod scan;
 
 use crate::error::CliError;
@@ -23,6 +24,7 @@ pub fn run(cli: &Cli) -> Result<(), CliError> {
     match &cli.command {
         Command::Render(options) => render::run(options),
         Command::Scan(options) => scan::run(options),
+        Command::Sample(options) => sample::run(options),
         Command::Dice(options) => dice::run(options),
         Command::Compare(options) => compare::run(options),
         Command::Info(options) => info::run(options),

@@ -2,11 +2,13 @@
 
 mod common;
 mod render;
+mod sample;
 mod scan;
 mod values;
 
 pub use common::{Common, Progressive, TextOutput};
 pub use render::{CameraOptions, LayerRequest, RenderOptions};
+pub use sample::{SampleMethod, SampleOptions};
 pub use scan::{ScanLayerRequest, ScanOptions, ShadingOptions, SurfaceOptions};
 pub use values::{Tile, Vector};
 
@@ -54,6 +56,15 @@ pub enum Command {
         pointillist scan bun.conf sphere.obj --alpha 0.4 -o inside.png\n  \
         pointillist scan bun.conf -o bunny.exr --layers all --float")]
     Scan(ScanOptions),
+    /// Turn a mesh into points with normals, colours and radii
+    ///
+    /// Each point stands for a disc; together the discs cover the surface. Normals are interpolated, colours come from materials
+    /// and textures.
+    #[command(after_help = "Examples:\n  \
+        pointillist sample bunny.ply --count 362272 -o cloud.ply\n  \
+        pointillist sample house.obj --spacing 0.01 --method ldi -o house.ply\n  \
+        pointillist sample house.toml --count 50000 --seed 7 --ascii -o house.ply")]
+    Sample(SampleOptions),
     /// Cut polygons by a grid: JSON lines in, JSON lines out
     #[command(after_help = "Example:\n  \
         echo '{\"polygon\":[[0.5,0.5],[1.5,0.5],[1.5,1.5],[0.5,1.5]]}' | pointillist dice --areas")]

@@ -1,0 +1,132 @@
+//! `sample`.
+
+use super::Report;
+use crate::cloud_io::{CloudPoint, PlyEncoding, write_ply};
+use crate::error::CliError;
+use crate::image_io::write_atomically;
+use crate::input_error::InputError;
+use crate::memory;
+use crate::options::SampleOptions;
+use crate::scene::{self, NONE, Overrides, Scene, srgb_from_linear};
+use glam::{DVec3, Vec3};
+use pointillist_surfel::{Amount, Method, SurfacePoint, SurfelError, sample};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+
+pub(super) fn run(options: &SampleOptions) -> Result<(), CliError> {
+    let report = Report::new(&options.common)?;
+    let output = output_path(options);
+    if output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("ply")) {
+        return Err(CliError::Usage(format!("`{}`: a cloud's name ends in .ply", output.display())));
+    }
+    check_memory(options)?;
+    let scene = report.stats.stage("load", || scene::load(&options.model, &overrides(options)))?;
+    scene.warnings.iter().for_each(|warning| report.warn(warning));
+    if scene.materials.iter().any(|m| m.opacity_map.is_some() || m.surface.opacity < 1.0) {
+        report.warn("opacity has no place in the cloud: what can be seen through becomes solid");
+    }
+    let points = report.stats.stage("sample", || {
+        sample(&scene.mesh.positions, &scene.mesh.triangles, &options.sampler())
+            .map_err(|error| refusal(&options.model, error))
+    })?;
+    if points.is_empty() {
+        report.warn("no ray meets the model; try a smaller --spacing, or --method poisson");
+    }
+    let cloud: Vec<CloudPoint> =
+        report.stats.stage("attributes", || points.par_iter().map(|p| with_attributes(&scene, p)).collect());
+    let encoding = if options.ascii { PlyEncoding::Ascii } else { PlyEncoding::Binary };
+    report.stats.stage("write", || {
+        write_atomically(&output, |file| write_ply(file, &cloud, encoding))
+            .map_err(|error| CliError::writing(&output.display().to_string(), &error))
+    })?;
+    report.stats.count("triangles", scene.mesh.triangles.len() as u64);
+    report.stats.count("points", cloud.len() as u64);
+    let seconds = report.stats.elapsed().as_secs_f64();
+    report.note(&format!("{}: {} points in {seconds:.2} s", output.display(), cloud.len()));
+    report.finish()
+}
+
+/// `bunny.obj` gives `bunny.points.ply`, which cannot be the model itself.
+fn output_path(options: &SampleOptions) -> PathBuf {
+    let own = || {
+        let stem = options.model.file_stem().filter(|_| options.model != Path::new("-"));
+        let mut name = stem.unwrap_or("model".as_ref()).to_owned();
+        name.push(".points.ply");
+        PathBuf::from(name)
+    };
+    options.output.clone().unwrap_or_else(own)
+}
+
+/// A mesh alone has no say about shading: it gets smooth normals where its file has none.
+fn overrides(options: &SampleOptions) -> Overrides {
+    let is_mesh = options
+        .model
+        .extension()
+        .is_some_and(|e| ["obj", "ply"].iter().any(|kind| e.eq_ignore_ascii_case(kind)));
+    let smooth = is_mesh.then(|| ("sample".to_owned(), "render.shading=phong".to_owned()));
+    let given = options.set.iter().map(|assignment| ("--set".to_owned(), assignment.clone()));
+    Overrides { assignments: smooth.into_iter().chain(given).collect() }
+}
+
+/// Whether the model or an option is to blame.
+fn refusal(model: &Path, error: SurfelError) -> CliError {
+    match error {
+        SurfelError::NoArea { .. } => InputError::of_file(model.display().to_string(), error.to_string())
+            .with_help("check that its triangles are not all lines or points")
+            .into(),
+        _ => CliError::Usage(error.to_string()),
+    }
+}
+
+/// Refuses a count that memory cannot hold, before anything is computed.
+fn check_memory(options: &SampleOptions) -> Result<(), CliError> {
+    // Measured: a point of blue noise goes through five candidates of 104 bytes, their weights and their places.
+    let (bytes, count) = match options.sampler() {
+        s if s.method == Method::Poisson => (1500, s.amount),
+        s => (400, s.amount),
+    };
+    let (Amount::Count(count), Some(available)) = (count, memory::available_bytes()) else { return Ok(()) };
+    let needed = count as u128 * bytes;
+    if needed <= u128::from(available) {
+        return Ok(());
+    }
+    let (needed, available) = (memory::human(needed), memory::human(u128::from(available)));
+    Err(CliError::Usage(format!("--count {count} takes {needed} of memory, and {available} are available")))
+}
+
+fn with_attributes(scene: &Scene, point: &SurfacePoint) -> CloudPoint {
+    CloudPoint {
+        position: point.position,
+        normal: normal(scene, point).as_vec3(),
+        color: color(scene, point).to_array().map(encoded),
+        radius: point.radius,
+    }
+}
+
+/// The interpolated normal, or the triangle's own where there is none.
+fn normal(scene: &Scene, point: &SurfacePoint) -> DVec3 {
+    let corners = scene.mesh.normal_of[point.triangle as usize];
+    if corners.contains(&NONE) {
+        return point.normal;
+    }
+    let normals = corners.map(|n| scene.mesh.normals[n as usize].as_dvec3());
+    point.interpolate(normals).try_normalize().unwrap_or(point.normal)
+}
+
+/// Linear diffuse colour: the material's, times its map's where it has one.
+fn color(scene: &Scene, point: &SurfacePoint) -> Vec3 {
+    let triangle = point.triangle as usize;
+    let material = &scene.materials[scene.mesh.material_of[triangle] as usize];
+    let corners = scene.mesh.uv_of[triangle];
+    match material.diffuse_map {
+        Some(map) if !corners.contains(&NONE) => {
+            let uv = point.interpolate(corners.map(|i| scene.mesh.uvs[i as usize]));
+            material.surface.diffuse * scene.textures[map].lookup(material.wrap, uv).truncate()
+        }
+        _ => material.surface.diffuse,
+    }
+}
+
+fn encoded(linear: f32) -> u8 {
+    (srgb_from_linear(linear.clamp(0.0, 1.0)) * 255.0).round() as u8
+}
