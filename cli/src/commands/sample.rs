@@ -80,7 +80,7 @@ fn refusal(model: &Path, error: SurfelError) -> CliError {
 
 /// Refuses a count that memory cannot hold, before anything is computed.
 fn check_memory(options: &SampleOptions) -> Result<(), CliError> {
-    // Measured: a point of blue noise goes through five candidates of 104 bytes, their weights and their places.
+    // Measured with 362,272 points: 770 and 240 bytes a point at the peak, and room for models with other shapes.
     let (bytes, count) = match options.sampler() {
         s if s.method == Method::Poisson => (1500, s.amount),
         s => (400, s.amount),
