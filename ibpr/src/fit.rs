@@ -175,7 +175,6 @@ const CURVED: usize = 3;
 ///
 /// Lanes are the innermost loops: those are the ones that the compiler makes vectors of.
 #[inline(always)]
-#[expect(clippy::needless_range_loop, reason = "i, j, l are the rows and columns of the equations")]
 fn decompose(m: &mut Matrix, rhs: &mut [Lane; TERMS]) {
     for i in 0..TERMS {
         // D·L of this row, which every entry needs.
