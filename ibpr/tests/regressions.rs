@@ -90,7 +90,8 @@ fn views_are_checked() {
 
 #[test]
 fn options_are_checked_by_name() {
-    let changes: [(&str, fn(&mut Options)); 15] = [
+    type Change = fn(&mut Options);
+    let changes: [(&str, Change); 15] = [
         ("scale factor", |o| o.scale = Scale::Auto(0.0)),
         ("scale", |o| o.scale = Scale::Fixed(0.99)),
         ("scale", |o| o.scale = Scale::Fixed(f32::NAN)),

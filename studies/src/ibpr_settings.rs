@@ -42,11 +42,16 @@ pub(crate) fn groups() -> Vec<Group> {
         numbers("γ", &[1.0, 2.0, 3.0], |o, v| o.gamma = v),
         Group { name: "passes", settings: passes() },
         Group { name: "weighting", settings: weightings() },
-        numbers("outline", &[0.0, 0.35, 0.5], |o, v| o.outline = v),
+        numbers("outline", &[0.0, 0.2, 0.3, 0.35, 0.5], |o, v| o.outline = v),
         numbers("fill", &[0.0, 1.0, 2.0], |o, v| o.fill = v as u32),
         Group { name: "culling", settings: cullings() },
         Group { name: "together", settings: together() },
     ]
+}
+
+/// The defaults once more, on scans with another seed.
+pub(crate) fn again(seed: u64) -> Vec<Group> {
+    vec![Group { name: "default", settings: vec![(format!("default, seed {seed}"), defaults())] }]
 }
 
 fn triangles(factor: f32) -> Setting {
