@@ -83,6 +83,12 @@ fn settings() -> Vec<(&'static str, Options)> {
         with("one pass, eight triangles", |o| o.normals = Normals::Triangles),
         with("two passes", |o| o.passes = Passes::Two { finer: 0.75 }),
         with("translucent", |o| o.translucency = Some(Translucency::new(0.5))),
+        with("translucent, factor 1.6", |o| {
+            (o.translucency, o.scale) = (Some(Translucency::new(0.5)), Scale::Auto(1.6));
+        }),
+        with("translucent, factor 2", |o| {
+            (o.translucency, o.scale) = (Some(Translucency::new(0.5)), Scale::Auto(2.0));
+        }),
     ]
 }
 

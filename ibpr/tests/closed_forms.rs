@@ -123,7 +123,7 @@ fn one_point_per_pixel_at_scale_one_is_reproduced() {
     let mut o = options(1.0);
     // Half a pixel: each point covers its own to the rim.
     o.outline = 0.5;
-    let frame = frame(&[scan.clone()], &flat_view(), &o).unwrap();
+    let frame = frame(std::slice::from_ref(&scan), &flat_view(), &o).unwrap();
     for p in &scan.positions {
         let (x, y) = pixel_of(&flat_view(), *p).unwrap();
         let i = y as usize * SIZE as usize + x as usize;
@@ -164,7 +164,7 @@ fn faces_of_a_dense_plane_have_no_gaps() {
         let scale = 1.0 + 0.37 * seed as f32;
         let scan = tilted(slope, 0.3 * f64::from(scale), seed);
         for view in [flat_view(), perspective(0.5, 250.0)] {
-            let frame = frame(&[scan.clone()], &view, &options(scale)).unwrap();
+            let frame = frame(std::slice::from_ref(&scan), &view, &options(scale)).unwrap();
             for i in middle(20.0) {
                 assert_eq!(frame.colour[i][3], 1.0, "slope {slope:?}, scale {scale}, pixel {i}");
             }

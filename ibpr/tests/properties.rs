@@ -225,7 +225,7 @@ fn only_the_rim_differs(all: &Frame, culled: &Frame) -> Result<(), String> {
 }
 
 proptest! {
-    #![proptest_config(config(64))]
+    #![proptest_config(config(40))]
 
     #[test]
     fn culling_what_faces_away_never_changes_a_smooth_closed_surface(
