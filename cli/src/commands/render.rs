@@ -55,7 +55,7 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     let job = job(&scene, options)?;
     check_memory(&job)?;
     let stamp = stamp(&scene, &job, options);
-    if format == OutputFormat::Exr && !options.overwrite && is_there(&output, &stamp, job.window) {
+    if format == OutputFormat::Exr && !options.picture.overwrite && is_there(&output, &stamp, job.window) {
         report.note(&format!("{} is already there; --overwrite draws it again", output.display()));
         return report.finish();
     }
@@ -68,7 +68,7 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
         OutputFormat::Exr => write_exr(&output, ExrFile::from_frame(&frame, stamp, precision(options))),
         OutputFormat::Png => {
             let background = scene.image.background.to_array();
-            write_png(&output, &frame, &PngOptions { exposure_ev: options.exposure, background })
+            write_png(&output, &frame, &PngOptions { exposure_ev: options.picture.exposure, background })
         }
     })?;
     tell(&report, options, &output, job.window);
@@ -86,8 +86,8 @@ fn output_path(options: &RenderOptions) -> PathBuf {
 }
 
 fn check_options(options: &RenderOptions, format: OutputFormat, report: &Report<'_>) -> Result<(), CliError> {
-    format.check_layers(!options.layers.is_empty(), options.float)?;
-    if format == OutputFormat::Exr && options.exposure != 0.0 {
+    format.check_layers(!options.layers.is_empty(), options.picture.float)?;
+    if format == OutputFormat::Exr && options.picture.exposure != 0.0 {
         report.warn("--exposure changes PNG only; EXR keeps the light as it is");
     }
     if format == OutputFormat::Png && options.camera.tile.is_some() {
@@ -97,7 +97,7 @@ fn check_options(options: &RenderOptions, format: OutputFormat, report: &Report<
 }
 
 fn precision(options: &RenderOptions) -> Precision {
-    if options.float { Precision::Float } else { Precision::Half }
+    if options.picture.float { Precision::Float } else { Precision::Half }
 }
 
 /// What is to be drawn.
@@ -171,7 +171,7 @@ fn stamp(scene: &Scene, job: &RenderJob, options: &RenderOptions) -> Stamp {
         hash.write(channel.as_bytes());
         hash.write(b" ");
     }
-    hash.write(&[u8::from(options.float)]);
+    hash.write(&[u8::from(options.picture.float)]);
     Stamp {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         fingerprint: hash.finish(),

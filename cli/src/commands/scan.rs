@@ -23,7 +23,7 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
     let output = output_path(options);
     let format = OutputFormat::of(&output)?;
-    format.check_layers(!options.layers.is_empty(), options.float)?;
+    format.check_layers(!options.layers.is_empty(), options.picture.float)?;
     let load = LoadOptions {
         drop_invalid: options.drop_invalid,
         spacing: options.surface.spacing,
@@ -40,7 +40,7 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     let [width, height] = options.camera.size.unwrap_or(DEFAULT_SIZE);
     let (region, window) = options.camera.windows(width, height)?;
     let stamp = stamp(options, &set, &camera, region);
-    if format == OutputFormat::Exr && !options.overwrite && is_there(&output, &stamp, window) {
+    if format == OutputFormat::Exr && !options.picture.overwrite && is_there(&output, &stamp, window) {
         report.note(&format!("{} is already there; --overwrite draws it again", output.display()));
         return report.finish();
     }
@@ -50,11 +50,11 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     let picture = window_of(&frame, window, &options.layer_list(), &camera);
     report.stats.stage("write", || match format {
         OutputFormat::Exr => {
-            let precision = if options.float { Precision::Float } else { Precision::Half };
+            let precision = if options.picture.float { Precision::Float } else { Precision::Half };
             write_exr(&output, ExrFile::from_frame(&picture, stamp, precision))
         }
         OutputFormat::Png => {
-            let png = PngOptions { exposure_ev: options.exposure, background: [0.0; 3] };
+            let png = PngOptions { exposure_ev: options.picture.exposure, background: [0.0; 3] };
             write_png(&output, &picture, &png)
         }
     })?;
@@ -146,7 +146,8 @@ fn tell_counts(report: &Report<'_>, cloud: &ibpr::Cloud, frame: &ibpr::Frame) {
 fn stamp(options: &ScanOptions, set: &ScanSet, camera: &Camera, region: Window) -> Stamp {
     let mut hash = XxHash3_64::default();
     hash.write(&set.fingerprint().to_le_bytes());
-    let drawn = (options.frame_options(), camera, options.camera.size, options.layer_list(), options.float);
+    let drawn =
+        (options.frame_options(), camera, options.camera.size, options.layer_list(), options.picture.float);
     hash.write(format!("{drawn:?}").as_bytes());
     Stamp {
         version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -7,7 +7,7 @@ mod scan;
 mod values;
 
 pub use common::{Common, Progressive, TextOutput};
-pub use render::{CameraOptions, LayerRequest, RenderOptions};
+pub use render::{CameraOptions, LayerRequest, PictureOptions, RenderOptions};
 pub use sample::{SampleMethod, SampleOptions};
 pub use scan::{ScanLayerRequest, ScanOptions, ShadingOptions, SurfaceOptions};
 pub use values::{Tile, Vector};

@@ -25,6 +25,17 @@ pub struct RenderOptions {
     /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.NAME, id
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub layers: Vec<LayerRequest>,
+    /// How the picture is written.
+    #[command(flatten)]
+    pub picture: PictureOptions,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// How a picture is written.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub struct PictureOptions {
     /// For EXR: 32-bit colours in the place of 16-bit
     #[arg(long)]
     pub float: bool,
@@ -34,9 +45,6 @@ pub struct RenderOptions {
     /// Draw even if the EXR is already there with the same fingerprint
     #[arg(long)]
     pub overwrite: bool,
-    /// What every command has.
-    #[command(flatten)]
-    pub common: Common,
 }
 
 /// Options that override the scene's camera and picture.

@@ -1,7 +1,7 @@
 //! `scan`.
 
 use super::values::{self, Vector};
-use super::{CameraOptions, Common};
+use super::{CameraOptions, Common, PictureOptions};
 use crate::scan::ScanLayer;
 use clap::ValueEnum;
 use pointillist_ibpr as ibpr;
@@ -29,15 +29,9 @@ pub struct ScanOptions {
     /// Further layers in the EXR: `all`, or a list of N, P, count
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub layers: Vec<ScanLayerRequest>,
-    /// For EXR: 32-bit colours in the place of 16-bit
-    #[arg(long)]
-    pub float: bool,
-    /// For PNG: brighten by this many stops
-    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = values::exposure, allow_negative_numbers = true)]
-    pub exposure: f32,
-    /// Draw even if the EXR is already there with the same fingerprint
-    #[arg(long)]
-    pub overwrite: bool,
+    /// How the picture is written.
+    #[command(flatten)]
+    pub picture: PictureOptions,
     /// Leave out points that are NaN or infinite, in the place of refusing the file
     #[arg(long)]
     pub drop_invalid: bool,
