@@ -1,11 +1,14 @@
 //! Triangles and views of any kind: weights are shares, and tiles do not matter.
 #![no_main]
 
+mod steps;
+
 use arbitrary::Arbitrary;
-use glam::{DVec3, dvec3};
+use glam::DVec3;
 use libfuzzer_sys::fuzz_target;
-use pointillist_micropoint::invariants::{self, Soup};
+use pointillist_micropoint::invariants;
 use pointillist_micropoint::{MicropointOptions, Occlusion, Projection, View};
+use steps::{soup_of, steps};
 
 #[derive(Arbitrary, Debug)]
 struct Input {
@@ -21,20 +24,8 @@ struct Input {
     raw: Option<[f64; 3]>,
 }
 
-fn steps([x, y, z]: [i8; 3]) -> DVec3 {
-    dvec3(x.into(), y.into(), z.into()) / 64.0
-}
-
 fuzz_target!(|input: Input| {
-    let mut soup = Soup::default();
-    for (corners, opacity) in input.triangles.iter().take(16) {
-        let surface = soup.surface(f32::from(*opacity) / 255.0);
-        soup.polygon(&corners.map(steps), surface);
-    }
-    if let Some(low) = input.box_at {
-        let surface = soup.surface(1.0);
-        soup.cuboid(steps(low), steps(low) + 0.5, surface);
-    }
+    let mut soup = soup_of(&input.triangles, 16, input.box_at);
     if let (Some(raw), Some(p)) = (input.raw, soup.positions.first_mut()) {
         *p = DVec3::from_array(raw);
     }

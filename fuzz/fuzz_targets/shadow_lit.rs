@@ -1,12 +1,14 @@
 //! Triangles, lights and views of any kind: lit fractions are fractions, and tiles do not matter.
 #![no_main]
 
+mod steps;
+
 use arbitrary::Arbitrary;
-use glam::{DVec3, dvec3};
+use glam::DVec3;
 use libfuzzer_sys::fuzz_target;
-use pointillist_micropoint::invariants::Soup;
 use pointillist_micropoint::{Projection, View};
 use pointillist_shadow::{Emitter, ShadowOptions, invariants};
+use steps::{soup_of, steps};
 
 #[derive(Arbitrary, Debug)]
 struct Input {
@@ -20,20 +22,8 @@ struct Input {
     raw: Option<[f64; 3]>,
 }
 
-fn steps([x, y, z]: [i8; 3]) -> DVec3 {
-    dvec3(x.into(), y.into(), z.into()) / 64.0
-}
-
 fuzz_target!(|input: Input| {
-    let mut soup = Soup::default();
-    for (corners, opacity) in input.triangles.iter().take(12) {
-        let surface = soup.surface(f32::from(*opacity) / 255.0);
-        soup.polygon(&corners.map(steps), surface);
-    }
-    if let Some(low) = input.box_at {
-        let surface = soup.surface(1.0);
-        soup.cuboid(steps(low), steps(low) + 0.5, surface);
-    }
+    let soup = soup_of(&input.triangles, 12, input.box_at);
     let position = input.raw.map_or(steps(input.light), DVec3::from_array);
     let emitter = match input.directional {
         true => Emitter::Directional { direction: position },
