@@ -112,6 +112,8 @@ fn repeat_reports_the_frames() {
     let folder = Folder::new();
     folder.write("sheet.xyz", sheet(0.0));
     run(&folder, &scan(&["sheet.xyz"], &["-o", "a.png", "--repeat", "3", "--stats", "stats.json"]));
+    let told = run(&folder, &scan(&["sheet.xyz"], &["-o", "b.png", "--repeat", "2", "--progress", "openjd"]));
+    assert!(told.contains("openjd_progress: 50") && told.contains("openjd_progress: 100"), "{told}");
     let stats: serde_json::Value =
         serde_json::from_slice(&std::fs::read(folder.path("stats.json")).unwrap()).unwrap();
     for key in ["frame_ms", "frame_cpu_ms"] {

@@ -4,6 +4,7 @@ use super::Report;
 use super::render::{OutputFormat, is_there, write_exr, write_png};
 use crate::error::CliError;
 use crate::image_io::{ExrFile, PngOptions, Precision, Stamp, Window};
+use crate::job::Progress;
 use crate::options::{ScanOptions, Vector};
 use crate::scan::{LoadOptions, ScanSet, window_of};
 use crate::scene::description::{CameraDescription, DEFAULT_FOV_DEG};
@@ -108,12 +109,16 @@ fn draw(
         .map_err(usage)?;
     let frame_options = options.frame_options();
     let mut renderer = ibpr::Renderer::new();
+    let progress = Progress::new(options.common.progress_mode());
+    progress.begin("draw", u64::from(options.repeat));
     for _ in 0..options.repeat {
         let (wall, cpu) = (Instant::now(), ProcessTime::try_now().ok());
         renderer.draw(cloud, &view, &frame_options, frame).map_err(usage)?;
         let cpu = cpu.and_then(|start| start.try_elapsed().ok()).unwrap_or_default();
         report.stats.frame(wall.elapsed(), cpu);
+        progress.advance(1);
     }
+    progress.finish();
     Ok(())
 }
 
