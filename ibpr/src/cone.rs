@@ -10,13 +10,14 @@ pub(crate) struct Cone {
     pub(crate) half_angle: f32,
 }
 
-/// Every which point of a block gets a plane through its neighbours.
-const STRIDE: usize = 16;
-
 /// Neighbours lie within this many spacings: about 28 points of a regular scan.
 const REACH: f32 = 3.0;
 
-/// Fewer neighbours are no surface that faces could be made of.
+/// The same where fewer are found: a scan that meets its surface at a slant has points several times
+/// farther apart in one direction.
+const WIDER: [f32; 3] = [REACH, 2.0 * REACH, 4.0 * REACH];
+
+/// Fewer neighbours do not tell where a surface faces.
 const LEAST_NEIGHBOURS: usize = 6;
 
 /// A neighbourhood is a surface if it is this much thinner than wide (ratio of the standard deviations).
@@ -36,14 +37,31 @@ pub(crate) fn of_points(offsets: [&[f32]; 3], spacing: f64, towards_scanner: Vec
     let count = offsets[0].len();
     let at = |i: usize| Vec3::new(offsets[0][i], offsets[1][i], offsets[2][i]);
     let mut near = Vec::with_capacity(count);
-    let mut normals = Vec::with_capacity(count / STRIDE + 1);
-    for i in (0..count).step_by(STRIDE) {
-        let (centre, reach2) = (at(i), (REACH * spacing as f32).powi(2));
-        near.clear();
-        near.extend((0..count).map(at).filter(|p| p.distance_squared(centre) <= reach2));
-        if near.len() >= LEAST_NEIGHBOURS {
-            normals.push(normal(&near, towards_scanner)?);
+    let mut normals = Vec::new();
+    // Every point lies within reach of one that has a plane: were it every n-th point, steep parts of a
+    // scan, where points lie far apart, would be missed.
+    let mut is_covered = vec![false; count];
+    for i in 0..count {
+        if is_covered[i] {
+            continue;
         }
+        let centre = at(i);
+        for reach in WIDER {
+            let reach2 = (reach * spacing as f32).powi(2);
+            near.clear();
+            near.extend((0..count).filter(|&j| at(j).distance_squared(centre) <= reach2));
+            if reach == REACH {
+                near.iter().for_each(|&j| is_covered[j] = true);
+            }
+            if near.len() >= LEAST_NEIGHBOURS {
+                break;
+            }
+        }
+        if near.len() < LEAST_NEIGHBOURS {
+            // An outlier, or a strip of the surface that goes on in another block: it may face anywhere.
+            return None;
+        }
+        normals.push(normal(near.iter().map(|&j| at(j)), towards_scanner)?);
     }
     let axis = normals.iter().sum::<Vec3>().try_normalize()?;
     let widest = normals.iter().map(|n| n.dot(axis)).fold(1.0, f32::min);
@@ -51,11 +69,11 @@ pub(crate) fn of_points(offsets: [&[f32]; 3], spacing: f64, towards_scanner: Vec
 }
 
 /// Normal of the least-squares plane, on the scanner's side.
-fn normal(points: &[Vec3], towards_scanner: Vec3) -> Option<Vec3> {
-    let mean = points.iter().sum::<Vec3>() / points.len() as f32;
+fn normal(points: impl Iterator<Item = Vec3> + Clone, towards_scanner: Vec3) -> Option<Vec3> {
+    let mean = points.clone().sum::<Vec3>() / points.clone().count() as f32;
     let mut scatter = Mat3::ZERO;
     for p in points {
-        let d = *p - mean;
+        let d = p - mean;
         scatter += Mat3::from_cols(d * d.x, d * d.y, d * d.z);
     }
     let (n, least, middle) = least_axis(scatter)?;
