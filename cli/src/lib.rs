@@ -15,6 +15,7 @@ pub mod memory;
 pub mod mesh_io;
 pub mod options;
 pub mod pipeline;
+pub mod points;
 pub mod scan;
 pub mod scene;
 

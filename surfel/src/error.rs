@@ -1,6 +1,6 @@
 //! What can be wrong.
 
-/// What can be wrong with a mesh or with what is asked of it.
+/// What can be wrong with a mesh or a cloud, or with what is asked of them.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfelError {
@@ -51,5 +51,64 @@ pub enum SurfelError {
         cells: f64,
         /// How many there may be.
         most: u32,
+    },
+    /// A cloud without points.
+    #[error("the cloud has no points")]
+    NoPoints,
+    /// Attributes are not as many as positions.
+    #[error("{length} {what} for {count} positions")]
+    LengthMismatch {
+        /// Which attribute.
+        what: &'static str,
+        /// How many there are.
+        length: usize,
+        /// How many there have to be.
+        count: usize,
+    },
+    /// A normal is zero or not finite.
+    #[error("the normal of point {index} is zero or not finite; leave normals out to have them estimated")]
+    BadNormal {
+        /// Number of the point.
+        index: usize,
+    },
+    /// A colour is negative or not finite.
+    #[error("the colour of point {index} is negative or not finite")]
+    BadColour {
+        /// Number of the point.
+        index: usize,
+    },
+    /// A radius is not a length.
+    #[error(
+        "the radius of point {index} is {radius}; it must be above 0 and finite (leave radii out to have them estimated)"
+    )]
+    BadRadius {
+        /// Number of the point.
+        index: usize,
+        /// As given.
+        radius: f32,
+    },
+    /// A camera that sees nothing.
+    #[error("the view cannot be used: {reason}")]
+    BadView {
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// A picture without pixels, or with too many.
+    #[error("a picture of {width}×{height} pixels; sides must be 1 to 16384")]
+    BadSize {
+        /// Pixels from left to right.
+        width: u32,
+        /// Pixels from top to bottom.
+        height: u32,
+    },
+    /// An option outside its range.
+    #[error("{name} is {value}: {range}")]
+    BadOption {
+        /// Which option.
+        name: &'static str,
+        /// As given.
+        value: f64,
+        /// What it may be.
+        range: &'static str,
     },
 }

@@ -34,20 +34,47 @@
 //! 2. C. Yuksel: *Sample elimination for generating Poisson disk sample sets*, Eurographics 2015.
 #![forbid(unsafe_code)]
 
+mod areas;
 mod blue_noise;
+mod camera;
+mod cloud;
 mod cover;
 mod eliminate;
 mod error;
+mod focus;
+mod frame;
 #[cfg(feature = "invariants")]
 pub mod invariants;
+mod kernel;
+mod lattice;
 mod ldi;
+mod links;
 mod mesh;
+mod neighbours;
+mod normals;
+mod octree;
+mod options;
+mod packed;
 mod parallel;
 mod point;
+mod points;
 mod radius;
+mod render;
 mod rows;
 mod sample;
+mod select;
+mod shade;
+mod splat;
+mod tile;
+mod view;
 
+pub use cloud::Cloud;
 pub use error::SurfelError;
+pub use focus::{Focus, field_of_view_rad};
+pub use frame::{Frame, FrameCounts};
+pub use options::{Light, Options, Procedure};
 pub use point::SurfacePoint;
+pub use points::Points;
+pub use render::Renderer;
 pub use sample::{Amount, MAX_COUNT, Method, SampleOptions, sample};
+pub use view::{Projection, View};

@@ -48,3 +48,55 @@ pub(crate) fn sort_by<T: Send>(list: &mut [T], compare: impl Fn(&T, &T) -> std::
 pub(crate) fn sort_by<T>(list: &mut [T], compare: impl Fn(&T, &T) -> std::cmp::Ordering) {
     list.sort_unstable_by(compare);
 }
+
+/// Both results.
+#[cfg(feature = "rayon")]
+pub(crate) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    rayon::join(a, b)
+}
+
+/// Both results.
+#[cfg(not(feature = "rayon"))]
+pub(crate) fn join<A, B>(a: impl FnOnce() -> A, b: impl FnOnce() -> B) -> (A, B) {
+    (a(), b())
+}
+
+/// As [`map`], where each number is much work.
+#[cfg(feature = "rayon")]
+pub(crate) fn map_heavy<T: Send>(count: usize, f: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
+    (0..count).into_par_iter().map(f).collect()
+}
+
+/// As [`map`], where each number is much work.
+#[cfg(not(feature = "rayon"))]
+pub(crate) fn map_heavy<T>(count: usize, f: impl Fn(usize) -> T) -> Vec<T> {
+    map(count, f)
+}
+
+/// Calls `f` with every entry, on all cores.
+#[cfg(feature = "rayon")]
+pub(crate) fn for_each_mut<T: Send>(list: &mut [T], f: impl Fn(&mut T) + Send + Sync) {
+    list.par_iter_mut().with_max_len(1).for_each(f);
+}
+
+/// Calls `f` with every entry.
+#[cfg(not(feature = "rayon"))]
+pub(crate) fn for_each_mut<T>(list: &mut [T], f: impl Fn(&mut T)) {
+    list.iter_mut().for_each(f);
+}
+
+/// Working memory that threads borrow, made when there is none left.
+#[derive(Default)]
+pub(crate) struct Pool<T>(std::sync::Mutex<Vec<T>>);
+
+impl<T: Default> Pool<T> {
+    /// Runs `work` with one that no other thread uses.
+    pub(crate) fn with<R>(&self, work: impl FnOnce(&mut T) -> R) -> R {
+        let lock = || self.0.lock().expect("no thread panics while it holds the lock");
+        let taken = lock().pop();
+        let mut item = taken.unwrap_or_default();
+        let result = work(&mut item);
+        lock().push(item);
+        result
+    }
+}

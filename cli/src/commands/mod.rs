@@ -6,10 +6,12 @@ mod dice;
 mod generate;
 mod info;
 mod merge;
+mod points;
 mod render;
 mod report;
 mod sample;
 mod scan;
+mod surfel;
 
 use crate::error::CliError;
 use crate::options::{Cli, Command};
@@ -24,6 +26,7 @@ pub fn run(cli: &Cli) -> Result<(), CliError> {
     match &cli.command {
         Command::Render(options) => render::run(options),
         Command::Scan(options) => scan::run(options),
+        Command::Surfel(options) => surfel::run(options),
         Command::Sample(options) => sample::run(options),
         Command::Dice(options) => dice::run(options),
         Command::Compare(options) => compare::run(options),

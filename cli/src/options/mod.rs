@@ -1,15 +1,19 @@
 //! The options of every command, as clap reads them.
 
 mod common;
+mod points;
 mod render;
 mod sample;
 mod scan;
+mod surfel;
 mod values;
 
 pub use common::{Common, Progressive, TextOutput};
+pub use points::{PointLayerRequest, layer_list};
 pub use render::{CameraOptions, LayerRequest, PictureOptions, RenderOptions};
 pub use sample::{SampleMethod, SampleOptions};
-pub use scan::{ScanLayerRequest, ScanOptions, ShadingOptions, SurfaceOptions};
+pub use scan::{ScanOptions, ShadingOptions, SurfaceOptions};
+pub use surfel::{DiscOptions, FocusOptions, ProcedureValue, SurfelOptions, SurfelShading};
 pub use values::{Tile, Vector};
 
 use clap::{Parser, Subcommand};
@@ -65,6 +69,16 @@ pub enum Command {
         pointillist sample house.obj --spacing 0.01 --method ldi -o house.ply\n  \
         pointillist sample house.toml --count 50000 --seed 7 --ascii -o house.ply")]
     Sample(SampleOptions),
+    /// Draw a cloud of points with normals: discs, level of detail, depth of field
+    ///
+    /// CLOUD is what `sample` writes, or any cloud; normals and radii that it lacks are estimated.
+    #[command(after_help = "Examples:\n  \
+        pointillist surfel bunny.ply -o bunny.png\n  \
+        pointillist surfel bunny.ply --eye 0,0.2,0.4 --target 0,0.1,0 --light 1,2,2 -o bunny.png\n  \
+        pointillist surfel bunny.ply --focus 0.4 --aperture 0.02 -o blurred.png\n  \
+        pointillist surfel room.ply --focus 2.5 --lens 50 --fstop 1.8 -o photograph.png\n  \
+        pointillist surfel bunny.ply -o bunny.exr --layers all --float")]
+    Surfel(SurfelOptions),
     /// Cut polygons by a grid: JSON lines in, JSON lines out
     #[command(after_help = "Example:\n  \
         echo '{\"polygon\":[[0.5,0.5],[1.5,0.5],[1.5,1.5],[0.5,1.5]]}' | pointillist dice --areas")]

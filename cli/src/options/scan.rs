@@ -1,8 +1,7 @@
 //! `scan`.
 
 use super::values::{self, Vector};
-use super::{CameraOptions, Common, PictureOptions};
-use crate::scan::ScanLayer;
+use super::{CameraOptions, Common, PictureOptions, PointLayerRequest};
 use clap::ValueEnum;
 use pointillist_ibpr as ibpr;
 use std::path::PathBuf;
@@ -28,7 +27,7 @@ pub struct ScanOptions {
     pub camera: CameraOptions,
     /// Further layers in the EXR: `all`, or a list of N, P, count
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
-    pub layers: Vec<ScanLayerRequest>,
+    pub layers: Vec<PointLayerRequest>,
     /// How the picture is written.
     #[command(flatten)]
     pub picture: PictureOptions,
@@ -162,40 +161,7 @@ pub enum WeightsValue {
     Printed,
 }
 
-/// One entry of `--layers`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ScanLayerRequest {
-    /// Everything there is.
-    All,
-    /// One of them.
-    One(ScanLayer),
-}
-
-impl FromStr for ScanLayerRequest {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "all" => Ok(Self::All),
-            "N" => Ok(Self::One(ScanLayer::Normal)),
-            "P" => Ok(Self::One(ScanLayer::Position)),
-            "count" => Ok(Self::One(ScanLayer::Count)),
-            _ => Err("layers of a scan are all, N, P and count".to_owned()),
-        }
-    }
-}
-
 impl ScanOptions {
-    /// The layers that were asked for, each once.
-    pub fn layer_list(&self) -> Vec<ScanLayer> {
-        const ALL: [ScanLayer; 3] = [ScanLayer::Normal, ScanLayer::Position, ScanLayer::Count];
-        let asked = |layer: &ScanLayer| {
-            self.layers.contains(&ScanLayerRequest::All)
-                || self.layers.contains(&ScanLayerRequest::One(*layer))
-        };
-        ALL.into_iter().filter(asked).collect()
-    }
-
     /// What the renderer is asked for.
     pub fn frame_options(&self) -> ibpr::Options {
         let surface = &self.surface;

@@ -1,9 +1,6 @@
 //! Range scans for `scan`: files in, points in the world out.
 
-mod layers;
 mod mesh_points;
-
-pub use layers::{ScanLayer, window_of};
 
 use crate::cloud_io::{self, CloudOptions, Pose};
 use crate::error::CliError;

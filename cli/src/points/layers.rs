@@ -2,11 +2,10 @@
 
 use crate::image_io::{Frame, Layer, Window};
 use crate::scene::{Camera, Projection};
-use pointillist_ibpr as ibpr;
 
 /// What can be asked for beside colour and depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ScanLayer {
+pub enum PointLayer {
     /// `N.X N.Y N.Z`.
     Normal,
     /// `P.X P.Y P.Z`.
@@ -15,8 +14,25 @@ pub enum ScanLayer {
     Count,
 }
 
+/// A drawn frame: row-major layers; normals and counts may be empty if they are not asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawn<'a> {
+    /// Pixels from left to right.
+    pub width: usize,
+    /// Pixels from top to bottom.
+    pub height: usize,
+    /// Linear RGB, premultiplied, and opacity.
+    pub colour: &'a [[f32; 4]],
+    /// Distance along the view axis; +∞ where there is nothing.
+    pub depth: &'a [f32],
+    /// Unit normal in the world.
+    pub normal: &'a [[f32; 3]],
+    /// Points per pixel.
+    pub count: &'a [f32],
+}
+
 /// The part of a drawn frame in `window`, with the layers that were asked for.
-pub fn window_of(frame: &ibpr::Frame, window: Window, layers: &[ScanLayer], camera: &Camera) -> Frame {
+pub fn window_of(frame: &Drawn<'_>, window: Window, layers: &[PointLayer], camera: &Camera) -> Frame {
     let rows = (window.y0..window.y1).map(|y| {
         let start = y as usize * frame.width;
         start + window.x0 as usize..start + window.x1 as usize
@@ -27,10 +43,10 @@ pub fn window_of(frame: &ibpr::Frame, window: Window, layers: &[ScanLayer], came
         channels: ["X", "Y", "Z"].map(|axis| format!("{name}.{axis}")).to_vec(),
         planes: [0, 1, 2].map(|axis| plane(&|i| value(i)[axis])).to_vec(),
     };
-    let layer = |layer: &ScanLayer| match layer {
-        ScanLayer::Normal => named("N", &|i| frame.normal[i]),
-        ScanLayer::Position => named("P", &|i| position(frame, i, camera)),
-        ScanLayer::Count => {
+    let layer = |layer: &PointLayer| match layer {
+        PointLayer::Normal => named("N", &|i| frame.normal[i]),
+        PointLayer::Position => named("P", &|i| position(frame, i, camera)),
+        PointLayer::Count => {
             Layer { channels: vec!["count".to_owned()], planes: vec![plane(&|i| frame.count[i])] }
         }
     };
@@ -44,7 +60,7 @@ pub fn window_of(frame: &ibpr::Frame, window: Window, layers: &[ScanLayer], came
 }
 
 /// Where the surface at the centre of pixel `i` is; 0 where there is none.
-fn position(frame: &ibpr::Frame, i: usize, camera: &Camera) -> [f32; 3] {
+fn position(frame: &Drawn<'_>, i: usize, camera: &Camera) -> [f32; 3] {
     let depth = f64::from(frame.depth[i]);
     if depth.is_infinite() {
         return [0.0; 3];

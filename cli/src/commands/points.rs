@@ -1,0 +1,138 @@
+//! What `scan` and `surfel` share: where the picture goes, the camera, drawing again and again, writing.
+
+use super::Report;
+use super::render::{OutputFormat, is_there, write_exr, write_png};
+use crate::error::CliError;
+use crate::image_io::{ExrFile, Frame, PngOptions, Precision, Stamp, Window};
+use crate::job::Progress;
+use crate::options::{CameraOptions, Common, PictureOptions, Vector};
+use crate::scene::description::{CameraDescription, DEFAULT_FOV_DEG};
+use crate::scene::{Camera, Projection, frame_around};
+use cpu_time::ProcessTime;
+use glam::DVec3;
+use std::hash::Hasher as _;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use twox_hash::XxHash3_64;
+
+/// Width and height of a picture without `--size`.
+const DEFAULT_SIZE: [u32; 2] = [1024, 1024];
+
+pub(super) fn size(options: &CameraOptions) -> [u32; 2] {
+    options.size.unwrap_or(DEFAULT_SIZE)
+}
+
+/// `-o`, or the name of the first file: `bun.ply.gz` gives `bun.png`.
+pub(super) fn output_path(given: Option<&Path>, first: &Path) -> PathBuf {
+    let own = || {
+        let name = PathBuf::from(first.file_name().unwrap_or_default());
+        let name = if name.extension().is_some_and(|e| e == "gz") { name.with_extension("") } else { name };
+        name.with_extension("png")
+    };
+    given.map_or_else(own, Path::to_path_buf)
+}
+
+/// The camera of the options; what they leave open has all points in view. `fov_deg` is for options without one.
+pub(super) fn camera<I: Iterator<Item = DVec3>>(
+    given: &CameraOptions,
+    fov_deg: Option<f64>,
+    positions: impl Fn() -> I,
+) -> Result<Camera, CliError> {
+    let place = |v: Option<Vector>| v.map(|Vector(v)| DVec3::from(v));
+    let fov_y_rad = given.fov.or(fov_deg).unwrap_or(DEFAULT_FOV_DEG).to_radians();
+    let description = CameraDescription {
+        eye: place(given.eye),
+        target: place(given.target),
+        up: place(given.up).unwrap_or(DVec3::Y),
+        projection: Some(Projection::Perspective { fov_y_rad }),
+    };
+    let [width, height] = size(given);
+    let aspect = f64::from(width) / f64::from(height);
+    frame_around(&description, positions, aspect)
+        .map_err(|fault| CliError::Usage(format!("the camera cannot be used: {fault}")))
+}
+
+/// Draws a frame as often as `--repeat` asks, and notes how long each took.
+pub(super) fn repeat(
+    report: &Report<'_>,
+    common: &Common,
+    times: u32,
+    mut draw: impl FnMut() -> Result<(), CliError>,
+) -> Result<(), CliError> {
+    let progress = Progress::new(common.progress_mode());
+    progress.begin("draw", u64::from(times));
+    for _ in 0..times {
+        let (wall, cpu) = (Instant::now(), ProcessTime::try_now().ok());
+        draw()?;
+        let cpu = cpu.and_then(|start| start.try_elapsed().ok()).unwrap_or_default();
+        report.stats.frame(wall.elapsed(), cpu);
+        progress.advance(1);
+    }
+    progress.finish();
+    Ok(())
+}
+
+/// Where a picture goes, and how.
+pub(super) struct Target<'a> {
+    pub(super) path: PathBuf,
+    format: OutputFormat,
+    options: &'a PictureOptions,
+}
+
+impl<'a> Target<'a> {
+    pub(super) fn new(path: PathBuf, options: &'a PictureOptions, layers: bool) -> Result<Self, CliError> {
+        let format = OutputFormat::of(&path)?;
+        format.check_layers(layers, options.float)?;
+        Ok(Self { path, format, options })
+    }
+
+    /// Whether an earlier run wrote the same picture.
+    pub(super) fn is_done(&self, stamp: &Stamp, window: Window, report: &Report<'_>) -> bool {
+        let done = self.format == OutputFormat::Exr
+            && !self.options.overwrite
+            && is_there(&self.path, stamp, window);
+        if done {
+            report.note(&format!("{} is already there; --overwrite draws it again", self.path.display()));
+        }
+        done
+    }
+
+    pub(super) fn write(&self, picture: &Frame, stamp: Stamp) -> Result<(), CliError> {
+        match self.format {
+            OutputFormat::Exr => {
+                let precision = if self.options.float { Precision::Float } else { Precision::Half };
+                write_exr(&self.path, ExrFile::from_frame(picture, stamp, precision))
+            }
+            OutputFormat::Png => {
+                let png = PngOptions { exposure_ev: self.options.exposure, background: [0.0; 3] };
+                write_png(&self.path, picture, &png)
+            }
+        }
+    }
+}
+
+/// What a picture was made from: `points` is the fingerprint of the points, `drawn` all that was chosen.
+pub(super) fn stamp(points: u64, drawn: &str, camera: &CameraOptions, region: Window) -> Stamp {
+    let mut hash = XxHash3_64::default();
+    hash.write(&points.to_le_bytes());
+    hash.write(drawn.as_bytes());
+    Stamp {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        fingerprint: hash.finish(),
+        region,
+        tile: camera.tile.map(|tile| tile.to_string()),
+        background: [0.0; 3],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_picture_is_called_like_the_first_file() {
+        let output = |file: &str| output_path(None, Path::new(file));
+        assert_eq!(output("a/bun.conf"), Path::new("bun.png"));
+        assert_eq!(output("dragon_0.ply.gz"), Path::new("dragon_0.png"));
+    }
+}

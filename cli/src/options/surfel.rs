@@ -1,0 +1,172 @@
+//! `surfel`.
+
+use super::values::{self, Vector};
+use super::{CameraOptions, Common, PictureOptions, PointLayerRequest};
+use clap::ValueEnum;
+use pointillist_surfel as surfel;
+use std::path::PathBuf;
+
+/// `surfel`.
+#[derive(Debug, clap::Args)]
+pub struct SurfelOptions {
+    /// Clouds, drawn together: .ply with x y z and, where it has them, nx ny nz, red green blue, radius; .ply.gz, .xyz, with features .las, .laz, .e57
+    #[arg(required = true, value_name = "CLOUD")]
+    pub clouds: Vec<PathBuf>,
+    /// The picture: .png or .exr (default: the first CLOUD's name with .png)
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// What is sharp.
+    #[command(flatten)]
+    pub focus: FocusOptions,
+    /// How discs become a picture.
+    #[command(flatten)]
+    pub discs: DiscOptions,
+    /// How surfaces are lit.
+    #[command(flatten)]
+    pub shading: SurfelShading,
+    /// The view.
+    #[command(flatten)]
+    pub camera: CameraOptions,
+    /// Further layers in the EXR: `all`, or a list of N, P
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub layers: Vec<PointLayerRequest>,
+    /// How the picture is written.
+    #[command(flatten)]
+    pub picture: PictureOptions,
+    /// Leave out points that are NaN or infinite, in the place of refusing the file
+    #[arg(long)]
+    pub drop_invalid: bool,
+    /// Draw the frame N times; --stats then has frame_ms and frame_cpu_ms
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub repeat: u32,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Depth of field.
+#[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Depth of field (with --focus and one of --depth, --aperture, --lens)")]
+pub struct FocusOptions {
+    /// Distance along the view axis at which everything is sharp, world units
+    #[arg(long, value_name = "F", value_parser = values::positive)]
+    pub focus: Option<f64>,
+    /// Radius of the blur per unit of distance from the focus (the paper's d); 0 is sharp everywhere
+    #[arg(long, value_name = "D", value_parser = values::not_negative, requires = "focus", conflicts_with_all = ["aperture", "lens"])]
+    pub depth: Option<f64>,
+    /// Radius of a thin lens, world units; 0 is a pinhole
+    #[arg(long, value_name = "RADIUS", value_parser = values::not_negative, requires = "focus", conflicts_with = "lens")]
+    pub aperture: Option<f64>,
+    /// Focal length of a lens in millimetres, for a world in metres; without --fov the view is that of the lens
+    #[arg(long, value_name = "MM", value_parser = values::positive, requires_all = ["focus", "fstop"])]
+    pub lens: Option<f64>,
+    /// f-number of the lens: its focal length over the diameter of its opening
+    #[arg(long, value_name = "N", value_parser = values::positive, requires = "lens")]
+    pub fstop: Option<f64>,
+    /// Height of the lens's sensor in millimetres (default: 24)
+    #[arg(long, value_name = "MM", value_parser = values::positive, requires = "lens", conflicts_with = "fov")]
+    pub sensor: Option<f64>,
+    /// Everything is sharp, whatever the options above say
+    #[arg(long)]
+    pub no_dof: bool,
+}
+
+/// How discs become a picture.
+#[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Discs")]
+pub struct DiscOptions {
+    /// Level of detail: take the coarsest level whose points are at most this many pixels apart; 0 takes all points
+    #[arg(long, value_name = "PX", default_value_t = 1.0, value_parser = values::not_negative)]
+    pub level: f64,
+    /// How discs become a picture
+    #[arg(long, value_name = "NAME", default_value = "blended")]
+    pub procedure: ProcedureValue,
+    /// Do not skip what faces away or is hidden; the picture is the same
+    #[arg(long)]
+    pub no_cull: bool,
+    /// Fit planes to neighbouring points for normals, even where the file has some
+    #[arg(long)]
+    pub estimate_normals: bool,
+}
+
+/// How surfaces are lit.
+#[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Shading: colour × (A + (1 − A)·max(0, n·l))")]
+pub struct SurfelShading {
+    /// Direction towards the light in the world (default: from the eye)
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub light: Option<Vector>,
+    /// Share of light from everywhere, 0 to 1
+    #[arg(long, value_name = "A", default_value_t = 0.1)]
+    pub ambient: f32,
+}
+
+/// `--procedure`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProcedureValue {
+    /// Layers of depth, in each the weighted mean of all discs
+    Blended,
+    /// The paper's: z-buffer, links, a Gaussian filter over holes
+    Paper,
+}
+
+/// Height of a 35 mm frame.
+const DEFAULT_SENSOR_MM: f64 = 24.0;
+
+impl SurfelOptions {
+    /// The field of view of the lens in degrees, where nothing else says what is seen.
+    ///
+    /// # Errors
+    ///
+    /// A focus nearer than the focal length.
+    pub fn lens_fov_deg(&self) -> Result<Option<f64>, String> {
+        let focus = &self.focus;
+        let (Some(lens), Some(distance), None) = (focus.lens, focus.focus, self.camera.fov) else {
+            return Ok(None);
+        };
+        let sensor = focus.sensor.unwrap_or(DEFAULT_SENSOR_MM);
+        match surfel::field_of_view_rad(lens, sensor, 1000.0 * distance) {
+            Some(fov) => Ok(Some(fov.to_degrees())),
+            None => Err(format!(
+                "--focus {distance} is nearer than the focal length of --lens {lens} mm (the world is in metres)"
+            )),
+        }
+    }
+
+    /// What the renderer is asked for.
+    ///
+    /// # Errors
+    ///
+    /// A focus without anything that blurs.
+    pub fn frame_options(&self) -> Result<surfel::Options, String> {
+        let mut options = surfel::Options::default();
+        options.focus = self.focus.chosen()?;
+        options.procedure = match self.discs.procedure {
+            ProcedureValue::Blended => surfel::Procedure::Blended,
+            ProcedureValue::Paper => surfel::Procedure::Paper,
+        };
+        options.level = self.discs.level as f32;
+        options.culling = !self.discs.no_cull;
+        if let Some(Vector(light)) = self.shading.light {
+            options.light = surfel::Light::Towards(light.into());
+        }
+        options.ambient = self.shading.ambient;
+        options.normals = !self.layers.is_empty();
+        Ok(options)
+    }
+}
+
+impl FocusOptions {
+    fn chosen(&self) -> Result<surfel::Focus, String> {
+        let Some(focus) = self.focus.filter(|_| !self.no_dof) else { return Ok(surfel::Focus::Everywhere) };
+        if let Some(depth) = self.depth {
+            Ok(surfel::Focus::Depth { depth, focus })
+        } else if let Some(aperture) = self.aperture {
+            Ok(surfel::Focus::Lens { aperture, focus })
+        } else if let (Some(lens), Some(fstop)) = (self.lens, self.fstop) {
+            Ok(surfel::Focus::photographic(0.001 * lens, fstop, focus))
+        } else {
+            Err("--focus blurs nothing by itself; add --depth, --aperture or --lens with --fstop".to_owned())
+        }
+    }
+}

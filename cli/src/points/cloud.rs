@@ -1,0 +1,132 @@
+//! Clouds for `surfel`: files in, points with what they have out.
+
+use crate::cloud_io::{self, CloudOptions};
+use crate::input_error::InputError;
+use glam::{DVec3, Vec3};
+use pointillist_surfel::{Cloud, Points, SurfelError};
+use std::path::{Path, PathBuf};
+use twox_hash::XxHash3_64;
+
+/// The points of all files, with the attributes that all of them have.
+#[derive(Clone, Debug, Default)]
+pub struct PointSet {
+    positions: Vec<DVec3>,
+    normals: Option<Vec<Vec3>>,
+    colours: Option<Vec<[f32; 3]>>,
+    radii: Option<Vec<f32>>,
+    /// The files, and the number of the first point of each.
+    files: Vec<(PathBuf, usize)>,
+    /// What may be wrong, with the name of the file.
+    pub warnings: Vec<String>,
+}
+
+/// Appends a file's part of an attribute, which counts only if all files have it.
+fn append<T: Clone>(all: &mut Option<Vec<T>>, part: Option<&[T]>) {
+    match (all.as_mut(), part) {
+        (Some(all), Some(part)) => all.extend_from_slice(part),
+        _ => *all = None,
+    }
+}
+
+impl PointSet {
+    /// Reads clouds.
+    ///
+    /// # Errors
+    ///
+    /// [`InputError`] for the first file that cannot be used.
+    pub fn load(paths: &[PathBuf], drop_invalid: bool) -> Result<Self, InputError> {
+        let mut set =
+            Self { normals: Some(vec![]), colours: Some(vec![]), radii: Some(vec![]), ..Self::default() };
+        let options = CloudOptions::default().with_drop_invalid(drop_invalid);
+        for path in paths {
+            set.read(path, &options)?;
+        }
+        Ok(set)
+    }
+
+    fn read(&mut self, path: &Path, options: &CloudOptions) -> Result<(), InputError> {
+        self.files.push((path.to_owned(), self.positions.len()));
+        let summary = cloud_io::read_cloud::<InputError>(path, options, &mut |block| {
+            self.positions.extend_from_slice(block.positions);
+            append(&mut self.normals, block.normals);
+            append(&mut self.colours, block.colours);
+            append(&mut self.radii, block.radii);
+            Ok(())
+        })?;
+        let name = path.display();
+        let mut warn = |warning: &str| self.warnings.push(format!("{name}: {warning}"));
+        summary.warnings.iter().for_each(|warning| warn(warning));
+        if summary.dropped > 0 {
+            warn(&format!("{} points that are not finite were left out", summary.dropped));
+        }
+        if summary.faces > 0 {
+            warn("its faces are not drawn; `pointillist sample` puts points all over them");
+        }
+        if !summary.has_normals {
+            warn(
+                "has no normals: planes are fitted to neighbouring points, and the surface is seen from both sides",
+            );
+        }
+        Ok(())
+    }
+
+    /// Makes the points ready to be drawn.
+    ///
+    /// # Errors
+    ///
+    /// [`InputError`] for an attribute that cannot be used.
+    pub fn cloud(&self, estimate_normals: bool) -> Result<Cloud, InputError> {
+        let mut points = Points::new(&self.positions);
+        points.normals = self.normals.as_deref().filter(|_| !estimate_normals);
+        points.colours = self.colours.as_deref();
+        points.radii = self.radii.as_deref();
+        Cloud::new(&points).map_err(|error| self.blame(&error))
+    }
+
+    /// Names the file and the point within it.
+    fn blame(&self, error: &SurfelError) -> InputError {
+        let index = match error {
+            SurfelError::NotFinite { index }
+            | SurfelError::BadNormal { index }
+            | SurfelError::BadColour { index }
+            | SurfelError::BadRadius { index, .. } => *index,
+            _ => 0,
+        };
+        let file = self.files.iter().rev().find(|(_, first)| *first <= index);
+        let (name, first) =
+            file.map_or((String::new(), 0), |(path, first)| (path.display().to_string(), *first));
+        let number = index - first;
+        let (message, help) = match error {
+            SurfelError::BadNormal { .. } => (
+                format!("the normal of point {number} (from 0) is zero"),
+                "`--estimate-normals` fits planes in the place of the file's normals",
+            ),
+            SurfelError::BadRadius { radius, .. } => (
+                format!("the radius of point {number} (from 0) is {radius}; it must be above 0"),
+                "a file without the property `radius` has radii estimated",
+            ),
+            SurfelError::NotFinite { .. } => (
+                format!("point {number} (from 0) is too far away for numbers"),
+                "coordinates up to 4e307 can be used",
+            ),
+            other => (other.to_string(), "see `pointillist info` for what the file holds"),
+        };
+        InputError::of_file(name, message).with_help(help)
+    }
+
+    /// Hash of all that is drawn.
+    #[must_use]
+    pub fn fingerprint(&self) -> u64 {
+        use std::hash::Hasher as _;
+        let mut hash = XxHash3_64::default();
+        for value in self.positions.iter().flat_map(|p| p.to_array()) {
+            hash.write(&value.to_le_bytes());
+        }
+        let normals = self.normals.iter().flatten().flat_map(|n| n.to_array());
+        let colours = self.colours.iter().flatten().copied().flatten();
+        for value in normals.chain(colours).chain(self.radii.iter().flatten().copied()) {
+            hash.write(&value.to_le_bytes());
+        }
+        hash.finish()
+    }
+}

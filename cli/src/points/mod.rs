@@ -1,0 +1,7 @@
+//! Pictures of points: what `scan` and `surfel` share.
+
+mod cloud;
+mod layers;
+
+pub use cloud::PointSet;
+pub use layers::{Drawn, PointLayer, window_of};

@@ -1,0 +1,121 @@
+//! A view of one cloud: all that a frame needs to know to put points onto the picture, in units of the cloud's lattice.
+
+use crate::cloud::Node;
+use crate::focus::Focus;
+use crate::lattice::Lattice;
+use crate::view::View;
+use glam::{DVec3, Vec3};
+
+/// How far the plane of a blurred disc is followed beyond the disc itself, in blur radii: what lies on one slanted surface
+/// then has one depth in a pixel, and belongs to one layer. Found by experiment.
+const BLURRED_PLANE: f32 = 1.0;
+
+/// How far behind the nearest one a disc may lie and still belong to the same surface: so many radii, and what a slanted
+/// surface gains over so many pixels and blur radii. Found by experiment.
+const THICKNESS: f32 = 1.5;
+const SLANTED_THICKNESS: f32 = 1.5;
+const BLURRED_THICKNESS: f32 = 1.0;
+
+/// Slopes (depth over width) are taken to be at most this.
+const STEEPEST: f32 = 8.0;
+
+/// Reach of a disc's kernel in standard deviations: the square root of [`crate::splat::REACH2`].
+pub(crate) const REACH: f32 = std::f32::consts::SQRT_2 * 2.0;
+
+#[derive(Clone, Debug)]
+pub(crate) struct Camera {
+    pub(crate) view: View,
+    lattice: Lattice,
+    pub(crate) is_perspective: bool,
+    /// Pixels per unit at depth 1 (perspective), or at any depth.
+    pub(crate) focal: f32,
+    /// The principal point, pixels.
+    pub(crate) centre: [f64; 2],
+    /// Depths are kept relative to this one, near the cloud: a telephoto view of a far cloud then loses nothing in `f32`.
+    pub(crate) reference: f64,
+    /// Relative depths must be above this.
+    pub(crate) near: f32,
+    /// Radius of the blur per unit of distance from the focus, and relative depth of the focus.
+    pub(crate) blur: f32,
+    pub(crate) focus: f32,
+    /// World axes of the picture.
+    pub(crate) axes: [Vec3; 3],
+}
+
+impl Camera {
+    pub(crate) fn new(view: &View, lattice: &Lattice, root: &Node, focus: &Focus) -> Self {
+        let middle = view.local(lattice.place(root.origin)).z / lattice.side;
+        let extent = f64::from(root.half.length()) + f64::from(root.widest);
+        let reference = middle.max(0.01 * extent);
+        let is_perspective = view.is_perspective();
+        let unit = if is_perspective { 1.0 } else { lattice.side };
+        let (depth, focus) = focus.depth_and_focus();
+        // A blur beyond all pictures is as good as an endless one, and a number.
+        let blur = depth.min(1e9) as f32;
+        Self {
+            view: *view,
+            lattice: *lattice,
+            is_perspective,
+            focal: (view.focal_px() * unit) as f32,
+            centre: [0.5 * f64::from(view.width), 0.5 * f64::from(view.height)],
+            reference,
+            near: (1e-5 * extent - reference) as f32,
+            blur,
+            focus: (focus / lattice.side - reference).clamp(-1e12, 1e12) as f32,
+            axes: [view.right, view.down, view.forward].map(|v| v.as_vec3()),
+        }
+    }
+
+    /// Coordinates of a node's origin along right, down and forward, units.
+    pub(crate) fn local(&self, node: &Node) -> DVec3 {
+        self.view.local(self.lattice.place(node.origin)) / self.lattice.side
+    }
+
+    /// Pixels per unit at a relative depth.
+    pub(crate) fn pixels_per_unit(&self, depth: f32) -> f32 {
+        if self.is_perspective { self.focal / (depth + self.reference as f32) } else { self.focal }
+    }
+
+    /// Radius of the blur at a relative depth, units.
+    #[inline(always)]
+    pub(crate) fn blur_radius(&self, depth: f32) -> f32 {
+        self.blur * (depth - self.focus).abs()
+    }
+
+    /// The depth that is affine over the picture on planes: d·z₀/z for a perspective camera, d = z − z₀ from the reference z₀.
+    pub(crate) fn bent(&self, depth: f32) -> f32 {
+        if self.is_perspective {
+            let reference = self.reference as f32;
+            depth * (reference / (depth + reference))
+        } else {
+            depth
+        }
+    }
+
+    /// Distance along the view axis in the world.
+    pub(crate) fn world_depth(&self, bent: f32) -> f32 {
+        let bent = f64::from(bent);
+        let depth = if self.is_perspective { bent / (1.0 - bent / self.reference) } else { bent };
+        ((depth + self.reference) * self.lattice.side) as f32
+    }
+
+    /// Bent depth per depth.
+    #[inline(always)]
+    pub(crate) fn bending(&self, inverse: f32) -> f32 {
+        let ratio = self.reference as f32 * inverse;
+        if self.is_perspective { ratio * ratio } else { 1.0 }
+    }
+
+    /// How far a disc's plane is followed from its centre, units of depth.
+    #[inline(always)]
+    pub(crate) fn plane_reach(&self, deviation: f32, blur_radius: f32) -> f32 {
+        REACH * deviation + BLURRED_PLANE * blur_radius
+    }
+
+    /// Depth within which discs belong to one surface, units. `pixel` is the side of a pixel there.
+    #[inline(always)]
+    pub(crate) fn thickness(&self, radius: f32, slope: f32, pixel: f32, blur_radius: f32) -> f32 {
+        let slope = slope.min(STEEPEST);
+        THICKNESS * radius + slope * (SLANTED_THICKNESS * pixel + BLURRED_THICKNESS * blur_radius)
+    }
+}

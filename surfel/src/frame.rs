@@ -1,0 +1,146 @@
+//! The picture.
+
+use crate::tile;
+
+/// A drawn frame: row-major layers of `width · height` entries.
+///
+/// Keep one and draw into it again: memory is allocated for the first frame only, and tiles that stay empty are not touched.
+#[derive(Clone, Debug, Default)]
+pub struct Frame {
+    width: usize,
+    height: usize,
+    colour: Vec<[f32; 4]>,
+    depth: Vec<f32>,
+    normal: Vec<[f32; 3]>,
+    /// Tiles that are not empty, row by row.
+    drawn: Vec<bool>,
+    /// What was drawn and what was skipped.
+    pub counts: FrameCounts,
+}
+
+/// What one frame drew and skipped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FrameCounts {
+    /// Nodes of the octree that were drawn, and hidden ones among them.
+    pub nodes: usize,
+    /// Nodes that were skipped in all tiles because other surfaces hide them.
+    pub nodes_hidden: usize,
+    /// Nodes outside the view; what is below them is not looked at.
+    pub nodes_outside: usize,
+    /// Nodes that face away; what is below them is not looked at.
+    pub nodes_facing_away: usize,
+    /// Points of the drawn nodes, links included.
+    pub points: usize,
+    /// Links among them.
+    pub links: usize,
+}
+
+impl Frame {
+    /// Pixels from left to right.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Pixels from top to bottom.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Linear RGB, premultiplied, and opacity.
+    #[must_use]
+    pub fn colour(&self) -> &[[f32; 4]] {
+        &self.colour
+    }
+
+    /// Distance along the view axis of the nearest surface that, with those before it, covers half the pixel or more;
+    /// +∞ where there is none.
+    #[must_use]
+    pub fn depth(&self) -> &[f32] {
+        &self.depth
+    }
+
+    /// Unit normal of that surface in the world, 0 where there is none. Empty if normals were not asked for.
+    #[must_use]
+    pub fn normal(&self) -> &[[f32; 3]] {
+        &self.normal
+    }
+
+    /// Makes room.
+    pub(crate) fn reshape(&mut self, width: usize, height: usize, normals: bool) {
+        let n = width * height;
+        let normal_count = if normals { n } else { 0 };
+        if (self.width, self.height, self.normal.len()) == (width, height, normal_count) {
+            return;
+        }
+        *self = Self {
+            width,
+            height,
+            colour: vec![[0.0; 4]; n],
+            depth: vec![f32::INFINITY; n],
+            normal: vec![[0.0; 3]; normal_count],
+            drawn: vec![false; width.div_ceil(tile::WIDTH) * height.div_ceil(tile::HEIGHT)],
+            counts: FrameCounts::default(),
+        };
+    }
+
+    /// The frame in rows of tiles.
+    pub(crate) fn bands(&mut self) -> Vec<Band<'_>> {
+        let n = self.width * tile::HEIGHT;
+        let mut normals = self.normal.chunks_mut(n);
+        let layers = self.colour.chunks_mut(n).zip(self.depth.chunks_mut(n));
+        let drawn = self.drawn.chunks_mut(self.width.div_ceil(tile::WIDTH));
+        layers
+            .zip(drawn)
+            .enumerate()
+            .map(|(i, ((colour, depth), drawn))| Band {
+                first_row: i * tile::HEIGHT,
+                width: self.width,
+                colour,
+                depth,
+                normal: normals.next(),
+                drawn,
+            })
+            .collect()
+    }
+}
+
+/// A row of tiles of a frame.
+pub(crate) struct Band<'a> {
+    pub(crate) first_row: usize,
+    pub(crate) width: usize,
+    pub(crate) colour: &'a mut [[f32; 4]],
+    pub(crate) depth: &'a mut [f32],
+    pub(crate) normal: Option<&'a mut [[f32; 3]]>,
+    /// Which tiles are not empty.
+    pub(crate) drawn: &'a mut [bool],
+}
+
+impl Band<'_> {
+    pub(crate) fn rows(&self) -> usize {
+        self.depth.len() / self.width
+    }
+
+    /// Columns of a tile.
+    pub(crate) fn columns(&self, tile: usize) -> std::ops::Range<usize> {
+        tile * tile::WIDTH..((tile + 1) * tile::WIDTH).min(self.width)
+    }
+
+    /// Makes a tile empty.
+    pub(crate) fn clear(&mut self, tile: usize) {
+        if !std::mem::replace(&mut self.drawn[tile], false) {
+            return;
+        }
+        let columns = self.columns(tile);
+        for row in 0..self.rows() {
+            let pixels = row * self.width + columns.start..row * self.width + columns.end;
+            self.colour[pixels.clone()].fill([0.0; 4]);
+            self.depth[pixels.clone()].fill(f32::INFINITY);
+            if let Some(normal) = &mut self.normal {
+                normal[pixels].fill([0.0; 3]);
+            }
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Positions as whole numbers: a cube of 2³² cells a side around the cloud.
+//!
+//! A position is off by less than 2⁻³² of the cloud's extent, wherever the cloud lies, and differences to any origin
+//! in the cloud are exact before they become `f32`.
+
+use glam::{DVec3, Vec3};
+
+/// Bits of a cell number that go into a Morton code: three times this fits into 64.
+pub(crate) const CODE_BITS: u32 = 21;
+
+/// Cells per side of the cube.
+const CELLS: f64 = 4_294_967_296.0;
+
+/// A cube around a cloud. Lengths inside are in *units* of its side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lattice {
+    pub(crate) low: DVec3,
+    /// A power of 2: units change no digits.
+    pub(crate) side: f64,
+}
+
+impl Lattice {
+    /// `positions` are finite, and so are their differences.
+    pub(crate) fn around(positions: &[DVec3]) -> Self {
+        let (low, high) = positions
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+        let extent = (high - low).max_element();
+        // Points in one place need some length to measure their discs in.
+        let extent = if extent > 0.0 { extent.max(1e-290) } else { 1.0 };
+        Self { low, side: extent.log2().ceil().min(1023.0).exp2() }
+    }
+
+    /// The cell that holds `p`.
+    pub(crate) fn cell(&self, p: DVec3) -> [u32; 3] {
+        ((p - self.low) / self.side * CELLS).to_array().map(|c| c.clamp(0.0, CELLS - 1.0) as u32)
+    }
+
+    /// The middle of a cell in the world.
+    pub(crate) fn place(&self, cell: [u32; 3]) -> DVec3 {
+        let middle = DVec3::from_array(cell.map(|c| (f64::from(c) + 0.5) / CELLS));
+        self.low + middle * self.side
+    }
+}
+
+/// The way from one cell to another in units. Rounded once per coordinate.
+#[inline(always)]
+pub(crate) fn between(from: [u32; 3], to: [u32; 3]) -> Vec3 {
+    Vec3::from_array([0, 1, 2].map(|i| offset(from[i], to[i])))
+}
+
+/// One coordinate of [`between`], for cells less than half the lattice apart.
+#[inline(always)]
+pub(crate) fn offset(from: u32, to: u32) -> f32 {
+    to.wrapping_sub(from) as i32 as f32 * (1.0 / CELLS as f32)
+}
+
+/// Cells in an order in which those of a cube of the octree follow one another.
+pub(crate) fn morton(cell: [u32; 3]) -> u64 {
+    let [x, y, z] = cell.map(|c| spread(u64::from(c >> (32 - CODE_BITS))));
+    x | y << 1 | z << 2
+}
+
+/// Puts two zeros between the bits of a number of [`CODE_BITS`] bits.
+fn spread(x: u64) -> u64 {
+    let mut x = x & 0x1f_ffff;
+    x = (x | x << 32) & 0x1f_0000_0000_ffff;
+    x = (x | x << 16) & 0x1f_0000_ff00_00ff;
+    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}

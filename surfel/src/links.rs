@@ -1,0 +1,126 @@
+//! Coarser levels: links to a few of a cube's points, each of which stands for its surroundings.
+//!
+//! A link names the point that it is drawn at; area, normal and colour are the means of what it stands for, as the
+//! prefiltered textures of \[1\] are, so that a coarse level is not a noisy one.
+
+use crate::cloud::Attributes;
+use crate::lattice::{CODE_BITS, between, morton};
+use crate::octree::Cube;
+use crate::packed;
+use crate::parallel;
+use glam::Vec3;
+
+/// A cube of the octree is divided into 2^DIVISIONS cells a side; each cell in which there is surface gets a link for every
+/// side that the surface has there.
+const DIVISIONS: u32 = 4;
+
+/// A point that stands for others, while levels are made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Link {
+    pub(crate) point: u32,
+    /// Area of all that it stands for, square units.
+    pub(crate) area: f32,
+    pub(crate) normal: Vec3,
+    pub(crate) colour: Vec3,
+}
+
+/// The links of all cubes, packed: 12 bytes each, 16 with colour.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Links {
+    pub(crate) points: Vec<u32>,
+    pub(crate) areas: Vec<f32>,
+    pub(crate) normals: Vec<u32>,
+    pub(crate) colours: Option<Vec<u32>>,
+}
+
+impl Links {
+    pub(crate) fn pack(links: &[Vec<Link>], coloured: bool) -> Self {
+        let all = || links.iter().flatten();
+        Self {
+            points: all().map(|l| l.point).collect(),
+            areas: all().map(|l| l.area).collect(),
+            normals: all().map(|l| packed::pack_direction(l.normal)).collect(),
+            colours: coloured.then(|| all().map(|l| packed::pack_colour(l.colour.to_array())).collect()),
+        }
+    }
+
+    /// Memory of all links.
+    pub(crate) fn bytes(&self) -> usize {
+        4 * (self.points.len() + self.areas.len() + self.normals.len())
+            + 4 * self.colours.as_ref().map_or(0, Vec::len)
+    }
+}
+
+/// Makes the links of every cube from those of its children, the deepest first; leaves get none.
+pub(crate) fn make(cubes: &[Cube], generations: &[usize], points: &Attributes) -> Vec<Vec<Link>> {
+    let mut links: Vec<Vec<Link>> = vec![vec![]; cubes.len()];
+    for generation in generations.windows(2).rev() {
+        let made = parallel::map_heavy(generation[1] - generation[0], |i| {
+            links_of(&cubes[generation[0] + i], cubes, &links, points)
+        });
+        for (i, list) in made.into_iter().enumerate() {
+            links[generation[0] + i] = list;
+        }
+    }
+    links
+}
+
+fn links_of(cube: &Cube, cubes: &[Cube], links: &[Vec<Link>], points: &Attributes) -> Vec<Link> {
+    let mut finer = vec![];
+    for child in cube.children.clone() {
+        if cubes[child].children.is_empty() {
+            finer.extend(cubes[child].points.clone().map(|p| points.link(p)));
+        } else {
+            finer.extend_from_slice(&links[child]);
+        }
+    }
+    let below = CODE_BITS.saturating_sub(cube.level + DIVISIONS);
+    let cell = |link: &Link| morton(points.cell(link.point as usize)) >> (3 * below);
+    let mut made = vec![];
+    for of_cell in finer.chunk_by_mut(|a, b| cell(a) == cell(b)) {
+        stand_for(of_cell, points, &mut made);
+    }
+    // In the order of points, and so in that of cells for the next level.
+    made.sort_unstable_by_key(|l| l.point);
+    made
+}
+
+/// One link for each side that the surface has among `links`: the sides of a thin sheet stay apart.
+fn stand_for(mut links: &mut [Link], points: &Attributes, made: &mut Vec<Link>) {
+    while let Some(first) = links.first() {
+        let facing = first.normal;
+        let count = partition(links, |l| l.normal.dot(facing) > 0.0);
+        let (side, rest) = links.split_at_mut(count);
+        made.push(merged(side, points));
+        links = rest;
+    }
+}
+
+/// Moves what passes to the front, in order, and counts it.
+fn partition(links: &mut [Link], passes: impl Fn(&Link) -> bool) -> usize {
+    let mut count = 0;
+    for i in 0..links.len() {
+        if passes(&links[i]) {
+            // What does not pass keeps its order too: the picture must not depend on how this is done.
+            links[count..=i].rotate_right(1);
+            count += 1;
+        }
+    }
+    count
+}
+
+/// What `links` stand for, at the one nearest to their middle.
+fn merged(links: &[Link], points: &Attributes) -> Link {
+    let origin = points.cell(links[0].point as usize);
+    let place = |l: &Link| between(origin, points.cell(l.point as usize));
+    let area: f32 = links.iter().map(|l| l.area).sum();
+    let mean = links.iter().map(|l| place(l) * (l.area / area)).sum::<Vec3>();
+    let normal = links.iter().map(|l| l.normal * (l.area / area)).sum::<Vec3>();
+    let colour = links.iter().map(|l| l.colour * (l.area / area)).sum::<Vec3>();
+    let distance2 = |l: &Link| place(l).distance_squared(mean);
+    let nearest = links
+        .iter()
+        .min_by(|a, b| distance2(a).total_cmp(&distance2(b)).then(a.point.cmp(&b.point)))
+        .expect("a cell is made of at least one link");
+    Link { point: nearest.point, area, normal: normal.try_normalize().unwrap_or(nearest.normal), colour }
+}

@@ -1,0 +1,83 @@
+//! What a frame is made with.
+
+use crate::error::SurfelError;
+use crate::focus::Focus;
+use glam::{DVec3, Vec3};
+
+/// How discs become a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Procedure {
+    /// Layers of depth, in each the weighted mean of all discs, shaded once per pixel.
+    #[default]
+    Blended,
+    /// The paper's: a z-buffer of discs, links in the pixels of their centres, a Gaussian filter over holes.
+    Paper,
+}
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Light {
+    /// From the eye.
+    #[default]
+    Eye,
+    /// From far away: direction towards the light, world space.
+    Towards(DVec3),
+}
+
+/// How a frame is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Options {
+    /// Default: [`Focus::Everywhere`].
+    pub focus: Focus,
+    /// Default: [`Procedure::Blended`].
+    pub procedure: Procedure,
+    /// Level of detail: points are taken from the coarsest level on which they are at most this many pixels apart;
+    /// 0 always takes all points. Default: 1.
+    pub level: f32,
+    /// Whether nodes that face away or are hidden are skipped; they never show. Default: true.
+    pub culling: bool,
+    /// Default: [`Light::Eye`].
+    pub light: Light,
+    /// Share of the light that comes from everywhere, 0 to 1. Default: 0.1.
+    pub ambient: f32,
+    /// Colour of points that have none, linear RGB. Default: 0.8.
+    pub base: Vec3,
+    /// Whether the frame gets normals besides colour and depth. Default: false.
+    pub normals: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            focus: Focus::Everywhere,
+            procedure: Procedure::Blended,
+            level: 1.0,
+            culling: true,
+            light: Light::Eye,
+            ambient: 0.1,
+            base: Vec3::splat(0.8),
+            normals: false,
+        }
+    }
+}
+
+impl Options {
+    pub(crate) fn check(&self) -> Result<(), SurfelError> {
+        let check = |name, value: f32, good: bool, range| {
+            if good { Ok(()) } else { Err(SurfelError::BadOption { name, value: f64::from(value), range }) }
+        };
+        self.focus.check()?;
+        check("level", self.level, self.level >= 0.0 && self.level.is_finite(), "it must be at least 0")?;
+        check("ambient", self.ambient, (0.0..=1.0).contains(&self.ambient), "it must be 0 to 1")?;
+        for c in self.base.to_array() {
+            check("base", c, c >= 0.0 && c.is_finite(), "it must be at least 0 and finite")?;
+        }
+        if let Light::Towards(d) = self.light
+            && !(d.is_finite() && d.length_squared() > 0.0)
+        {
+            check("light", d.x as f32, false, "the direction must be finite and not zero")?;
+        }
+        Ok(())
+    }
+}

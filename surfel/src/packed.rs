@@ -1,0 +1,86 @@
+//! Directions and colours in 32 bits, for links.
+
+use glam::Vec3;
+
+/// Steps of an octahedral coordinate on either side of 0.
+const STEPS: f32 = 32767.0;
+
+/// A unit vector as a point of the octahedron, 16 bits a coordinate; off by less than 0.005°.
+pub(crate) fn pack_direction(n: Vec3) -> u32 {
+    let n = n / (n.x.abs() + n.y.abs() + n.z.abs());
+    let (mut x, mut y) = (n.x, n.y);
+    if n.z < 0.0 {
+        (x, y) = ((1.0 - n.y.abs()).copysign(n.x), (1.0 - n.x.abs()).copysign(n.y));
+    }
+    let step = |v: f32| (v * STEPS).round() as i32 as u16;
+    u32::from(step(x)) | u32::from(step(y)) << 16
+}
+
+/// The unit vector again.
+pub(crate) fn unpack_direction(packed: u32) -> Vec3 {
+    let coordinate = |bits: u32| f32::from(bits as u16 as i16) / STEPS;
+    let (x, y) = (coordinate(packed), coordinate(packed >> 16));
+    let z = 1.0 - x.abs() - y.abs();
+    let folded = (-z).max(0.0);
+    Vec3::new(x - folded.copysign(x), y - folded.copysign(y), z).normalize()
+}
+
+/// Bits of a mantissa, and the bias of the common exponent.
+const MANTISSA: i32 = 9;
+const BIAS: i32 = 15;
+
+/// A colour with a common exponent, 9 bits a channel; channels up to 65,408, off by at most 1/512 of the largest.
+pub(crate) fn pack_colour(c: [f32; 3]) -> u32 {
+    let largest = (1.0 - f32::exp2(-MANTISSA as f32)) * f32::exp2((31 - BIAS) as f32);
+    let c = c.map(|v| v.clamp(0.0, largest));
+    let brightest = c[0].max(c[1]).max(c[2]);
+    if brightest < f32::exp2((-BIAS - MANTISSA) as f32) {
+        return 0;
+    }
+    let mut exponent = (brightest.log2().floor() as i32).max(-BIAS - 1) + 1 + BIAS;
+    let scale = |exponent: i32| f32::exp2((MANTISSA + BIAS - exponent) as f32);
+    if (brightest * scale(exponent)).round() as u32 >= 1 << MANTISSA {
+        exponent += 1;
+    }
+    let m = c.map(|v| ((v * scale(exponent)).round() as u32).min((1 << MANTISSA) - 1));
+    m[0] | m[1] << 9 | m[2] << 18 | (exponent as u32) << 27
+}
+
+/// The colour again.
+pub(crate) fn unpack_colour(packed: u32) -> [f32; 3] {
+    let scale = f32::exp2(((packed >> 27) as i32 - BIAS - MANTISSA) as f32);
+    [0, 9, 18].map(|shift| (packed >> shift & 0x1ff) as f32 * scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_survive() {
+        let mut n = Vec3::new(0.3, -0.2, 0.9);
+        let turn = glam::Mat3::from_axis_angle(Vec3::new(1.0, 2.0, -0.5).normalize(), 0.7)
+            * glam::Mat3::from_rotation_z(1.3);
+        for _ in 0..2000 {
+            n = (turn * n).normalize();
+            assert!(unpack_direction(pack_direction(n)).angle_between(n) < 9e-5, "{n}");
+        }
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+            assert_eq!(unpack_direction(pack_direction(axis)), axis);
+            assert_eq!(unpack_direction(pack_direction(-axis)), -axis);
+        }
+    }
+
+    #[test]
+    fn colours_survive() {
+        for c in
+            [[0.0; 3], [1.0; 3], [0.999; 3], [0.2, 0.5, 1e-4], [3e4, 0.1, 7.0], [1e-5; 3], [0.25, 0.5, 0.75]]
+        {
+            let back = unpack_colour(pack_colour(c));
+            let brightest = c[0].max(c[1]).max(c[2]);
+            for (a, b) in c.iter().zip(back) {
+                assert!((a - b).abs() <= brightest / 512.0 + 1e-7, "{c:?} became {back:?}");
+            }
+        }
+    }
+}

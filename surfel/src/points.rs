@@ -1,0 +1,92 @@
+//! A point cloud as it comes from a caller.
+
+use crate::error::SurfelError;
+use glam::{DVec3, Vec3};
+
+/// Points of a surface, as slices of one length.
+#[derive(Clone, Copy, Debug)]
+pub struct Points<'a> {
+    /// World.
+    pub positions: &'a [DVec3],
+    /// Outward; of any length above 0. Without them planes are fitted, and the surface is seen from both sides.
+    pub normals: Option<&'a [Vec3]>,
+    /// Linear RGB, not negative.
+    pub colours: Option<&'a [[f32; 3]]>,
+    /// Discs of these radii leave no gap; world units, above 0. Without them they are estimated.
+    pub radii: Option<&'a [f32]>,
+}
+
+impl<'a> Points<'a> {
+    /// Points without attributes.
+    #[must_use]
+    pub const fn new(positions: &'a [DVec3]) -> Self {
+        Self { positions, normals: None, colours: None, radii: None }
+    }
+
+    /// Gives them normals.
+    #[must_use]
+    pub const fn with_normals(mut self, normals: &'a [Vec3]) -> Self {
+        self.normals = Some(normals);
+        self
+    }
+
+    /// Gives them colours.
+    #[must_use]
+    pub const fn with_colours(mut self, colours: &'a [[f32; 3]]) -> Self {
+        self.colours = Some(colours);
+        self
+    }
+
+    /// Gives them radii.
+    #[must_use]
+    pub const fn with_radii(mut self, radii: &'a [f32]) -> Self {
+        self.radii = Some(radii);
+        self
+    }
+
+    /// Most points of a cloud: numbers of points are 32 bits wide, and some stay free.
+    pub const MOST: usize = 1 << 30;
+
+    pub(crate) fn check(&self) -> Result<(), SurfelError> {
+        let count = self.positions.len();
+        if count == 0 {
+            return Err(SurfelError::NoPoints);
+        }
+        if count > Self::MOST {
+            return Err(SurfelError::TooMany { count: count as f64, most: Self::MOST });
+        }
+        let lengths = [
+            ("normals", self.normals.map(<[_]>::len)),
+            ("colours", self.colours.map(<[_]>::len)),
+            ("radii", self.radii.map(<[_]>::len)),
+        ];
+        for (what, length) in lengths {
+            if let Some(length) = length.filter(|&l| l != count) {
+                return Err(SurfelError::LengthMismatch { what, length, count });
+            }
+        }
+        // Half of the largest number: differences of coordinates must be numbers too.
+        let good = |p: &DVec3| p.abs().max_element() <= 0.25 * f64::MAX;
+        if let Some(index) = self.positions.iter().position(|p| !good(p)) {
+            return Err(SurfelError::NotFinite { index });
+        }
+        self.check_attributes()
+    }
+
+    fn check_attributes(&self) -> Result<(), SurfelError> {
+        let normal = |n: &Vec3| n.is_finite() && *n != Vec3::ZERO;
+        if let Some(index) = self.normals.and_then(|all| all.iter().position(|n| !normal(n))) {
+            return Err(SurfelError::BadNormal { index });
+        }
+        let channel = |c: &f32| *c >= 0.0 && c.is_finite();
+        if let Some(index) = self.colours.and_then(|all| all.iter().position(|c| !c.iter().all(channel))) {
+            return Err(SurfelError::BadColour { index });
+        }
+        let radius = |r: &f32| *r > 0.0 && r.is_finite();
+        if let Some(index) = self.radii.and_then(|all| all.iter().position(|r| !radius(r))) {
+            let radius = self.radii.map_or(0.0, |all| all[index]);
+            return Err(SurfelError::BadRadius { index, radius });
+        }
+        Ok(())
+    }
+}
