@@ -8,13 +8,13 @@ use glam::{DVec3, Vec3};
 
 /// How far the plane of a blurred disc is followed beyond the disc itself, in blur radii: what lies on one slanted surface
 /// then has one depth in a pixel, and belongs to one layer. Found by experiment.
-const BLURRED_PLANE: f32 = 1.0;
+const BLURRED_PLANE: f32 = 2.0;
 
 /// How far behind the nearest one a disc may lie and still belong to the same surface: so many radii, and what a slanted
 /// surface gains over so many pixels and blur radii. Found by experiment.
 const THICKNESS: f32 = 1.5;
 const SLANTED_THICKNESS: f32 = 1.5;
-const BLURRED_THICKNESS: f32 = 1.0;
+const BLURRED_THICKNESS: f32 = 0.7;
 
 /// Slopes (depth over width) are taken to be at most this.
 const STEEPEST: f32 = 8.0;
@@ -44,7 +44,7 @@ pub(crate) struct Camera {
 
 impl Camera {
     pub(crate) fn new(view: &View, lattice: &Lattice, root: &Node, focus: &Focus) -> Self {
-        let middle = view.local(lattice.place(root.origin)).z / lattice.side;
+        let middle = view.turned(lattice.way(view.eye, root.origin)).z / lattice.side;
         let extent = f64::from(root.half.length()) + f64::from(root.widest);
         let reference = middle.max(0.01 * extent);
         let is_perspective = view.is_perspective();
@@ -68,7 +68,7 @@ impl Camera {
 
     /// Coordinates of a node's origin along right, down and forward, units.
     pub(crate) fn local(&self, node: &Node) -> DVec3 {
-        self.view.local(self.lattice.place(node.origin)) / self.lattice.side
+        self.view.turned(self.lattice.way(self.view.eye, node.origin)) / self.lattice.side
     }
 
     /// Pixels per unit at a relative depth.
@@ -92,11 +92,29 @@ impl Camera {
         }
     }
 
+    /// The relative depth again.
+    fn unbent(&self, bent: f32) -> f64 {
+        let bent = f64::from(bent);
+        if self.is_perspective { bent / (1.0 - bent / self.reference).max(0.0) } else { bent }
+    }
+
     /// Distance along the view axis in the world.
     pub(crate) fn world_depth(&self, bent: f32) -> f32 {
-        let bent = f64::from(bent);
-        let depth = if self.is_perspective { bent / (1.0 - bent / self.reference) } else { bent };
-        ((depth + self.reference) * self.lattice.side) as f32
+        // Planes of discs beside the eye reach behind it.
+        ((self.unbent(bent) + self.reference).max(0.0) * self.lattice.side) as f32
+    }
+
+    /// Radius of the blur at a bent depth, pixels.
+    pub(crate) fn blur_px(&self, bent: f32) -> f32 {
+        let depth = self.unbent(bent) as f32;
+        self.blur_radius(depth) * self.pixels_per_unit(depth)
+    }
+
+    /// A length in pixels at a bent depth as a difference of bent depths.
+    pub(crate) fn bent_length(&self, pixels: f32, bent: f32) -> f32 {
+        let depth = self.unbent(bent) as f32;
+        let inverse = 1.0 / (depth + self.reference as f32);
+        pixels / self.pixels_per_unit(depth) * self.bending(inverse)
     }
 
     /// Bent depth per depth.

@@ -65,10 +65,10 @@ impl Focus {
 }
 
 /// Full field of view in radians of a lens that is focused: a sensor of this height stands behind it at the distance
-/// 1/(1/focal length − 1/focus). All lengths in one unit; `None` if the focus is nearer than the focal length.
+/// 1/(1/focal length − 1/focus). All lengths in one unit; the focus may be infinite. `None` if it is not beyond the focal length.
 #[must_use]
 pub fn field_of_view_rad(focal_length: f64, sensor_height: f64, focus: f64) -> Option<f64> {
-    let image_distance = focal_length * focus / (focus - focal_length);
+    let image_distance = focal_length / (1.0 - focal_length / focus);
     (focus > focal_length && focal_length > 0.0 && sensor_height > 0.0)
         .then(|| 2.0 * (0.5 * sensor_height / image_distance).atan())
 }

@@ -1,6 +1,6 @@
 //! The picture.
 
-use crate::tile;
+use crate::tile::{self, Place};
 
 /// A drawn frame: row-major layers of `width · height` entries.
 ///
@@ -124,8 +124,14 @@ impl Band<'_> {
     }
 
     /// Columns of a tile.
-    pub(crate) fn columns(&self, tile: usize) -> std::ops::Range<usize> {
+    fn columns(&self, tile: usize) -> std::ops::Range<usize> {
         tile * tile::WIDTH..((tile + 1) * tile::WIDTH).min(self.width)
+    }
+
+    /// Where a tile lies.
+    pub(crate) fn place(&self, tile: usize) -> Place {
+        let columns = self.columns(tile);
+        Place { x: columns.start, y: self.first_row, width: columns.len(), height: self.rows() }
     }
 
     /// Makes a tile empty.

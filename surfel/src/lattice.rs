@@ -38,8 +38,14 @@ impl Lattice {
 
     /// The middle of a cell in the world.
     pub(crate) fn place(&self, cell: [u32; 3]) -> DVec3 {
+        self.way(DVec3::ZERO, cell)
+    }
+
+    /// The way from a place in the world to the middle of a cell. Places near the lattice lose no digits to their distance from the
+    /// origin: the picture is the same wherever the scene lies.
+    pub(crate) fn way(&self, from: DVec3, cell: [u32; 3]) -> DVec3 {
         let middle = DVec3::from_array(cell.map(|c| (f64::from(c) + 0.5) / CELLS));
-        self.low + middle * self.side
+        (self.low - from) + middle * self.side
     }
 }
 

@@ -55,6 +55,7 @@ mod normals;
 mod octree;
 mod options;
 mod packed;
+mod paper;
 mod parallel;
 mod point;
 mod points;

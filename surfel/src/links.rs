@@ -12,7 +12,7 @@ use glam::Vec3;
 
 /// A cube of the octree is divided into 2^DIVISIONS cells a side; each cell in which there is surface gets a link for every
 /// side that the surface has there.
-const DIVISIONS: u32 = 4;
+const DIVISIONS: u32 = 3;
 
 /// A point that stands for others, while levels are made.
 #[derive(Clone, Copy, Debug)]

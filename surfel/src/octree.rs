@@ -4,7 +4,7 @@ use crate::lattice::CODE_BITS;
 use std::ops::Range;
 
 /// Most points of a leaf that can be divided.
-pub(crate) const LEAF: usize = 1024;
+pub(crate) const LEAF: usize = 256;
 
 /// A cube that holds points, without what is in it.
 #[derive(Clone, Debug, PartialEq)]

@@ -74,7 +74,7 @@ impl Options {
             check("base", c, c >= 0.0 && c.is_finite(), "it must be at least 0 and finite")?;
         }
         if let Light::Towards(d) = self.light
-            && !(d.is_finite() && d.length_squared() > 0.0)
+            && !(d.is_finite() && d != DVec3::ZERO)
         {
             check("light", d.x as f32, false, "the direction must be finite and not zero")?;
         }

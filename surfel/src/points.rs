@@ -66,7 +66,8 @@ impl<'a> Points<'a> {
             }
         }
         // Half of the largest number: differences of coordinates must be numbers too.
-        let good = |p: &DVec3| p.abs().max_element() <= 0.25 * f64::MAX;
+        // Not `max_element`, which passes over NaN.
+        let good = |p: &DVec3| p.abs().cmple(DVec3::splat(0.25 * f64::MAX)).all();
         if let Some(index) = self.positions.iter().position(|p| !good(p)) {
             return Err(SurfelError::NotFinite { index });
         }

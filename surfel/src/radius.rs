@@ -38,9 +38,11 @@ pub(crate) fn assign(points: &mut [SurfacePoint], reach: f64) {
     }
 }
 
+/// The next number of `f32`, or the largest.
 fn rounded_up(radius: f64) -> f32 {
     let near = radius as f32;
-    if f64::from(near) < radius { near.next_up() } else { near }
+    let up = if f64::from(near) < radius { near.next_up() } else { near };
+    up.min(f32::MAX)
 }
 
 /// Of a cloud, how far a disc may reach, in parts of the distance of its point's [`REACH_RANK`]th neighbour. Cells of lattices,

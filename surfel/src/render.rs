@@ -3,14 +3,15 @@
 use crate::camera::Camera;
 use crate::cloud::Cloud;
 use crate::error::SurfelError;
-use crate::frame::{Band, Frame, FrameCounts};
-use crate::options::Options;
+use crate::frame::{Frame, FrameCounts};
+use crate::options::{Options, Procedure};
+use crate::paper::{self, Cell, PaperTile};
 use crate::parallel::{self, Pool};
 use crate::select::{self, Selected};
 use crate::shade::Shader;
-use crate::splat::Shape;
-use crate::tile::{self, Place, Scene, Tile};
+use crate::tile::{Place, Scene, Tile};
 use crate::view::View;
+use std::ops::Range;
 
 /// Draws frames. Keeps its working memory, so that later frames hardly allocate.
 #[derive(Default)]
@@ -18,6 +19,9 @@ pub struct Renderer {
     selected: Vec<Selected>,
     stack: Vec<u32>,
     tiles: Pool<Tile>,
+    paper_tiles: Pool<PaperTile>,
+    /// Of the paper's procedure: the picture between its two steps.
+    cells: Vec<Cell>,
 }
 
 impl Renderer {
@@ -46,33 +50,55 @@ impl Renderer {
         let mut counts = FrameCounts::default();
         select::select(cloud, &camera, options, &mut self.selected, &mut self.stack, &mut counts);
         frame.counts = counts;
-        let shader = Shader::new(&camera, options);
-        let shape = Shape::of(options.procedure);
-        let scene = Scene { cloud, camera, shape, shader, culling: options.culling };
-        let (selected, tiles) = (&self.selected, &self.tiles);
-        parallel::for_each_mut(&mut frame.bands(), |band| {
-            tiles.with(|tile| draw_band(tile, &scene, selected, band));
-        });
+        let shader = Shader::new(&camera, options, cloud.has_colours());
+        let scene = Scene { cloud, camera, shader, culling: options.culling };
+        match options.procedure {
+            Procedure::Blended => self.blend(&scene, frame),
+            Procedure::Paper => self.link_and_filter(&scene, frame),
+        }
         Ok(())
+    }
+
+    fn blend(&self, scene: &Scene<'_>, frame: &mut Frame) {
+        parallel::for_each_mut(&mut frame.bands(), |band| {
+            self.tiles.with(|tile| {
+                for number in 0..band.drawn.len() {
+                    let place = band.place(number);
+                    let mut nodes = nodes_in(&self.selected, &place).peekable();
+                    if nodes.peek().is_none() {
+                        band.clear(number);
+                    } else {
+                        tile.draw(scene, &place, nodes, band);
+                    }
+                }
+            });
+        });
+    }
+
+    fn link_and_filter(&mut self, scene: &Scene<'_>, frame: &mut Frame) {
+        let (width, height) = (frame.width(), frame.height());
+        paper::reshape(&mut self.cells, width, height);
+        let mut bands = frame.bands();
+        let mut rows: Vec<_> = paper::rows(&mut self.cells, width).zip(&bands).collect();
+        parallel::for_each_mut(&mut rows, |(cells, band)| {
+            self.paper_tiles.with(|tile| {
+                for number in 0..band.drawn.len() {
+                    let place = band.place(number);
+                    let nodes: Vec<Selected> = nodes_in(&self.selected, &place).collect();
+                    tile.project(scene, &place, &nodes, (&mut **cells, width));
+                }
+            });
+        });
+        let cells = &self.cells;
+        parallel::for_each_mut(&mut bands, |band| paper::reconstruct(scene, cells, band));
     }
 }
 
-fn draw_band(tile: &mut Tile, scene: &Scene<'_>, selected: &[Selected], band: &mut Band<'_>) {
-    let rows = band.first_row..band.first_row + band.rows();
-    let in_band =
-        || selected.iter().filter(|s| usize::from(s.y[0]) < rows.end && usize::from(s.y[1]) >= rows.start);
-    for number in 0..band.drawn.len() {
-        let columns = band.columns(number);
-        let place = Place { x: columns.start, y: band.first_row, width: columns.len(), height: rows.len() };
-        let mut nodes = in_band()
-            .filter(|s| usize::from(s.x[0]) < columns.end && usize::from(s.x[1]) >= columns.start)
-            .copied()
-            .peekable();
-        if nodes.peek().is_none() {
-            band.clear(number);
-        } else {
-            tile.draw(scene, &place, nodes, band);
-        }
-    }
-    debug_assert_eq!(band.first_row % tile::HEIGHT, 0);
+/// The nodes with parts in a tile.
+fn nodes_in(selected: &[Selected], place: &Place) -> impl Iterator<Item = Selected> {
+    let (x, y) = (place.x..place.x + place.width, place.y..place.y + place.height);
+    let meets = |ends: [u16; 2], range: &Range<usize>| {
+        usize::from(ends[0]) < range.end && usize::from(ends[1]) >= range.start
+    };
+    selected.iter().filter(move |s| meets(s.y, &y) && meets(s.x, &x)).copied()
 }

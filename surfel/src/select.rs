@@ -8,7 +8,10 @@ use crate::splat::{DEVIATION_PER_RADIUS, PIXEL_DEVIATION};
 use std::f32::consts::{FRAC_PI_2, PI};
 
 /// Blurred points may be this many blur radii (in pixels) apart. Found by experiment: wider ones show as dots.
-const BLURRED_LEVEL: f32 = 0.35;
+const BLURRED_LEVEL: f32 = 0.7;
+
+/// Between the levels of the tree, of blurred points only every second to fourth is drawn, for as many.
+const MOST_STRIDE: f32 = 4.0;
 
 /// A node to draw.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +20,8 @@ pub(crate) struct Selected {
     /// First and last pixels of all that it draws, within the picture.
     pub(crate) x: [u16; 2],
     pub(crate) y: [u16; 2],
+    /// Every which item is drawn, for as many.
+    pub(crate) stride: u8,
     /// Nothing of it has a smaller bent depth.
     pub(crate) nearest: f32,
     /// Nor does anything belong to a surface farther before it than this.
@@ -45,15 +50,19 @@ pub(crate) fn select(
             counts.nodes_facing_away += 1;
             continue;
         }
-        if !node.is_leaf() && !seen.is_coarse_enough(node, camera, options.level) {
+        let spacing_px = node.spacing * camera.pixels_per_unit(seen.depths[0].max(camera.near));
+        let blurred_px = seen.blurred_spacing_px(camera, options.level);
+        if !node.is_leaf() && spacing_px > options.level.max(blurred_px) {
             stack.extend(node.children.clone());
             continue;
         }
+        let stride = (blurred_px / spacing_px).powi(2).clamp(1.0, MOST_STRIDE) as u8;
+        let drawn = node.items.len().div_ceil(stride.into());
         counts.nodes += 1;
-        counts.points += node.items.len();
-        counts.links += if node.is_leaf() { 0 } else { node.items.len() };
+        counts.points += drawn;
+        counts.links += if node.is_leaf() { 0 } else { drawn };
         let Seen { x, y, nearest, thickness, .. } = seen;
-        selected.push(Selected { node: number, x, y, nearest, thickness });
+        selected.push(Selected { node: number, x, y, stride, nearest, thickness });
     }
     selected.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.node.cmp(&b.node)));
 }
@@ -106,17 +115,14 @@ impl Seen {
         Some(Self { x, y, nearest: camera.bent(before) - slack, thickness: thickness + slack, depths })
     }
 
-    fn is_coarse_enough(&self, node: &Node, camera: &Camera, level: f32) -> bool {
-        let nearest = self.depths[0].max(camera.near);
-        let inside = self.depths[0] <= camera.focus && camera.focus <= self.depths[1];
-        let least_blur = if inside {
-            0.0
-        } else {
-            let px = |depth: f32| camera.blur_radius(depth) * camera.pixels_per_unit(depth);
-            px(nearest).min(px(self.depths[1]))
-        };
-        node.spacing * camera.pixels_per_unit(nearest)
-            <= level.max(BLURRED_LEVEL * least_blur * level.min(1.0))
+    /// How far apart, in pixels, points may be for their blur.
+    fn blurred_spacing_px(&self, camera: &Camera, level: f32) -> f32 {
+        if self.depths[0] <= camera.focus && camera.focus <= self.depths[1] {
+            return 0.0;
+        }
+        let px = |depth: f32| camera.blur_radius(depth) * camera.pixels_per_unit(depth);
+        let least_blur = px(self.depths[0].max(camera.near)).min(px(self.depths[1]));
+        BLURRED_LEVEL * least_blur * level.min(1.0)
     }
 }
 

@@ -29,16 +29,17 @@ pub(crate) struct Shader {
     /// Towards the light in the picture's axes; none if it comes from the eye.
     light: Option<Vec3>,
     ambient: f32,
-    base: Vec3,
+    /// Colour of all points, if they have none of their own.
+    base: Option<Vec3>,
 }
 
 impl Shader {
-    pub(crate) fn new(camera: &Camera, options: &Options) -> Self {
+    pub(crate) fn new(camera: &Camera, options: &Options, coloured: bool) -> Self {
         let light = match options.light {
             Light::Eye => None,
             Light::Towards(d) => Some(camera.view.turned((d / d.abs().max_element()).normalize()).as_vec3()),
         };
-        Self { camera: camera.clone(), light, ambient: options.ambient, base: options.base }
+        Self { camera: camera.clone(), light, ambient: options.ambient, base: (!coloured).then_some(options.base) }
     }
 
     /// Lays the surface with these sums under what is in a pixel; whether nothing below can be seen.
@@ -46,21 +47,21 @@ impl Shader {
         &self,
         pixel: &mut Pixel,
         sums: &Sums,
+        sharpness: f32,
         at: (usize, usize),
-        coloured: bool,
     ) -> bool {
         let inverse = 1.0 / sums[0];
-        let alpha = opacity(sums[0], sums[1] * inverse);
-        let normal = Vec3::new(sums[3], sums[4], sums[5]) * inverse;
-        let paint = if coloured { Vec3::new(sums[6], sums[7], sums[8]) * inverse } else { self.base };
-        let shaded = paint * (self.ambient + (1.0 - self.ambient) * self.facing(normal, at));
+        let alpha = opacity(sums[0], sharpness);
+        let normal = Vec3::new(sums[2], sums[3], sums[4]) * inverse;
+        let paint = Vec3::new(sums[5], sums[6], sums[7]) * inverse;
+        let shaded = self.lit(paint, normal, at);
         let before = pixel.colour[3];
-        let share = (1.0 - before) * alpha;
+        let share = (alpha * (1.0 - MIX * before)).min(1.0 - before);
         for (c, s) in pixel.colour.iter_mut().zip([shaded.x, shaded.y, shaded.z, 1.0]) {
             *c += share * s;
         }
         if before < 0.5 && pixel.colour[3] >= 0.5 {
-            pixel.depth = sums[2] * inverse;
+            pixel.depth = sums[1] * inverse;
             pixel.normal = normal.to_array();
         }
         1.0 - pixel.colour[3] <= LEAST_LIGHT
@@ -69,7 +70,13 @@ impl Shader {
     /// Cosine between the mean normal and the light, 0 if it faces away.
     fn facing(&self, normal: Vec3, at: (usize, usize)) -> f32 {
         let towards = self.light.unwrap_or_else(|| self.towards_eye(at));
-        normal.normalize_or_zero().dot(towards).max(0.0)
+        normal.dot(towards).max(0.0)
+    }
+
+    /// Colour × (A + (1 − A)·max(0, n·l)); a mean of normals is shorter than 1, as is the mean of their cosines.
+    pub(crate) fn lit(&self, paint: Vec3, normal: Vec3, at: (usize, usize)) -> Vec3 {
+        let paint = self.base.unwrap_or(paint);
+        paint * (self.ambient + (1.0 - self.ambient) * self.facing(normal, at))
     }
 
     fn towards_eye(&self, at: (usize, usize)) -> Vec3 {
@@ -86,11 +93,10 @@ impl Shader {
         if pixel.depth == f32::INFINITY { f32::INFINITY } else { self.camera.world_depth(pixel.depth) }
     }
 
-    /// Unit normal of a pixel in the world.
-    pub(crate) fn normal(&self, pixel: &Pixel) -> [f32; 3] {
-        let [x, y, z] = pixel.normal;
+    /// Unit vector in the world along one in the picture's axes.
+    pub(crate) fn in_world(&self, v: Vec3) -> [f32; 3] {
         let [right, down, forward] = self.camera.axes;
-        (right * x + down * y + forward * z).normalize_or_zero().to_array()
+        (right * v.x + down * v.y + forward * v.z).normalize_or_zero().to_array()
     }
 }
 
@@ -104,5 +110,6 @@ fn opacity(sum: f32, sharpness: f32) -> f32 {
     (covered * (1.0 + CLOSING * covered * covered)).min(1.0)
 }
 
+const MIX: f32 = 0.4;
 /// A coverage of 0.85 and more is taken for all.
-const CLOSING: f32 = 0.25;
+const CLOSING: f32 = 0.1;

@@ -12,11 +12,11 @@
 use crate::camera::Camera;
 use crate::cloud::{Cloud, Node, radius_of_area};
 use crate::lattice::offset;
-use crate::options::Procedure;
 use crate::packed;
 use crate::tile;
 use glam::{DVec3, Vec3};
 use pulp::{Arch, NullaryFnOnce};
+use std::ops::Range;
 
 /// Standard deviation of a disc's kernel over its radius. Found by experiment: narrower ones leave spots between
 /// points, wider ones blur.
@@ -68,33 +68,60 @@ pub(crate) struct Splat {
     /// Pixels that it may touch, the last not included.
     pub(crate) columns: [u8; 2],
     pub(crate) rows: [u8; 2],
-    /// What is averaged: 1, sharpness of edges, room for the depth; normal in the picture's axes; colour.
-    pub(crate) values: [f32; 12],
+    /// How much steeper than the kernel's an edge has to be to look sharp.
+    pub(crate) sharpness: f32,
+    /// What is averaged: 1, room for the depth, normal in the picture's axes, colour.
+    pub(crate) values: [f32; 8],
+}
+
+/// What is drawn of a node.
+pub(crate) struct Items<'a> {
+    pub(crate) node: &'a Node,
+    /// Every which item, for as many.
+    pub(crate) stride: usize,
 }
 
 /// How discs are drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shape {
+    /// Standard deviation of the kernel over the radius.
     deviation: f32,
+    /// What is added for the pixel.
     pixel_variance: f32,
     reach2: f32,
     flat_reach2: f32,
+    /// Blur as a kernel of its own, or as more radius.
+    lens: f32,
+    widening: f32,
+    /// Whether `sharpness` is to be the radius in pixels.
+    is_paper: bool,
 }
 
 impl Shape {
-    pub(crate) fn of(procedure: Procedure) -> Self {
-        match procedure {
-            Procedure::Blended => Self {
-                deviation: DEVIATION_PER_RADIUS,
-                pixel_variance: PIXEL_VARIANCE,
-                reach2: REACH2,
-                flat_reach2: FLAT_REACH2,
-            },
-            Procedure::Paper => {
-                Self { deviation: 1.0, pixel_variance: LEAST_RADIUS2, reach2: 1.0, flat_reach2: 1.0 }
-            }
-        }
-    }
+    /// Kernels, blurred by the lens.
+    pub(crate) const BLENDED: Self = Self {
+        deviation: DEVIATION_PER_RADIUS,
+        pixel_variance: PIXEL_VARIANCE,
+        reach2: REACH2,
+        flat_reach2: FLAT_REACH2,
+        lens: 1.0,
+        widening: 0.0,
+        is_paper: false,
+    };
+
+    /// Discs with hard edges.
+    pub(crate) const DISC: Self = Self {
+        deviation: 1.0,
+        pixel_variance: LEAST_RADIUS2,
+        reach2: 1.0,
+        flat_reach2: 1.0,
+        lens: 0.0,
+        widening: 0.0,
+        is_paper: true,
+    };
+
+    /// The same, wider by the blur.
+    pub(crate) const WIDENED_DISC: Self = Self { widening: 1.0, ..Self::DISC };
 }
 
 /// Items of a node that are projected together.
@@ -192,59 +219,71 @@ impl Projector {
         Box::new(Self { offsets: [zero; 3], normals: [zero; 3], radii: zero, areas: zero, out })
     }
 
-    /// Appends what `node` puts into a tile.
+    /// Appends what `drawn` puts into a tile.
     pub(crate) fn project(
         &mut self,
         cloud: &Cloud,
-        node: &Node,
+        drawn: &Items<'_>,
         camera: &Camera,
         shape: &Shape,
         tile: &tile::Place,
         splats: &mut Vec<Splat>,
     ) {
         let arch = Arch::new();
-        let map = Map::new(camera, node, tile, cloud.two_sided);
-        for start in node.items.clone().step_by(LANES) {
-            let items = start as usize..(start as usize + LANES).min(node.items.end as usize);
-            let count = items.len();
-            if node.is_leaf() {
-                self.take_points(cloud, node, items.clone());
+        let map = Map::new(camera, drawn.node, tile, cloud.two_sided);
+        let end = drawn.node.items.end as usize;
+        for start in (drawn.node.items.start as usize..end).step_by(LANES * drawn.stride) {
+            let count = if drawn.stride == 1 && drawn.node.is_leaf() {
+                self.take_run(cloud, drawn.node, start..(start + LANES).min(end))
             } else {
-                self.take_links(cloud, node, items.clone());
-            }
+                self.take_each(cloud, drawn, (start..end).step_by(drawn.stride).take(LANES))
+            };
             arch.dispatch(Project { lanes: self, camera, shape, map: &map, count });
             for i in 0..count {
                 if self.out.kept[i] > 0.0 {
-                    splats.push(self.out.splat(i, colour(cloud, node, items.start + i)));
+                    splats.push(self.out.splat(i, colour(cloud, drawn.node, start + i * drawn.stride)));
                 }
             }
         }
     }
 
-    fn take_points(&mut self, cloud: &Cloud, node: &Node, items: std::ops::Range<usize>) {
+    /// Takes points that follow one another; how many.
+    fn take_run(&mut self, cloud: &Cloud, node: &Node, items: Range<usize>) -> usize {
         let points = &cloud.points;
+        let count = items.len();
         for axis in 0..3 {
             let cells = &points.cells[axis][items.clone()];
             for (to, &cell) in self.offsets[axis].iter_mut().zip(cells) {
                 *to = offset(node.origin[axis], cell);
             }
-            self.normals[axis][..items.len()].copy_from_slice(&points.normals[axis][items.clone()]);
+            self.normals[axis][..count].copy_from_slice(&points.normals[axis][items.clone()]);
         }
-        self.radii[..items.len()].copy_from_slice(&points.radii[items.clone()]);
-        self.areas[..items.len()].copy_from_slice(&points.areas[items]);
+        self.radii[..count].copy_from_slice(&points.radii[items.clone()]);
+        self.areas[..count].copy_from_slice(&points.areas[items]);
+        count
     }
 
-    fn take_links(&mut self, cloud: &Cloud, node: &Node, items: std::ops::Range<usize>) {
-        for (i, link) in items.enumerate() {
-            let point = cloud.links.points[link] as usize;
-            let normal = packed::unpack_direction(cloud.links.normals[link]);
+    /// Takes points or links one by one; how many.
+    fn take_each(&mut self, cloud: &Cloud, drawn: &Items<'_>, items: impl Iterator<Item = usize>) -> usize {
+        let (node, points) = (drawn.node, &cloud.points);
+        let mut count = 0;
+        for item in items {
+            let (point, normal, area, radius) = if node.is_leaf() {
+                (item, points.normal(item), points.areas[item], points.radii[item])
+            } else {
+                let area = cloud.links.areas[item];
+                let normal = packed::unpack_direction(cloud.links.normals[item]);
+                (cloud.links.points[item] as usize, normal, area, radius_of_area(area))
+            };
             for axis in 0..3 {
-                self.offsets[axis][i] = offset(node.origin[axis], cloud.points.cells[axis][point]);
-                self.normals[axis][i] = normal[axis];
+                self.offsets[axis][count] = offset(node.origin[axis], points.cells[axis][point]);
+                self.normals[axis][count] = normal[axis];
             }
-            self.areas[i] = cloud.links.areas[link];
-            self.radii[i] = radius_of_area(self.areas[i]);
+            self.areas[count] = area * drawn.stride as f32;
+            self.radii[count] = radius;
+            count += 1;
         }
+        count
     }
 }
 
@@ -276,7 +315,8 @@ impl Projected {
             flat: self.flat[i] > 0.0,
             columns: [self.ends[0][i] as u8, self.ends[1][i] as u8],
             rows: [self.ends[2][i] as u8, self.ends[3][i] as u8],
-            values: [1.0, self.sharpness[i], 0.0, n[0], n[1], n[2], r, g, b, 0.0, 0.0, 0.0],
+            sharpness: self.sharpness[i],
+            values: [1.0, 0.0, n[0], n[1], n[2], r, g, b],
         }
     }
 }
@@ -325,9 +365,11 @@ fn project_lanes(lanes: &mut Projector, camera: &Camera, shape: &Shape, map: &Ma
         let (a, b, c, facing) = (n[0] * flip, n[1] * flip, n[2] * flip, facing * flip);
         // 3
         let scale = focal * w;
-        let deviation = shape.deviation * radii[i];
         let blur_radius = camera.blur_radius(depth);
-        let (s2, blur) = ((deviation * scale).powi(2), (0.5 * blur_radius * scale).powi(2));
+        let radius = radii[i] + shape.widening * blur_radius;
+        let deviation = shape.deviation * radius;
+        let s2 = (deviation * scale).powi(2);
+        let blur = (0.5 * shape.lens * blur_radius * scale).powi(2);
         let (mx, my) = (a - ux * c, b - uy * c);
         let disc = [s2 * (1.0 + ux * ux - mx * mx), s2 * (ux * uy - mx * my), s2 * (1.0 + uy * uy - my * my)];
         let added = blur + shape.pixel_variance;
@@ -376,7 +418,8 @@ fn project_lanes(lanes: &mut Projector, camera: &Camera, shape: &Shape, map: &Ma
         out.thickness[i] =
             camera.thickness(radii[i], slope_of_disc, 1.0 / scale, blur_radius) * camera.bending(inverse);
         out.flat[i] = if is_flat { 1.0 } else { 0.0 };
-        out.sharpness[i] = (narrow / (EDGE_VARIANCE + blur)).max(1.0).sqrt();
+        let edge = (narrow / (EDGE_VARIANCE + blur)).max(1.0).sqrt();
+        out.sharpness[i] = if shape.is_paper { radius * scale } else { edge };
         (out.normals[0][i], out.normals[1][i], out.normals[2][i]) = (a, b, c);
         (out.ends[0][i], out.ends[1][i], out.ends[2][i], out.ends[3][i]) = (left, right, top, bottom);
         out.kept[i] = if kept { 1.0 } else { 0.0 };

@@ -10,24 +10,24 @@ use crate::frame::Band;
 use crate::kernel;
 use crate::select::Selected;
 use crate::shade::{Pixel, Shader};
-use crate::splat::{Projector, Shape, Splat};
+use crate::splat::{Items, Projector, Shape, Splat};
 
 /// Pixels of a tile: sums and depths fit into the second-level cache.
 pub(crate) const WIDTH: usize = 128;
-pub(crate) const HEIGHT: usize = 64;
+pub(crate) const HEIGHT: usize = 128;
 
 /// Entries from row to row: runs of lanes may reach beyond the tile.
 pub(crate) const PITCH: usize = WIDTH + kernel::LANES;
 
-/// Surfaces behind one another in a pixel. What is left of the light behind the last is black.
-const MOST_LAYERS: usize = 6;
+/// Surfaces behind one another in a pixel. All that lies behind the last but one is taken for the last.
+const MOST_LAYERS: usize = 4;
 
 /// Side of the squares for which the farthest depth is kept, to skip what is hidden.
 const SQUARE: usize = 16;
 const SQUARES: [usize; 2] = [WIDTH / SQUARE, HEIGHT / SQUARE];
 
-/// Weighted sums of a pixel: weight, sharpness, bent depth, normal, colour.
-pub(crate) type Sums = [f32; 12];
+/// Weighted sums of a pixel: weight, bent depth, normal, colour.
+pub(crate) type Sums = [f32; 8];
 
 /// Where a tile lies in the picture, in pixels.
 #[derive(Clone, Copy, Debug)]
@@ -40,11 +40,20 @@ pub(crate) struct Place {
 
 /// Depths and sums of the layer that is being drawn.
 pub(crate) struct Layer {
-    /// Bent depth of the nearest disc.
+    /// Bent depth and sharpness of the nearest disc.
     pub(crate) near: Vec<f32>,
+    pub(crate) sharpness: Vec<f32>,
     /// The same of the layer before: discs must lie behind it by more than their thickness. +∞ where the pixel is done.
     pub(crate) floor: Vec<f32>,
     pub(crate) sums: Vec<Sums>,
+}
+
+impl Layer {
+    pub(crate) fn new() -> Self {
+        let n = PITCH * HEIGHT;
+        let plane = vec![0.0; n];
+        Self { near: plane.clone(), sharpness: plane.clone(), floor: plane, sums: vec![[0.0; 8]; n] }
+    }
 }
 
 /// Working memory for tiles.
@@ -63,14 +72,12 @@ pub(crate) struct Tile {
 
 impl Default for Tile {
     fn default() -> Self {
-        let n = PITCH * HEIGHT;
-        let layer = Layer { near: vec![0.0; n], floor: vec![0.0; n], sums: vec![[0.0; 12]; n] };
         Self {
             projector: Projector::new(),
             splats: vec![],
             behind: vec![],
-            layer,
-            pixels: vec![Pixel::EMPTY; n],
+            layer: Layer::new(),
+            pixels: vec![Pixel::EMPTY; PITCH * HEIGHT],
             farthest: [[f32::INFINITY; SQUARES[0]]; SQUARES[1]],
             hidden: vec![],
         }
@@ -81,7 +88,6 @@ impl Default for Tile {
 pub(crate) struct Scene<'a> {
     pub(crate) cloud: &'a Cloud,
     pub(crate) camera: Camera,
-    pub(crate) shape: Shape,
     pub(crate) shader: Shader,
     pub(crate) culling: bool,
 }
@@ -145,9 +151,9 @@ impl Tile {
         }
         self.behind.clear();
         let all = 0..self.splats.len() as u32;
-        kernel::add::<true>(&mut self.layer, &self.splats, all, &mut self.behind, scene.cloud.has_colours());
+        kernel::add::<true>(&mut self.layer, &self.splats, all, &mut self.behind, 0.0);
         let mut open = self.resolve(scene, place, touched);
-        for _ in 1..MOST_LAYERS {
+        for number in 1..MOST_LAYERS {
             if !open {
                 break;
             }
@@ -155,14 +161,16 @@ impl Tile {
             if self.behind.is_empty() {
                 break;
             }
-            open = self.next_layer(scene, place, touched);
+            let slack = if number + 1 == MOST_LAYERS { f32::INFINITY } else { 0.0 };
+            open = self.next_layer(scene, place, touched, slack);
         }
         self.write(scene, place, band);
     }
 
     fn project(&mut self, scene: &Scene<'_>, place: &Place, selected: &Selected) {
         let node = &scene.cloud.nodes[selected.node as usize];
-        self.projector.project(scene.cloud, node, &scene.camera, &scene.shape, place, &mut self.splats);
+        let items = Items { node, stride: selected.stride.into() };
+        self.projector.project(scene.cloud, &items, &scene.camera, &Shape::BLENDED, place, &mut self.splats);
     }
 
     /// Projects those of the hidden nodes that may be seen through pixels that are not done; what all discs that are left may
@@ -184,20 +192,14 @@ impl Tile {
         touched
     }
 
-    fn next_layer(&mut self, scene: &Scene<'_>, place: &Place, touched: Touched) -> bool {
+    fn next_layer(&mut self, scene: &Scene<'_>, place: &Place, touched: Touched, slack: f32) -> bool {
         for row in touched.rows[0]..touched.rows[1] {
             self.layer.near[touched.pixels(row)].fill(f32::INFINITY);
         }
         kernel::nearest_of(&mut self.layer, &self.splats, &self.behind);
         let candidates = std::mem::take(&mut self.behind);
         let numbers = candidates.iter().copied();
-        kernel::add::<false>(
-            &mut self.layer,
-            &self.splats,
-            numbers,
-            &mut self.behind,
-            scene.cloud.has_colours(),
-        );
+        kernel::add::<false>(&mut self.layer, &self.splats, numbers, &mut self.behind, slack);
         self.resolve(scene, place, touched)
     }
 
@@ -213,8 +215,8 @@ impl Tile {
                     continue;
                 }
                 let at = (place.x + i - row * PITCH, place.y + row);
-                let done = scene.shader.lay_under(&mut self.pixels[i], sums, at, scene.cloud.has_colours());
-                *sums = [0.0; 12];
+                let done = scene.shader.lay_under(&mut self.pixels[i], sums, self.layer.sharpness[i], at);
+                *sums = [0.0; 8];
                 self.layer.floor[i] = if done { f32::INFINITY } else { self.layer.near[i] };
                 open |= !done;
             }
@@ -235,7 +237,7 @@ impl Tile {
             }
             if let Some(normals) = &mut band.normal {
                 for (pixel, normal) in from.iter().zip(&mut normals[to]) {
-                    *normal = scene.shader.normal(pixel);
+                    *normal = scene.shader.in_world(pixel.normal.into());
                 }
             }
         }

@@ -106,11 +106,6 @@ impl View {
         }
     }
 
-    /// Coordinates along right, down and forward of a point, from the eye.
-    pub(crate) fn local(&self, p: DVec3) -> DVec3 {
-        self.turned(p - self.eye)
-    }
-
     /// Coordinates along right, down and forward of a direction.
     pub(crate) fn turned(&self, v: DVec3) -> DVec3 {
         DVec3::new(v.dot(self.right), v.dot(self.down), v.dot(self.forward))

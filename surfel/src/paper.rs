@@ -1,0 +1,263 @@
+//! The paper's procedure: z-buffers of discs, links in the pixels of their centres, and a filter over the pixels between.
+//!
+//! Discs have hard edges and the radius r₀, or r = r₀ + d·|l − f| with depth of field. One z-buffer is drawn with each.
+//! A disc whose centre is not hidden in the first leaves a link in its centre's pixel. A covered pixel without a link is a
+//! hole: it gets the mean of the links around it within the radius of the disc that covers it, weighted with a
+//! Gaussian. Pixels that are out of focus are filtered in the same way. Where the two z-buffers differ, things at different
+//! depths meet, and every link is weighted with the Gaussian of its own radius.
+//!
+//! Departures: blurred pixels are as opaque as the share of the filter that the first z-buffer covers (the paper's figures
+//! have no background to tell), and a disc is never so small that it misses all pixel centres.
+
+use crate::camera::Camera;
+use crate::frame::Band;
+use crate::kernel;
+use crate::select::Selected;
+use crate::splat::{Items, Projector, Shape, Splat};
+use crate::tile::{self, Layer, PITCH, Place, Scene};
+use glam::Vec3;
+
+/// The filter's radius is this many of its standard deviations.
+const DEVIATIONS: f32 = 2.0;
+
+/// A disc that is blurred by less is sharp.
+const LEAST_BLUR_PX: f32 = 0.25;
+
+/// Largest radius of the filter in pixels: its time grows with the square.
+const WIDEST_PX: f32 = 64.0;
+
+/// A disc in the pixel of its centre.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    /// +∞ if there is none.
+    depth: f32,
+    /// With depth of field, pixels.
+    radius: f32,
+    normal: Vec3,
+    /// Shaded.
+    colour: Vec3,
+}
+
+impl Link {
+    const NONE: Self = Self { depth: f32::INFINITY, radius: 0.0, normal: Vec3::ZERO, colour: Vec3::ZERO };
+}
+
+/// A pixel between the two steps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cell {
+    /// Nearest depth of discs with r₀ and with r.
+    near: [f32; 2],
+    /// Of the disc that is nearest with r: its radius in pixels, and whether it is blurred.
+    radius: f32,
+    link: Link,
+}
+
+impl Cell {
+    const EMPTY: Self = Self { near: [f32::INFINITY; 2], radius: 0.0, link: Link::NONE };
+}
+
+/// Working memory for tiles.
+pub(crate) struct PaperTile {
+    projector: Box<Projector>,
+    splats: Vec<Splat>,
+    layer: Layer,
+}
+
+impl Default for PaperTile {
+    fn default() -> Self {
+        Self { projector: Projector::new(), splats: vec![], layer: Layer::new() }
+    }
+}
+
+impl PaperTile {
+    /// Step 1: z-buffers and links of one tile into `cells`, whose rows are `width` long.
+    pub(crate) fn project(
+        &mut self,
+        scene: &Scene<'_>,
+        place: &Place,
+        nodes: &[Selected],
+        (cells, width): (&mut [Cell], usize),
+    ) {
+        let at = |row: usize, column: usize| row * width + place.x + column;
+        for row in 0..place.height {
+            cells[at(row, 0)..at(row, place.width)].fill(Cell::EMPTY);
+        }
+        for (k, shape) in [Shape::DISC, Shape::WIDENED_DISC].iter().enumerate() {
+            self.splats.clear();
+            for selected in nodes {
+                let node = &scene.cloud.nodes[selected.node as usize];
+                let items = Items { node, stride: selected.stride.into() };
+                self.projector.project(scene.cloud, &items, &scene.camera, shape, place, &mut self.splats);
+            }
+            self.layer.near.fill(f32::INFINITY);
+            kernel::nearest::<true>(&mut self.layer, &self.splats);
+            for row in 0..place.height {
+                for column in 0..place.width {
+                    let cell = &mut cells[at(row, column)];
+                    cell.near[k] = self.layer.near[row * PITCH + column];
+                    cell.radius = self.layer.sharpness[row * PITCH + column];
+                }
+            }
+        }
+        // The splats are those with r: a link knows its filter.
+        for s in &self.splats {
+            let (x, y) = (s.x.floor(), s.y.floor());
+            let inside = x >= 0.0 && y >= 0.0 && x < place.width as f32 && y < place.height as f32;
+            if !inside {
+                continue;
+            }
+            let (column, row) = (x as usize, y as usize);
+            let cell = &mut cells[at(row, column)];
+            if s.depth <= cell.near[0] + s.thickness && s.depth < cell.link.depth {
+                cell.link = scene.link(s, (place.x + column, place.y + row));
+            }
+        }
+    }
+}
+
+impl Scene<'_> {
+    fn link(&self, s: &Splat, at: (usize, usize)) -> Link {
+        let [_, _, a, b, c, red, green, blue] = s.values;
+        let normal = Vec3::new(a, b, c);
+        let colour = self.shader.lit(Vec3::new(red, green, blue), normal, at);
+        Link { depth: s.depth, radius: s.sharpness, normal, colour }
+    }
+}
+
+/// Step 2: filters all pixels of a band.
+pub(crate) fn reconstruct(scene: &Scene<'_>, cells: &[Cell], band: &mut Band<'_>) {
+    let width = band.width;
+    let height = cells.len() / width;
+    for row in 0..band.rows() {
+        for column in 0..width {
+            let i = row * width + column;
+            let filtered = Filter::new(scene, cells, (width, height), (column, band.first_row + row)).run();
+            let [r, g, b] = (filtered.colour * filtered.alpha).to_array();
+            band.colour[i] = [r, g, b, filtered.alpha];
+            let shown = filtered.alpha >= 0.5;
+            band.depth[i] = if shown { scene.camera.world_depth(filtered.depth) } else { f32::INFINITY };
+            if let Some(normals) = &mut band.normal {
+                normals[i] = if shown { scene.shader.in_world(filtered.normal) } else { [0.0; 3] };
+            }
+        }
+    }
+    band.drawn.fill(true);
+}
+
+struct Filtered {
+    colour: Vec3,
+    normal: Vec3,
+    depth: f32,
+    alpha: f32,
+}
+
+/// The filter over one pixel.
+struct Filter<'a> {
+    camera: &'a Camera,
+    cells: &'a [Cell],
+    size: (usize, usize),
+    at: (usize, usize),
+}
+
+impl<'a> Filter<'a> {
+    fn new(scene: &'a Scene<'_>, cells: &'a [Cell], size: (usize, usize), at: (usize, usize)) -> Self {
+        Self { camera: &scene.camera, cells, size, at }
+    }
+
+    fn run(&self) -> Filtered {
+        let cell = &self.cells[self.at.1 * self.size.0 + self.at.0];
+        let depth = if cell.near[0] < f32::INFINITY { cell.near[0] } else { cell.near[1] };
+        let blank = Filtered { colour: Vec3::ZERO, normal: Vec3::ZERO, depth, alpha: 0.0 };
+        if depth == f32::INFINITY {
+            return blank;
+        }
+        let blurred = self.camera.blur_px(depth) > LEAST_BLUR_PX;
+        let link = &cell.link;
+        let thickness = self.camera.bent_length(cell.radius, depth);
+        let differ = (cell.near[0] - cell.near[1]).abs() > thickness || cell.near[0] == f32::INFINITY;
+        if link.depth < f32::INFINITY && !blurred && !differ {
+            return Filtered { colour: link.colour, normal: link.normal, depth, alpha: 1.0 };
+        }
+        let radius = cell.radius.clamp(1.0, WIDEST_PX);
+        let mut sums = Sums::default();
+        self.neighbours(radius, |other, distance2| {
+            let own = if differ { other.link.radius.clamp(1.0, WIDEST_PX) } else { radius };
+            let weight = gaussian(distance2, own);
+            let open = gaussian(distance2, radius);
+            sums.all += open;
+            sums.covered += if other.near[0] < f32::INFINITY { open } else { 0.0 };
+            // Not from another surface behind or before, where only one is meant.
+            let same = differ || (other.link.depth - depth).abs() <= thickness;
+            if other.link.depth < f32::INFINITY && same {
+                sums.add(&other.link, weight);
+            }
+        });
+        if sums.weight == 0.0 {
+            // No link in reach: what is covered stays covered.
+            return self.nearest_link(radius, depth).unwrap_or(blank);
+        }
+        let alpha = if blurred || differ { sums.covered / sums.all } else { 1.0 };
+        Filtered { colour: sums.colour / sums.weight, normal: sums.normal / sums.weight, depth, alpha }
+    }
+
+    /// Calls `each` with all pixels within `radius` and their squared distances.
+    fn neighbours(&self, radius: f32, mut each: impl FnMut(&Cell, f32)) {
+        let reach = radius.ceil() as usize;
+        let range = |at: usize, size: usize| at.saturating_sub(reach)..(at + reach + 1).min(size);
+        for y in range(self.at.1, self.size.1) {
+            let dy = y as f32 - self.at.1 as f32;
+            for x in range(self.at.0, self.size.0) {
+                let dx = x as f32 - self.at.0 as f32;
+                let distance2 = dx * dx + dy * dy;
+                if distance2 <= radius * radius {
+                    each(&self.cells[y * self.size.0 + x], distance2);
+                }
+            }
+        }
+    }
+
+    /// The nearest link within twice the radius.
+    fn nearest_link(&self, radius: f32, depth: f32) -> Option<Filtered> {
+        let mut nearest: Option<(f32, Link)> = None;
+        self.neighbours(2.0 * radius + 1.0, |other, distance2| {
+            let is_nearer = nearest.is_none_or(|(best, _)| distance2 < best);
+            if other.link.depth < f32::INFINITY && is_nearer {
+                nearest = Some((distance2, other.link));
+            }
+        });
+        nearest.map(|(_, l)| Filtered { colour: l.colour, normal: l.normal, depth, alpha: 1.0 })
+    }
+}
+
+fn gaussian(distance2: f32, radius: f32) -> f32 {
+    let deviation = radius / DEVIATIONS;
+    if distance2 > radius * radius { 0.0 } else { (-0.5 * distance2 / (deviation * deviation)).exp() }
+}
+
+#[derive(Default)]
+struct Sums {
+    weight: f32,
+    colour: Vec3,
+    normal: Vec3,
+    /// Of the filter: all, and where there is surface.
+    all: f32,
+    covered: f32,
+}
+
+impl Sums {
+    fn add(&mut self, link: &Link, weight: f32) {
+        self.weight += weight;
+        self.colour += link.colour * weight;
+        self.normal += link.normal * weight;
+    }
+}
+
+/// Makes room for a frame.
+pub(crate) fn reshape(cells: &mut Vec<Cell>, width: usize, height: usize) {
+    cells.resize(width * height, Cell::EMPTY);
+}
+
+/// Rows of cells for each band of tiles.
+pub(crate) fn rows(cells: &mut [Cell], width: usize) -> impl Iterator<Item = &mut [Cell]> {
+    cells.chunks_mut(width * tile::HEIGHT)
+}
