@@ -88,7 +88,7 @@ pub struct Cloud {
 }
 
 /// Radius of a disc for its share of the surface: half the diagonal of a square.
-const RADIUS_PER_ROOT_AREA: f32 = std::f32::consts::FRAC_1_SQRT_2;
+const RADIUS_PER_ROOT_AREA: f32 = 0.9;
 
 /// The radius that a link is drawn with.
 pub(crate) fn radius_of_area(area: f32) -> f32 {

@@ -2,13 +2,16 @@
 
 use crate::splat::Splat;
 use crate::tile::{Layer, PITCH, Sums};
-use pulp::{Arch, NullaryFnOnce};
+use pulp::{Arch, Simd, WithSimd};
 
-/// Pixels that are computed together.
+/// Pixels that are computed together: a whole number of vectors of any processor.
 pub(crate) const LANES: usize = 8;
 
 /// Distances of the pixels of a run from its first.
 const RAMP: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+/// The place of the depth among the values.
+const IS_DEPTH: Sums = [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
 
 /// Keeps the nearest depth of all `splats`; of those behind the floor unless this is the `FIRST` layer.
 pub(crate) fn nearest<const FIRST: bool>(layer: &mut Layer, splats: &[Splat]) {
@@ -38,26 +41,31 @@ struct Nearest<'a, const FIRST: bool, I> {
     splats: I,
 }
 
-impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> NullaryFnOnce for Nearest<'_, FIRST, I> {
+impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<'_, FIRST, I> {
     type Output = ();
 
-    // Loops and functions that are always inlined, no closures: what is not inlined into the vectorised caller stays narrow.
+    // Everything is inlined, and there are no closures: what is compiled on its own stays narrow.
     #[inline(always)]
-    fn call(self) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Layer { near, sharpness, floor, .. } = self.layer;
+        let nothing = simd.splat_f32s(f32::INFINITY);
         for s in self.splats {
+            let own_sharpness = simd.splat_f32s(s.sharpness);
             let columns = usize::from(s.columns[0])..usize::from(s.columns[1]);
             for row in usize::from(s.rows[0])..usize::from(s.rows[1]) {
+                let line = Line::new(simd, s, row);
                 for column in columns.clone().step_by(LANES) {
-                    let run = Run::of(s, row, column);
-                    let at = row * PITCH + column;
-                    let shown = run.is_seen::<FIRST>(s, floor, at);
-                    let (near, sharpness) = (lanes_mut(near, at), lanes_mut(sharpness, at));
-                    for i in 0..LANES {
-                        let depth = if shown[i] { run.depth[i] } else { f32::INFINITY };
-                        let nearer = depth < near[i];
-                        near[i] = if nearer { depth } else { near[i] };
-                        sharpness[i] = if nearer { s.sharpness } else { sharpness[i] };
+                    let run = row * PITCH + column..row * PITCH + column + LANES;
+                    let near = S::as_mut_simd_f32s(&mut near[run.clone()]).0;
+                    let sharpness = S::as_mut_simd_f32s(&mut sharpness[run.clone()]).0;
+                    let floor = S::as_simd_f32s(&floor[run]).0;
+                    for (i, ramp) in S::as_simd_f32s(&RAMP).0.iter().enumerate() {
+                        let (rest, depth) = line.at::<FIRST>(simd, column, *ramp, floor[i]);
+                        let is_there = simd.greater_than_f32s(rest, simd.splat_f32s(0.0));
+                        let depth = simd.select_f32s(is_there, depth, nothing);
+                        let is_nearer = simd.less_than_f32s(depth, near[i]);
+                        near[i] = simd.select_f32s(is_nearer, depth, near[i]);
+                        sharpness[i] = simd.select_f32s(is_nearer, own_sharpness, sharpness[i]);
                     }
                 }
             }
@@ -73,118 +81,116 @@ struct Add<'a, const FIRST: bool, I> {
     slack: f32,
 }
 
-impl<const FIRST: bool, I: Iterator<Item = u32>> NullaryFnOnce for Add<'_, FIRST, I> {
+impl<const FIRST: bool, I: Iterator<Item = u32>> WithSimd for Add<'_, FIRST, I> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Layer { near, floor, sums, .. } = self.layer;
+        let none = simd.splat_f32s(0.0);
         for number in self.numbers {
             let s = &self.splats[number as usize];
+            let weight = simd.splat_f32s(s.weight);
+            let thickness = simd.splat_f32s(s.thickness + self.slack);
             let columns = usize::from(s.columns[0])..usize::from(s.columns[1]);
-            let mut is_behind = false;
+            let mut hidden = none;
             for row in usize::from(s.rows[0])..usize::from(s.rows[1]) {
+                let line = Line::new(simd, s, row);
                 for column in columns.clone().step_by(LANES) {
-                    let run = Run::of(s, row, column);
-                    let at = row * PITCH + column;
-                    let seen = run.is_seen::<FIRST>(s, floor, at);
-                    let (weights, behind) = run.weights(s, &seen, lanes(near, at), self.slack);
-                    is_behind |= behind;
+                    let run = row * PITCH + column..row * PITCH + column + LANES;
+                    let near = S::as_simd_f32s(&near[run.clone()]).0;
+                    let floor = S::as_simd_f32s(&floor[run.clone()]).0;
+                    let (mut weights, mut depths) = ([0.0; LANES], [0.0; LANES]);
+                    let out = S::as_mut_simd_f32s(&mut weights).0.iter_mut();
+                    let out = out.zip(S::as_mut_simd_f32s(&mut depths).0);
+                    for (i, (w, d)) in out.enumerate() {
+                        let (rest, depth) =
+                            line.at::<FIRST>(simd, column, S::as_simd_f32s(&RAMP).0[i], floor[i]);
+                        let belongs = simd.less_than_or_equal_f32s(depth, simd.add_f32s(near[i], thickness));
+                        let shown = simd.select_f32s(belongs, rest, none);
+                        hidden = simd.add_f32s(hidden, simd.sub_f32s(rest, shown));
+                        let kernel = if s.flat { simd.sqrt_f32s(shown) } else { simd.mul_f32s(shown, shown) };
+                        (*w, *d) = (simd.mul_f32s(weight, kernel), depth);
+                    }
                     let width = (columns.end - column).min(LANES);
-                    add_run(s, &run, &weights, &mut sums[at..at + width]);
+                    add_run(simd, s, &weights, &depths, &mut sums[run.start..run.start + width]);
                 }
             }
-            if is_behind {
+            if simd.reduce_max_f32s(hidden) > 0.0 {
                 self.behind.push(number);
             }
         }
     }
 }
 
-/// Pixels of a row under a splat.
-struct Run {
-    /// (1 − q/R)·h² where the kernel is, else 0.
-    rest: [f32; LANES],
-    depth: [f32; LANES],
+/// A row of pixels under a splat: what is the same for all of them.
+struct Line<S: Simd> {
+    /// Way from the centre of the disc to that of the row's first pixel.
+    x: f32,
+    xx: S::f32s,
+    xy: S::f32s,
+    yy: S::f32s,
+    h: S::f32s,
+    kx: S::f32s,
+    depth: S::f32s,
+    depth_x: S::f32s,
+    thickness: S::f32s,
 }
 
-impl Run {
+impl<S: Simd> Line<S> {
     #[inline(always)]
-    fn of(s: &Splat, row: usize, column: usize) -> Self {
+    fn new(simd: S, s: &Splat, row: usize) -> Self {
         let dy = row as f32 + 0.5 - s.y;
-        let first = column as f32 + 0.5 - s.x;
-        // What is the same for the whole row.
-        let (h_row, depth_row) = (1.0 + s.ky * dy, s.depth + s.depth_y * dy);
-        let (xy, yy) = (2.0 * s.xy * dy, s.yy * dy * dy);
-        let mut run = Self { rest: [0.0; LANES], depth: [0.0; LANES] };
-        for i in 0..LANES {
-            let dx = first + RAMP[i];
-            let h = h_row + s.kx * dx;
-            // (1 − q/R)·h², which spares a division: h is 1 at the centre and not far from it anywhere.
-            let rest = h * h - ((s.xx * dx + xy) * dx + yy);
-            // Beyond the horizon of its plane, h is not above 0.
-            run.rest[i] = if (rest > 0.0) & (h > 0.0) { rest } else { 0.0 };
-            run.depth[i] = depth_row + s.depth_x * dx;
+        Self {
+            x: 0.5 - s.x,
+            xx: simd.splat_f32s(s.xx),
+            xy: simd.splat_f32s(2.0 * s.xy * dy),
+            yy: simd.splat_f32s(s.yy * dy * dy),
+            h: simd.splat_f32s(1.0 + s.ky * dy),
+            kx: simd.splat_f32s(s.kx),
+            depth: simd.splat_f32s(s.depth + s.depth_y * dy),
+            depth_x: simd.splat_f32s(s.depth_x),
+            thickness: simd.splat_f32s(s.thickness),
         }
-        run
     }
 
-    /// Where the disc is, behind the layer before.
+    /// (1 − q/R)·h², or 0 where the kernel is not or lies before the floor; and the bent depth.
+    ///
+    /// The factor h² spares a division: it is 1 at the centre and not far from it anywhere. Beyond the horizon of the
+    /// disc's plane h is not above 0. Multiplied and added apart, not fused, so that all processors agree.
     #[inline(always)]
-    fn is_seen<const FIRST: bool>(&self, s: &Splat, floor: &[f32], at: usize) -> [bool; LANES] {
-        let mut seen = [false; LANES];
-        if FIRST {
-            for i in 0..LANES {
-                seen[i] = self.rest[i] > 0.0;
-            }
-        } else {
-            let floor = lanes(floor, at);
-            for i in 0..LANES {
-                seen[i] = (self.rest[i] > 0.0) & (self.depth[i] > floor[i] + s.thickness);
-            }
-        }
-        seen
-    }
-
-    /// Weights in the nearest surface, and whether any pixel has the disc behind it.
-    #[inline(always)]
-    fn weights(
+    fn at<const FIRST: bool>(
         &self,
-        s: &Splat,
-        seen: &[bool; LANES],
-        near: &[f32; LANES],
-        slack: f32,
-    ) -> ([f32; LANES], bool) {
-        let mut weights = [0.0; LANES];
-        let mut behind = 0;
-        for i in 0..LANES {
-            let belongs = self.depth[i] <= near[i] + (s.thickness + slack);
-            let rest = if seen[i] & belongs { self.rest[i] } else { 0.0 };
-            weights[i] = s.weight * if s.flat { rest.sqrt() } else { rest * rest };
-            behind |= u32::from(seen[i] & !belongs);
+        simd: S,
+        column: usize,
+        ramp: S::f32s,
+        floor: S::f32s,
+    ) -> (S::f32s, S::f32s) {
+        let none = simd.splat_f32s(0.0);
+        let dx = simd.add_f32s(simd.splat_f32s(column as f32 + self.x), ramp);
+        let h = simd.max_f32s(simd.add_f32s(self.h, simd.mul_f32s(self.kx, dx)), none);
+        let q = simd.add_f32s(simd.mul_f32s(self.xx, dx), self.xy);
+        let q = simd.add_f32s(simd.mul_f32s(q, dx), self.yy);
+        let rest = simd.max_f32s(simd.sub_f32s(simd.mul_f32s(h, h), q), none);
+        let depth = simd.add_f32s(self.depth, simd.mul_f32s(self.depth_x, dx));
+        if FIRST {
+            return (rest, depth);
         }
-        (weights, behind != 0)
+        let is_behind = simd.greater_than_f32s(depth, simd.add_f32s(floor, self.thickness));
+        (simd.select_f32s(is_behind, rest, none), depth)
     }
 }
 
 #[inline(always)]
-fn lanes(all: &[f32], at: usize) -> &[f32; LANES] {
-    all[at..at + LANES].try_into().expect("a run has as many entries as there are lanes")
-}
-
-#[inline(always)]
-fn lanes_mut(all: &mut [f32], at: usize) -> &mut [f32; LANES] {
-    (&mut all[at..at + LANES]).try_into().expect("a run has as many entries as there are lanes")
-}
-
-#[inline(always)]
-fn add_run(s: &Splat, run: &Run, weights: &[f32; LANES], sums: &mut [Sums]) {
+fn add_run<S: Simd>(simd: S, s: &Splat, weights: &[f32; LANES], depths: &[f32; LANES], sums: &mut [Sums]) {
     // Also where the weight is 0: a branch that is often guessed wrong takes longer than to add nothing.
-    for ((sum, w), depth) in sums.iter_mut().zip(weights).zip(&run.depth) {
-        let mut values = s.values;
-        values[1] = *depth;
-        for (total, value) in sum.iter_mut().zip(values) {
-            *total += w * value;
+    for ((sum, w), depth) in sums.iter_mut().zip(weights).zip(depths) {
+        let (w, depth) = (simd.splat_f32s(*w), simd.splat_f32s(*depth));
+        let sum = S::as_mut_simd_f32s(sum).0.iter_mut();
+        let values = S::as_simd_f32s(&s.values).0.iter().zip(S::as_simd_f32s(&IS_DEPTH).0);
+        for (total, (value, is_depth)) in sum.zip(values) {
+            let value = simd.add_f32s(*value, simd.mul_f32s(depth, *is_depth));
+            *total = simd.add_f32s(*total, simd.mul_f32s(w, value));
         }
     }
 }

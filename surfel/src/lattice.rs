@@ -15,7 +15,7 @@ const CELLS: f64 = 4_294_967_296.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lattice {
     pub(crate) low: DVec3,
-    /// A power of 2: units change no digits.
+    /// The longest side of the box around the cloud: what is drawn does not depend on the unit of length.
     pub(crate) side: f64,
 }
 
@@ -28,7 +28,7 @@ impl Lattice {
         let extent = (high - low).max_element();
         // Points in one place need some length to measure their discs in.
         let extent = if extent > 0.0 { extent.max(1e-290) } else { 1.0 };
-        Self { low, side: extent.log2().ceil().min(1023.0).exp2() }
+        Self { low, side: extent }
     }
 
     /// The cell that holds `p`.

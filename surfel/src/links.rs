@@ -80,9 +80,37 @@ fn links_of(cube: &Cube, cubes: &[Cube], links: &[Vec<Link>], points: &Attribute
     for of_cell in finer.chunk_by_mut(|a, b| cell(a) == cell(b)) {
         stand_for(of_cell, points, &mut made);
     }
+    absorb_slivers(&mut made, points);
     // In the order of points, and so in that of cells for the next level.
     made.sort_unstable_by_key(|l| l.point);
     made
+}
+
+/// A link for less than this share of the mean area is none: its neighbour stands for it too.
+const SLIVER: f32 = 0.4;
+
+/// Surfaces cut corners off cells: links for those would lie close to others and leave gaps elsewhere.
+fn absorb_slivers(links: &mut Vec<Link>, points: &Attributes) {
+    let least = SLIVER * links.iter().map(|l| l.area).sum::<f32>() / links.len() as f32;
+    // The smallest first, so that several small ones may make a large one.
+    links.sort_unstable_by(|a, b| a.area.total_cmp(&b.area).then(a.point.cmp(&b.point)));
+    let mut kept = std::mem::take(links);
+    for i in 0..kept.len() {
+        let sliver = kept[i];
+        let origin = points.cell(sliver.point as usize);
+        let distance2 = |l: &Link| between(origin, points.cell(l.point as usize)).length_squared();
+        let nearest = (i + 1..kept.len())
+            .filter(|&j| kept[j].normal.dot(sliver.normal) > 0.5)
+            .min_by(|&a, &b| distance2(&kept[a]).total_cmp(&distance2(&kept[b])).then(a.cmp(&b)))
+            .filter(|_| sliver.area < least);
+        match nearest {
+            Some(j) => {
+                let place = kept[j].point;
+                kept[j] = Link { point: place, ..merged(&[kept[j], sliver], points) };
+            }
+            None => links.push(sliver),
+        }
+    }
 }
 
 /// One link for each side that the surface has among `links`: the sides of a thin sheet stay apart.

@@ -8,7 +8,7 @@ use crate::splat::{DEVIATION_PER_RADIUS, PIXEL_DEVIATION};
 use std::f32::consts::{FRAC_PI_2, PI};
 
 /// Blurred points may be this many blur radii (in pixels) apart. Found by experiment: wider ones show as dots.
-const BLURRED_LEVEL: f32 = 0.7;
+const BLURRED_LEVEL: f32 = 0.6;
 
 /// Between the levels of the tree, of blurred points only every second to fourth is drawn, for as many.
 const MOST_STRIDE: f32 = 4.0;
@@ -56,7 +56,9 @@ pub(crate) fn select(
             stack.extend(node.children.clone());
             continue;
         }
-        let stride = (blurred_px / spacing_px).powi(2).clamp(1.0, MOST_STRIDE) as u8;
+        let thinning = (blurred_px / spacing_px).powi(2);
+        // Not `clamp`, which keeps NaN: points that have no extent on the picture, and no blur.
+        let stride = if thinning > 1.0 { thinning.min(MOST_STRIDE) as u8 } else { 1 };
         let drawn = node.items.len().div_ceil(stride.into());
         counts.nodes += 1;
         counts.points += drawn;

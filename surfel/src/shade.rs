@@ -39,7 +39,12 @@ impl Shader {
             Light::Eye => None,
             Light::Towards(d) => Some(camera.view.turned((d / d.abs().max_element()).normalize()).as_vec3()),
         };
-        Self { camera: camera.clone(), light, ambient: options.ambient, base: (!coloured).then_some(options.base) }
+        Self {
+            camera: camera.clone(),
+            light,
+            ambient: options.ambient,
+            base: (!coloured).then_some(options.base),
+        }
     }
 
     /// Lays the surface with these sums under what is in a pixel; whether nothing below can be seen.
@@ -112,4 +117,4 @@ fn opacity(sum: f32, sharpness: f32) -> f32 {
 
 const MIX: f32 = 0.4;
 /// A coverage of 0.85 and more is taken for all.
-const CLOSING: f32 = 0.1;
+const CLOSING: f32 = 0.15;

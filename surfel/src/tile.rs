@@ -14,7 +14,7 @@ use crate::splat::{Items, Projector, Shape, Splat};
 
 /// Pixels of a tile: sums and depths fit into the second-level cache.
 pub(crate) const WIDTH: usize = 128;
-pub(crate) const HEIGHT: usize = 128;
+pub(crate) const HEIGHT: usize = 64;
 
 /// Entries from row to row: runs of lanes may reach beyond the tile.
 pub(crate) const PITCH: usize = WIDTH + kernel::LANES;
