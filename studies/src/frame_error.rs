@@ -5,7 +5,7 @@ use pointillist_ibpr::Frame;
 use crate::true_surface::Truth;
 
 /// Pixels from an outline or a depth step that do not count as interior.
-const EDGE: usize = 2;
+pub(crate) const EDGE: usize = 2;
 
 /// Neighbouring pixels whose depths differ by more spacings have a step between them.
 const STEP: f64 = 5.0;
@@ -120,12 +120,12 @@ impl Measure {
     }
 }
 
-fn srgb(linear: f64) -> f64 {
+pub(crate) fn srgb(linear: f64) -> f64 {
     let c = linear.clamp(0.0, 1.0);
     if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }
 
-fn quantile(values: &mut [f64], share: f64) -> f64 {
+pub(crate) fn quantile(values: &mut [f64], share: f64) -> f64 {
     if values.is_empty() {
         return f64::NAN;
     }
@@ -140,7 +140,7 @@ fn is_step(truth: &Truth, i: usize, spacing: f64) -> bool {
 }
 
 /// A mask with the pixels that are at most `steps` steps to the side, up or down away.
-fn grown(mask: &[bool], size: usize, steps: usize) -> Vec<bool> {
+pub(crate) fn grown(mask: &[bool], size: usize, steps: usize) -> Vec<bool> {
     let mut mask = mask.to_vec();
     for _ in 0..steps {
         let before = mask.clone();

@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
-use cpu_time::ThreadTime;
 use glam::Vec3;
 use pointillist_ibpr::{Cloud, Frame, FrameCounts, IbprError, Options, Renderer, Scan, View};
 
 use crate::frame_error::{FrameError, Measure};
 use crate::ibpr_report::{COLUMNS, Measured, markdown};
 use crate::ibpr_settings::{Group, again, groups};
-use crate::report::{Outcome, Row, chart_of, on_one_thread, write, write_csv};
+use crate::report::{Clock, Outcome, Row, chart_of, least_seconds, on_one_thread, write, write_csv};
 use crate::scans::{Faults, RangeScan, Survey};
 use crate::true_surface::{Surface, Truth, point_at};
 
@@ -22,7 +21,7 @@ const POINTS: usize = 362_272;
 /// Noise of depth, in spacings.
 const NOISES: [f64; 5] = [0.0, 0.1, 0.25, 0.5, 1.0];
 
-/// Frames per time; the fastest counts, because the machine has other work.
+/// Frames per time; the fastest counts.
 const FRAMES: usize = 5;
 
 /// Scans that settings are tried on are made with the first of these seeds; the defaults with all.
@@ -124,12 +123,8 @@ impl Bench {
     fn frame(&self, cloud: &Cloud, options: &Options) -> Result<(FrameCounts, f64, FrameError), IbprError> {
         let (mut renderer, mut frame) = (Renderer::new(), Frame::default());
         renderer.draw(cloud, &self.view, options, &mut frame)?;
-        let mut seconds = f64::INFINITY;
-        for _ in 0..FRAMES {
-            let start = ThreadTime::now();
-            renderer.draw(cloud, &self.view, options, &mut frame)?;
-            seconds = seconds.min(start.elapsed().as_secs_f64());
-        }
+        let draw = || renderer.draw(cloud, &self.view, options, &mut frame);
+        let seconds = least_seconds(Clock::Processor, FRAMES, 0.0, draw)?;
         let mut layered = *options;
         layered.surface_layers = true;
         renderer.draw(cloud, &self.view, &layered, &mut frame)?;

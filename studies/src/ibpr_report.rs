@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use pointillist_ibpr::FrameCounts;
 
 use crate::frame_error::FrameError;
-use crate::report::{Row, machine};
+use crate::report::{Limit, Row, distinct, machine, verdict};
 
 /// A frame of one setting on one set of scans.
 pub(crate) struct Measured {
@@ -70,37 +70,34 @@ struct Goal {
     faults: &'static str,
     what: &'static str,
     unit: &'static str,
-    limit: f64,
-    /// Whether larger is better.
-    at_least: bool,
+    limit: Limit,
     value: fn(&FrameError) -> f64,
 }
 
-const fn at_most(
+const fn goal(
     faults: &'static str,
     what: &'static str,
-    limit: f64,
+    limit: Limit,
     unit: &'static str,
     value: fn(&FrameError) -> f64,
 ) -> Goal {
-    Goal { faults, what, unit, limit, at_least: false, value }
+    Goal { faults, what, unit, limit, value }
 }
 
 /// What must be reached.
 const GOALS: [Goal; 7] = [
-    Goal { at_least: true, ..at_most("σ = 0", "PSNR", 33.0, "dB", |e| e.psnr) },
-    at_most("σ = 0", "interior holes", 0.05, "%", |e| e.holes),
-    at_most("σ = 0", "normals, mean", 0.7, "°", |e| e.normal_mean),
-    at_most("σ = 0.25", "normals, mean", 2.5, "°", |e| e.normal_mean),
-    at_most("σ = 0.25", "depth RMSE", 0.3, "spacings", |e| e.depth_rmse),
-    at_most("σ = 0.25", "depth bias, either sign", 0.05, "spacings", |e| e.bias.abs()),
-    at_most("σ = 0.5", "normals, mean", 5.5, "°", |e| e.normal_mean),
+    goal("σ = 0", "PSNR", Limit::AtLeast(33.0), "dB", |e| e.psnr),
+    goal("σ = 0", "interior holes", Limit::AtMost(0.05), "%", |e| e.holes),
+    goal("σ = 0", "normals, mean", Limit::AtMost(0.7), "°", |e| e.normal_mean),
+    goal("σ = 0.25", "normals, mean", Limit::AtMost(2.5), "°", |e| e.normal_mean),
+    goal("σ = 0.25", "depth RMSE", Limit::AtMost(0.3), "spacings", |e| e.depth_rmse),
+    goal("σ = 0.25", "depth bias, either sign", Limit::AtMost(0.05), "spacings", |e| e.bias.abs()),
+    goal("σ = 0.5", "normals, mean", Limit::AtMost(5.5), "°", |e| e.normal_mean),
 ];
 
 impl Goal {
     fn reached(&self, m: &Measured) -> bool {
-        let v = (self.value)(&m.error);
-        m.faults == self.faults && if self.at_least { v >= self.limit } else { v <= self.limit }
+        m.faults == self.faults && self.limit.is_kept_by((self.value)(&m.error))
     }
 }
 
@@ -112,8 +109,7 @@ fn goals(results: &[Measured]) -> String {
         let value = |m: &Measured| (goal.value)(&m.error);
         let defaults = results.iter().filter(|m| m.faults == goal.faults && m.group == "default");
         let Some(first) = defaults.clone().next() else { continue };
-        let worse = |a: f64, b: f64| if goal.at_least { a.min(b) } else { a.max(b) };
-        let worst = defaults.clone().map(value).fold(value(first), worse);
+        let worst = defaults.clone().map(value).fold(value(first), |a, b| goal.limit.worse(a, b));
         let fastest = results
             .iter()
             .filter(|m| goal.reached(m))
@@ -121,12 +117,11 @@ fn goals(results: &[Measured]) -> String {
             .map_or("none".to_owned(), |m| {
                 format!("{}: {:.3}, {:.1} ms", m.setting, value(m), 1e3 * m.seconds)
             });
-        let sign = if goal.at_least { "≥" } else { "≤" };
-        let word = if defaults.clone().all(|m| goal.reached(m)) { "reached" } else { "**missed**" };
+        let word = verdict(defaults.clone().all(|m| goal.reached(m)));
         let (limit, unit, got) = (goal.limit, goal.unit, value(first));
         let _ = writeln!(
             text,
-            "| {} | {} | {sign} {limit} {unit} | {got:.3} | {worst:.3} | {word} | {fastest} |",
+            "| {} | {} | {limit} {unit} | {got:.3} | {worst:.3} | {word} | {fastest} |",
             goal.faults, goal.what
         );
     }
@@ -179,13 +174,7 @@ pub(crate) fn markdown(setup: &str, results: &[Measured]) -> String {
         }
         text += &line(m);
     }
-    let names = results.iter().map(|m| m.group).fold(vec![], |mut names, name| {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-        names
-    });
-    for name in names {
+    for name in distinct(results.iter().map(|m| m.group)) {
         let _ = write!(text, "\n## {}\n\n{HEAD}", title(name));
         let of_group = |m: &&Measured| m.group == name && m.faults.starts_with('σ');
         results.iter().filter(of_group).for_each(|m| text += &line(m));

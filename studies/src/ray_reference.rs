@@ -25,6 +25,8 @@ struct Node {
     first: u32,
     /// 0 for an inner node.
     count: u32,
+    /// Along which an inner node's first child comes before the second.
+    axis: usize,
 }
 
 /// From a point towards a direction, as far as `end` times its length.
@@ -72,8 +74,10 @@ impl Tree {
                 continue;
             }
             if node.count == 0 {
-                stack[depth] = node.first;
-                stack[depth + 1] = index + 1;
+                // The nearer child is taken first: what it holds often hides the other.
+                let children = [node.first, index + 1];
+                let ahead = usize::from(ray.direction[node.axis] < 0.0);
+                (stack[depth], stack[depth + 1]) = (children[ahead], children[1 - ahead]);
                 depth += 2;
                 continue;
             }
@@ -129,7 +133,7 @@ fn build(nodes: &mut Vec<Node>, items: &mut [(u32, [DVec3; 3])], base: u32) {
     let (low, high) = bounds(&mut items.iter().flat_map(|(_, c)| *c));
     let index = nodes.len();
     let leaf = items.len() <= LEAF;
-    nodes.push(Node { low, high, first: base, count: if leaf { items.len() as u32 } else { 0 } });
+    nodes.push(Node { low, high, first: base, count: if leaf { items.len() as u32 } else { 0 }, axis: 0 });
     if leaf {
         return;
     }
@@ -141,7 +145,7 @@ fn build(nodes: &mut Vec<Node>, items: &mut [(u32, [DVec3; 3])], base: u32) {
     items.select_nth_unstable_by(middle, |a, b| centre(&a.1)[axis].total_cmp(&centre(&b.1)[axis]));
     let (left, right) = items.split_at_mut(middle);
     build(nodes, left, base);
-    nodes[index].first = nodes.len() as u32;
+    (nodes[index].first, nodes[index].axis) = (nodes.len() as u32, axis);
     build(nodes, right, base + middle as u32);
 }
 

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
+use cpu_time::ThreadTime;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -52,10 +53,94 @@ pub(crate) fn timed<T>(mut work: impl FnMut() -> T) -> (f64, T) {
     (seconds[1], result)
 }
 
+/// What times are taken with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Clock {
+    /// Processor time of this thread.
+    Processor,
+    /// Time that passes.
+    Wall,
+}
+
+/// Seconds of the fastest of several runs, because the machine has other work: at least `runs`, and more while they take no
+/// longer than `together` seconds.
+pub(crate) fn least_seconds<E>(
+    clock: Clock,
+    runs: usize,
+    together: f64,
+    mut work: impl FnMut() -> Result<(), E>,
+) -> Result<f64, E> {
+    let start = Instant::now();
+    let now = || match clock {
+        Clock::Processor => ThreadTime::now().as_duration().as_secs_f64(),
+        Clock::Wall => start.elapsed().as_secs_f64(),
+    };
+    let (mut least, mut done) = (f64::INFINITY, 0);
+    while done < runs || start.elapsed().as_secs_f64() < together {
+        let begin = now();
+        work()?;
+        least = least.min(now() - begin);
+        done += 1;
+    }
+    Ok(least)
+}
+
+/// What a figure must not pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Limit {
+    AtMost(f64),
+    AtLeast(f64),
+}
+
+impl Limit {
+    pub(crate) fn is_kept_by(self, value: f64) -> bool {
+        match self {
+            Self::AtMost(limit) => value <= limit,
+            Self::AtLeast(limit) => value >= limit,
+        }
+    }
+
+    /// The one of two values that is farther on the wrong side.
+    pub(crate) fn worse(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::AtMost(_) => a.max(b),
+            Self::AtLeast(_) => a.min(b),
+        }
+    }
+}
+
+impl std::fmt::Display for Limit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::AtMost(limit) => write!(f, "≤ {limit}"),
+            Self::AtLeast(limit) => write!(f, "≥ {limit}"),
+        }
+    }
+}
+
+/// What tables of goals say.
+pub(crate) fn verdict(reached: bool) -> &'static str {
+    if reached { "reached" } else { "**missed**" }
+}
+
+/// Each name once, in the order in which they first occur.
+pub(crate) fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    names.fold(vec![], |mut list, name| {
+        if !list.contains(&name) {
+            list.push(name);
+        }
+        list
+    })
+}
+
 /// Runs on one thread, so that seconds are processor seconds.
 pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    pool.expect("one thread can be started").install(work)
+    on_threads(1, work)
+}
+
+pub(crate) fn on_threads<T: Send>(count: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
+    pool.expect("threads can be started").install(work)
 }
 
 /// Writes `NAME.csv`; `more` names the further columns.
@@ -101,13 +186,7 @@ pub(crate) fn write(out_dir: &Path, file: &str, text: &str) -> std::io::Result<(
 
 /// Rows in the order in which their scenes first occur.
 pub(crate) fn scenes(rows: &[Row]) -> Vec<&str> {
-    let mut names: Vec<&str> = vec![];
-    for r in rows {
-        if !names.contains(&r.scene.as_str()) {
-            names.push(&r.scene);
-        }
-    }
-    names
+    distinct(rows.iter().map(|r| r.scene.as_str()))
 }
 
 /// Errors below this are drawn at it: a logarithmic axis has no zero.
@@ -130,12 +209,7 @@ pub(crate) fn chart_of(
     rows: &[Row],
 ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     let scenes = scenes(rows);
-    let mut series: Vec<&str> = vec![];
-    for r in rows {
-        if !series.contains(&r.series.as_str()) {
-            series.push(&r.series);
-        }
-    }
+    let series = distinct(rows.iter().map(|r| r.series.as_str()));
     const COLUMNS: usize = 3;
     let lines = scenes.len().div_ceil(COLUMNS);
     let path = out_dir.join(format!("{name}.svg"));

@@ -34,14 +34,21 @@ impl Surface {
     /// The Stanford Bunny, Loop-subdivided twice so that facets are finer than scans; without the data a
     /// sphere with bumps.
     pub(crate) fn bunny_or_bumpy() -> Self {
-        let read = || {
-            let path = data::folder()?.join("meshes/bunny/bun_zipper.ply");
-            let mesh = read_ply("bun_zipper.ply", &std::fs::read(path).ok()?).ok()?;
-            let (positions, triangles) = subdivided(&mesh.positions, &mesh.triangles);
-            let (positions, triangles) = subdivided(&positions, &triangles);
-            Some(Self::new("the Stanford Bunny, Loop-subdivided twice", positions, triangles))
-        };
-        read().unwrap_or_else(Self::bumpy)
+        Self::bunny("the Stanford Bunny, Loop-subdivided twice", 2).unwrap_or_else(Self::bumpy)
+    }
+
+    /// The Stanford Bunny as in the reference pictures of points, Loop-subdivided once; without the data a sphere
+    /// with bumps.
+    pub(crate) fn coarse_bunny_or_bumpy() -> Self {
+        Self::bunny("the Stanford Bunny, Loop-subdivided once", 1).unwrap_or_else(Self::bumpy)
+    }
+
+    fn bunny(name: &'static str, rounds: usize) -> Option<Self> {
+        let path = data::folder()?.join("meshes/bunny/bun_zipper.ply");
+        let mesh = read_ply("bun_zipper.ply", &std::fs::read(path).ok()?).ok()?;
+        let finer = |(positions, triangles): (Vec<_>, Vec<_>), _| subdivided(&positions, &triangles);
+        let (positions, triangles) = (0..rounds).fold((mesh.positions, mesh.triangles), finer);
+        Some(Self::new(name, positions, triangles))
     }
 
     fn bumpy() -> Self {
@@ -57,7 +64,8 @@ impl Surface {
         )
     }
 
-    fn new(name: &'static str, positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
+    /// Normals are the means of those of the triangles around, by area.
+    pub(crate) fn new(name: &'static str, positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
         let mut normals = vec![DVec3::ZERO; positions.len()];
         for t in &triangles {
             let [a, b, c] = t.map(|v| positions[v as usize]);
@@ -75,6 +83,19 @@ impl Surface {
 
     pub(crate) fn triangle_count(&self) -> usize {
         self.triangles.len()
+    }
+
+    pub(crate) fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
+    pub(crate) fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Unit normals of the vertices.
+    pub(crate) fn normals(&self) -> &[DVec3] {
+        &self.normals
     }
 
     pub(crate) fn centre(&self) -> DVec3 {

@@ -7,8 +7,11 @@ use crate::options::Options;
 use crate::splat::{DEVIATION_PER_RADIUS, PIXEL_DEVIATION};
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// Blurred points may be this many blur radii (in pixels) apart. Found by experiment: wider ones show as dots.
-const BLURRED_LEVEL: f32 = 0.6;
+/// Points with a blur of radius R may be 1.3 + 0.4·R apart (pixels), but never more than 0.5·R. Found by experiment: wider apart
+/// they show as dots.
+const BLURRED_START: f32 = 1.3;
+const BLURRED_SLOPE: f32 = 0.4;
+const BLURRED_MOST: f32 = 0.5;
 
 /// Between the levels of the tree, of blurred points only every second to fourth is drawn, for as many.
 const MOST_STRIDE: f32 = 4.0;
@@ -124,7 +127,8 @@ impl Seen {
         }
         let px = |depth: f32| camera.blur_radius(depth) * camera.pixels_per_unit(depth);
         let least_blur = px(self.depths[0].max(camera.near)).min(px(self.depths[1]));
-        BLURRED_LEVEL * least_blur * level.min(1.0)
+        let apart = (BLURRED_START + BLURRED_SLOPE * least_blur).min(BLURRED_MOST * least_blur);
+        apart * level.min(1.0)
     }
 }
 

@@ -22,6 +22,10 @@ impl Pixel {
 /// Light that passes all layers and is less than this is not followed: half a step of 8 bits.
 const LEAST_LIGHT: f32 = 1.0 / 512.0;
 
+/// How independent the edges of two layers are: between 1, where a layer covers its share of what those before leave open, and
+/// 0, where it fills that first, as parts of one surface do. Found by experiment with a lens.
+const INDEPENDENT: f32 = 0.4;
+
 /// Shading and compositing of a frame.
 #[derive(Clone, Debug)]
 pub(crate) struct Shader {
@@ -61,7 +65,7 @@ impl Shader {
         let paint = Vec3::new(sums[5], sums[6], sums[7]) * inverse;
         let shaded = self.lit(paint, normal, at);
         let before = pixel.colour[3];
-        let share = (alpha * (1.0 - MIX * before)).min(1.0 - before);
+        let share = (alpha * (1.0 - INDEPENDENT * before)).min(1.0 - before);
         for (c, s) in pixel.colour.iter_mut().zip([shaded.x, shaded.y, shaded.z, 1.0]) {
             *c += share * s;
         }
@@ -115,6 +119,5 @@ fn opacity(sum: f32, sharpness: f32) -> f32 {
     (covered * (1.0 + CLOSING * covered * covered)).min(1.0)
 }
 
-const MIX: f32 = 0.4;
-/// A coverage of 0.85 and more is taken for all.
-const CLOSING: f32 = 0.15;
+/// A coverage of 0.9 and more is taken for all.
+const CLOSING: f32 = 0.25;

@@ -49,22 +49,22 @@ pub struct SurfelOptions {
 #[command(next_help_heading = "Depth of field (with --focus and one of --depth, --aperture, --lens)")]
 pub struct FocusOptions {
     /// Distance along the view axis at which everything is sharp, world units
-    #[arg(long, value_name = "F", value_parser = values::positive)]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = values::positive)]
     pub focus: Option<f64>,
     /// Radius of the blur per unit of distance from the focus (the paper's d); 0 is sharp everywhere
-    #[arg(long, value_name = "D", value_parser = values::not_negative, requires = "focus", conflicts_with_all = ["aperture", "lens"])]
+    #[arg(long, value_name = "D", allow_negative_numbers = true, value_parser = values::not_negative, requires = "focus", conflicts_with_all = ["aperture", "lens"])]
     pub depth: Option<f64>,
     /// Radius of a thin lens, world units; 0 is a pinhole
-    #[arg(long, value_name = "RADIUS", value_parser = values::not_negative, requires = "focus", conflicts_with = "lens")]
+    #[arg(long, value_name = "RADIUS", allow_negative_numbers = true, value_parser = values::not_negative, requires = "focus", conflicts_with = "lens")]
     pub aperture: Option<f64>,
     /// Focal length of a lens in millimetres, for a world in metres; without --fov the view is that of the lens
-    #[arg(long, value_name = "MM", value_parser = values::positive, requires_all = ["focus", "fstop"])]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = values::positive, requires_all = ["focus", "fstop"])]
     pub lens: Option<f64>,
     /// f-number of the lens: its focal length over the diameter of its opening
-    #[arg(long, value_name = "N", value_parser = values::positive, requires = "lens")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = values::positive, requires = "lens")]
     pub fstop: Option<f64>,
     /// Height of the lens's sensor in millimetres (default: 24)
-    #[arg(long, value_name = "MM", value_parser = values::positive, requires = "lens", conflicts_with = "fov")]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = values::positive, requires = "lens", conflicts_with = "fov")]
     pub sensor: Option<f64>,
     /// Everything is sharp, whatever the options above say
     #[arg(long)]
@@ -76,7 +76,7 @@ pub struct FocusOptions {
 #[command(next_help_heading = "Discs")]
 pub struct DiscOptions {
     /// Level of detail: take the coarsest level whose points are at most this many pixels apart; 0 takes all points
-    #[arg(long, value_name = "PX", default_value_t = 1.0, value_parser = values::not_negative)]
+    #[arg(long, value_name = "PX", allow_negative_numbers = true, default_value_t = 1.0, value_parser = values::not_negative)]
     pub level: f64,
     /// How discs become a picture
     #[arg(long, value_name = "NAME", default_value = "blended")]
@@ -97,7 +97,7 @@ pub struct SurfelShading {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub light: Option<Vector>,
     /// Share of light from everywhere, 0 to 1
-    #[arg(long, value_name = "A", default_value_t = 0.1)]
+    #[arg(long, value_name = "A", allow_negative_numbers = true, default_value_t = 0.1)]
     pub ambient: f32,
 }
 
