@@ -71,8 +71,8 @@ pub enum SurfelError {
         /// Number of the point.
         index: usize,
     },
-    /// A colour is negative or not finite.
-    #[error("the colour of point {index} is negative or not finite")]
+    /// A channel of a colour is negative, not a number, or above [`crate::Points::BRIGHTEST`].
+    #[error("the colour of point {index} has a channel that is not between 0 and 1e30")]
     BadColour {
         /// Number of the point.
         index: usize,

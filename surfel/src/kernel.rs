@@ -36,6 +36,9 @@ pub(crate) fn add<const FIRST: bool>(
     Arch::new().dispatch(Add::<FIRST, _> { layer, splats, numbers, behind, slack });
 }
 
+/// Within a kernel h is at most 1/(1 − √½) = 3.4; rounding could make it anything where planes are edge-on.
+const LARGEST_H: f32 = 4.0;
+
 struct Nearest<'a, const FIRST: bool, I> {
     layer: &'a mut Layer,
     splats: I,
@@ -168,7 +171,8 @@ impl<S: Simd> Line<S> {
     ) -> (S::f32s, S::f32s) {
         let none = simd.splat_f32s(0.0);
         let dx = simd.add_f32s(simd.splat_f32s(column as f32 + self.x), ramp);
-        let h = simd.max_f32s(simd.add_f32s(self.h, simd.mul_f32s(self.kx, dx)), none);
+        let h = simd.add_f32s(self.h, simd.mul_f32s(self.kx, dx));
+        let h = simd.min_f32s(simd.max_f32s(h, none), simd.splat_f32s(LARGEST_H));
         let q = simd.add_f32s(simd.mul_f32s(self.xx, dx), self.xy);
         let q = simd.add_f32s(simd.mul_f32s(q, dx), self.yy);
         let rest = simd.max_f32s(simd.sub_f32s(simd.mul_f32s(h, h), q), none);

@@ -2,6 +2,7 @@
 
 use crate::error::SurfelError;
 use crate::focus::Focus;
+use crate::points::Points;
 use glam::{DVec3, Vec3};
 
 /// How discs become a picture.
@@ -71,7 +72,7 @@ impl Options {
         check("level", self.level, self.level >= 0.0 && self.level.is_finite(), "it must be at least 0")?;
         check("ambient", self.ambient, (0.0..=1.0).contains(&self.ambient), "it must be 0 to 1")?;
         for c in self.base.to_array() {
-            check("base", c, c >= 0.0 && c.is_finite(), "it must be at least 0 and finite")?;
+            check("base", c, (0.0..=Points::BRIGHTEST).contains(&c), "it must be 0 to 1e30")?;
         }
         if let Light::Towards(d) = self.light
             && !(d.is_finite() && d != DVec3::ZERO)

@@ -10,7 +10,7 @@ pub struct Points<'a> {
     pub positions: &'a [DVec3],
     /// Outward; of any length above 0. Without them planes are fitted, and the surface is seen from both sides.
     pub normals: Option<&'a [Vec3]>,
-    /// Linear RGB, not negative.
+    /// Linear RGB, from 0 to [`Points::BRIGHTEST`].
     pub colours: Option<&'a [[f32; 3]]>,
     /// Discs of these radii leave no gap; world units, above 0. Without them they are estimated.
     pub radii: Option<&'a [f32]>,
@@ -47,6 +47,9 @@ impl<'a> Points<'a> {
     /// Most points of a cloud: numbers of points are 32 bits wide, and some stay free.
     pub const MOST: usize = 1 << 30;
 
+    /// Largest channel of a colour: weighted sums of it are still numbers.
+    pub const BRIGHTEST: f32 = 1e30;
+
     pub(crate) fn check(&self) -> Result<(), SurfelError> {
         let count = self.positions.len();
         if count == 0 {
@@ -79,7 +82,7 @@ impl<'a> Points<'a> {
         if let Some(index) = self.normals.and_then(|all| all.iter().position(|n| !normal(n))) {
             return Err(SurfelError::BadNormal { index });
         }
-        let channel = |c: &f32| *c >= 0.0 && c.is_finite();
+        let channel = |c: &f32| (0.0..=Self::BRIGHTEST).contains(c);
         if let Some(index) = self.colours.and_then(|all| all.iter().position(|c| !c.iter().all(channel))) {
             return Err(SurfelError::BadColour { index });
         }

@@ -51,16 +51,9 @@ impl Shader {
         }
     }
 
-    /// Lays the surface with these sums under what is in a pixel; whether nothing below can be seen.
-    pub(crate) fn lay_under(
-        &self,
-        pixel: &mut Pixel,
-        sums: &Sums,
-        sharpness: f32,
-        at: (usize, usize),
-    ) -> bool {
+    /// Lays a surface with these sums and this opacity under what is in a pixel; whether nothing below can be seen.
+    pub(crate) fn lay_under(&self, pixel: &mut Pixel, sums: &Sums, alpha: f32, at: (usize, usize)) -> bool {
         let inverse = 1.0 / sums[0];
-        let alpha = opacity(sums[0], sharpness);
         let normal = Vec3::new(sums[2], sums[3], sums[4]) * inverse;
         let paint = Vec3::new(sums[5], sums[6], sums[7]) * inverse;
         let shaded = self.lit(paint, normal, at);
@@ -79,7 +72,7 @@ impl Shader {
     /// Cosine between the mean normal and the light, 0 if it faces away.
     fn facing(&self, normal: Vec3, at: (usize, usize)) -> f32 {
         let towards = self.light.unwrap_or_else(|| self.towards_eye(at));
-        normal.dot(towards).max(0.0)
+        normal.dot(towards).clamp(0.0, 1.0)
     }
 
     /// Colour × (A + (1 − A)·max(0, n·l)); a mean of normals is shorter than 1, as is the mean of their cosines.
@@ -113,11 +106,11 @@ impl Shader {
 ///
 /// Weights of discs add up to about 1 inside a surface and fall to 0 over its edge, as wide as the discs: where
 /// discs are wider than pixels, the edge is made as steep as a pixel shows it, about the place where half is covered.
-fn opacity(sum: f32, sharpness: f32) -> f32 {
+pub(crate) fn opacity(sum: f32, sharpness: f32) -> f32 {
     let covered = (0.5 + sharpness * (sum - 0.5)).clamp(0.0, 1.0);
     // Sums inside a surface vary by a few per cent: it must not let light through for that.
     (covered * (1.0 + CLOSING * covered * covered)).min(1.0)
 }
 
 /// A coverage of 0.9 and more is taken for all.
-const CLOSING: f32 = 0.25;
+const CLOSING: f32 = 0.15;

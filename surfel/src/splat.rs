@@ -341,6 +341,21 @@ impl NullaryFnOnce for Project<'_> {
     }
 }
 
+/// First column, last column (not included), first row and last row of the box around q ≤ R, within a tile.
+///
+/// With t = V·k and τ = R·k·t < 1, q ≤ R is an ellipse about R·t/(1 − τ) with the covariance V + R·t·tᵀ/(1 − τ), to the
+/// reach R/(1 − τ).
+#[inline(always)]
+fn ends(centre: [f32; 2], v: [f32; 3], k: [f32; 2], reach2: f32, size: [f32; 2]) -> [f32; 4] {
+    let (tx, ty) = (v[0] * k[0] + v[1] * k[1], v[1] * k[0] + v[2] * k[1]);
+    let reach = reach2 / (1.0 - (reach2 * (k[0] * tx + k[1] * ty)).min(0.75));
+    let half = |v: f32, t: f32| (reach * (v + reach * t * t)).sqrt();
+    let (hx, hy) = (half(v[0], tx), half(v[2], ty));
+    let (x, y) = (centre[0] + reach * tx, centre[1] + reach * ty);
+    let end = |v: f32, size: f32| (v + 0.5).clamp(0.0, size) as i32 as f32;
+    [end(x - hx, size[0]), end(x + hx, size[0]), end(y - hy, size[1]), end(y + hy, size[1])]
+}
+
 /// Steps: 1 place and depth; 2 normal, seen from the eye; 3 covariance; 4 plane; 5 kernel; 6 the pixels that it touches.
 #[inline(always)]
 fn project_lanes(lanes: &mut Projector, camera: &Camera, shape: &Shape, map: &Map, count: usize) {
@@ -400,21 +415,15 @@ fn project_lanes(lanes: &mut Projector, camera: &Camera, shape: &Shape, map: &Ma
         let narrow = 0.5 * (v[0] + v[2]) - (half_difference * half_difference + v[1] * v[1]).sqrt();
         let conic = 1.0 / (determinant * reach2);
         // 6
-        let (tx, ty) = (v[0] * hkx + v[1] * hky, v[1] * hkx + v[2] * hky);
-        let rest = 1.0 / (1.0 - (reach2 * (hkx * tx + hky * ty)).min(0.75));
-        let half = |v: f32, t: f32| (reach2 * rest * (v + reach2 * rest * t * t)).sqrt();
-        let (hx, hy) = (half(v[0], tx), half(v[2], ty));
-        let (mx, my) = (x + reach2 * rest * tx, y + reach2 * rest * ty);
-        let end = |v: f32, size: f32| v.clamp(0.0, size) as i32 as f32;
-        let (left, right) = (end(mx - hx + 0.5, map.size[0]), end(mx + hx + 0.5, map.size[0]));
-        let (top, bottom) = (end(my - hy + 0.5, map.size[1]), end(my + hy + 0.5, map.size[1]));
+        let [left, right, top, bottom] = ends([x, y], v, [hkx, hky], reach2, map.size);
         let kept = (depth > camera.near) & (facing < 0.0) & (left < right) & (top < bottom);
         (out.x[i], out.y[i]) = (x, y);
         (out.xx[i], out.xy[i], out.yy[i]) = (v[2] * conic, -v[1] * conic, v[0] * conic);
         out.depth[i] = if camera.is_perspective { depth * (reference * inverse) } else { depth };
         (out.depth_x[i], out.depth_y[i]) = (-kx * bend, -ky * bend);
         (out.kx[i], out.ky[i]) = (hkx, hky);
-        out.weight[i] = share / (integral * root);
+        // Discs of any size next to the eye: sums of weights have to stay numbers.
+        out.weight[i] = (share / (integral * root)).min(1e3);
         out.thickness[i] =
             camera.thickness(radii[i], slope_of_disc, 1.0 / scale, blur_radius) * camera.bending(inverse);
         out.flat[i] = if is_flat { 1.0 } else { 0.0 };

@@ -9,7 +9,7 @@ use crate::cloud::Cloud;
 use crate::frame::Band;
 use crate::kernel;
 use crate::select::Selected;
-use crate::shade::{Pixel, Shader};
+use crate::shade::{Pixel, Shader, opacity};
 use crate::splat::{Items, Projector, Shape, Splat};
 
 /// Pixels of a tile: sums and depths fit into the second-level cache.
@@ -21,6 +21,12 @@ pub(crate) const PITCH: usize = WIDTH + kernel::LANES;
 
 /// Surfaces behind one another in a pixel. All that lies behind the last but one is taken for the last.
 const MOST_LAYERS: usize = 4;
+
+/// Less weight is none: its inverse would not be a number that can be used.
+const LEAST_WEIGHT: f32 = 1e-30;
+
+/// Beside a pixel with less weight than this there is an edge.
+const LEAST_INSIDE: f32 = 0.25;
 
 /// Side of the squares for which the farthest depth is kept, to skip what is hidden.
 const SQUARE: usize = 16;
@@ -53,6 +59,24 @@ impl Layer {
         let n = PITCH * HEIGHT;
         let plane = vec![0.0; n];
         Self { near: plane.clone(), sharpness: plane.clone(), floor: plane, sums: vec![[0.0; 8]; n] }
+    }
+
+    /// The weight of a pixel, or, inside a surface, that of the 3×3 pixels around it if it is larger.
+    ///
+    /// Weights vary between points. Over an edge that is blurred they fall evenly: there the mean is that of the middle.
+    fn evened(&self, place: &Place, column: usize, row: usize) -> f32 {
+        let own = self.sums[row * PITCH + column][0];
+        if own >= 1.0 {
+            return own;
+        }
+        let around = |at: usize, size: usize| at.saturating_sub(1)..(at + 2).min(size);
+        let (mut sum, mut count, mut least) = (0.0, 0.0, own);
+        for y in around(row, place.height) {
+            for sums in &self.sums[y * PITCH..][around(column, place.width)] {
+                (sum, count, least) = (sum + sums[0], count + 1.0, least.min(sums[0]));
+            }
+        }
+        if least > LEAST_INSIDE { own.max(sum / count) } else { own }
     }
 }
 
@@ -208,18 +232,22 @@ impl Tile {
         let mut open = false;
         for row in touched.rows[0]..touched.rows[1] {
             for i in touched.pixels(row) {
-                let sums = &mut self.layer.sums[i];
-                if sums[0] <= 0.0 {
+                let sums = &self.layer.sums[i];
+                if sums[0] <= LEAST_WEIGHT {
                     // Nothing here, now or later.
                     self.layer.floor[i] = f32::INFINITY;
                     continue;
                 }
-                let at = (place.x + i - row * PITCH, place.y + row);
-                let done = scene.shader.lay_under(&mut self.pixels[i], sums, self.layer.sharpness[i], at);
-                *sums = [0.0; 8];
+                let column = i - row * PITCH;
+                let alpha = opacity(self.layer.evened(place, column, row), self.layer.sharpness[i]);
+                let at = (place.x + column, place.y + row);
+                let done = scene.shader.lay_under(&mut self.pixels[i], sums, alpha, at);
                 self.layer.floor[i] = if done { f32::INFINITY } else { self.layer.near[i] };
                 open |= !done;
             }
+        }
+        for row in touched.rows[0]..touched.rows[1] {
+            self.layer.sums[touched.pixels(row)].fill([0.0; 8]);
         }
         open
     }

@@ -1,0 +1,146 @@
+//! Clouds, views and options of any kind: octrees and frames are sound, and neither order nor culling shows.
+#![no_main]
+
+use arbitrary::Arbitrary;
+use glam::{DVec3, Vec3, dvec3};
+use libfuzzer_sys::fuzz_target;
+use pointillist_surfel::invariants::{self, OwnedPoints, look_at};
+use pointillist_surfel::{Focus, Light, Options, Procedure, Projection, View};
+
+/// Points in steps of 1/64, often repeated, on a line or on a plane.
+#[derive(Arbitrary, Debug)]
+enum Shape {
+    Loose(Vec<[i8; 3]>),
+    Plane { centre: [i8; 3], right: [i8; 3], up: [i8; 3], columns: u8, rows: u8 },
+    Noisy { centre: [i8; 3], right: [i8; 3], up: [i8; 3], along: [i8; 3], seed: u64 },
+    Sphere { centre: [i8; 3], radius: u8, count: u8 },
+    Raw(Vec<[f64; 3]>),
+}
+
+#[derive(Arbitrary, Debug)]
+struct Attributes {
+    normals: Option<Vec<[i8; 3]>>,
+    two_sided: bool,
+    radii: Option<Vec<u8>>,
+    raw_radius: Option<f32>,
+    coloured: bool,
+}
+
+#[derive(Arbitrary, Debug)]
+struct Picture {
+    eye: [i8; 3],
+    target: [i8; 3],
+    fov: u8,
+    orthographic: bool,
+    size: (u8, u8),
+    /// Power of two by which everything is resized.
+    power: i8,
+}
+
+#[derive(Arbitrary, Debug)]
+struct Rules {
+    /// The paper's d and f, or a lens.
+    blur: Option<(u8, u8, bool)>,
+    paper: bool,
+    culling: bool,
+    level: u8,
+    ambient: u8,
+    light: Option<[i8; 3]>,
+    normals: bool,
+    raw: Option<([f64; 2], [f32; 2])>,
+}
+
+fn steps([x, y, z]: [i8; 3]) -> DVec3 {
+    dvec3(x.into(), y.into(), z.into()) / 64.0
+}
+
+fn shape(shape: &Shape) -> OwnedPoints {
+    match shape {
+        Shape::Loose(points) => OwnedPoints::loose(points.iter().take(64).map(|p| steps(*p)).collect()),
+        Shape::Raw(points) => {
+            OwnedPoints::loose(points.iter().take(8).map(|p| DVec3::from_array(*p)).collect())
+        }
+        Shape::Plane { centre, right, up, columns, rows } => {
+            let [right, up] = [right, up].map(|d| steps(*d) / 16.0);
+            OwnedPoints::plane(steps(*centre), right, up, (columns % 24).into(), (rows % 24).into())
+        }
+        Shape::Noisy { centre, right, up, along, seed } => {
+            let [right, up] = [right, up].map(|d| steps(*d) / 16.0);
+            OwnedPoints::plane(steps(*centre), right, up, 20, 20).jittered(steps(*along) / 8.0, *seed)
+        }
+        Shape::Sphere { centre, radius, count } => {
+            let radius = f64::from(*radius) / 128.0 + 0.01;
+            OwnedPoints::sphere(steps(*centre), radius, 4 * u32::from(*count))
+        }
+    }
+}
+
+fn points(shapes: &[Shape], attributes: &Attributes) -> OwnedPoints {
+    let mut shapes = shapes.iter().take(3).map(shape);
+    let first = shapes.next().unwrap_or_default();
+    let mut all = shapes.fold(first, |all, next| all.and(&next));
+    let n = all.positions.len();
+    if let Some(normals) = attributes.normals.as_ref().filter(|some| !some.is_empty()) {
+        let normal = |n: &[i8; 3]| Vec3::from_array(n.map(f32::from));
+        all.normals = Some(normals.iter().map(normal).cycle().take(n).collect());
+    }
+    if attributes.two_sided {
+        all.normals = None;
+    }
+    if let Some(radii) = attributes.radii.as_ref().filter(|some| !some.is_empty()) {
+        let radius = |r: &u8| attributes.raw_radius.unwrap_or(f32::from(*r) / 256.0);
+        all.radii = Some(radii.iter().map(radius).cycle().take(n).collect());
+    }
+    if attributes.coloured {
+        all.colours = Some((0..n).map(|i| [0.5, (i % 3) as f32, 0.1]).collect());
+    }
+    all
+}
+
+/// `k`: the size of the scene.
+fn options(rules: &Rules, k: f64) -> Options {
+    let mut o = Options::default();
+    let share = |v: u8| f64::from(v) / 64.0;
+    if let Some((amount, focus, is_lens)) = rules.blur {
+        let focus = (share(focus) + 0.01) * k;
+        o.focus = match is_lens {
+            true => Focus::Lens { aperture: share(amount) * k, focus },
+            false => Focus::Depth { depth: share(amount), focus },
+        };
+    }
+    o.procedure = if rules.paper { Procedure::Paper } else { Procedure::Blended };
+    (o.culling, o.normals) = (rules.culling, rules.normals);
+    o.level = f32::from(rules.level) / 32.0;
+    o.ambient = f32::from(rules.ambient) / 255.0;
+    o.light = rules.light.map_or(Light::Eye, |d| Light::Towards(steps(d)));
+    if let Some(([depth, focus], [level, ambient])) = rules.raw {
+        (o.focus, o.level, o.ambient) = (Focus::Depth { depth, focus }, level, ambient);
+    }
+    o
+}
+
+fn view(picture: &Picture, k: f64) -> Option<View> {
+    let span = 0.05 + f64::from(picture.fov) / 100.0;
+    let projection = match picture.orthographic {
+        true => Projection::Orthographic { height: span * k },
+        false => Projection::Perspective { fov_y_rad: span },
+    };
+    let (w, h) = (u32::from(picture.size.0 % 150), u32::from(picture.size.1 % 80));
+    look_at(steps(picture.eye) * k, steps(picture.target) * k, projection, w, h)
+}
+
+fuzz_target!(|input: (Vec<Shape>, Attributes, Picture, Rules, u64)| {
+    let (shapes, attributes, picture, rules, seed) = input;
+    let k = f64::from(picture.power).exp2();
+    let Some(view) = view(&picture, k) else { return };
+    let points = points(&shapes, &attributes).resized(k);
+    let options = options(&rules, k);
+    let facts = invariants::octrees_are_sound(&points)
+        .and_then(|()| invariants::frames_are_sound(&points, &view, &options))
+        .and_then(|()| invariants::order_does_not_matter(&points, &view, &options, seed))
+        .and_then(|()| invariants::culling_changes_nothing(&points, &view, &options))
+        .and_then(|()| invariants::one_colour_stays_one_colour(&points, &view, &options, [0.25, 1.0, 0.7]));
+    if let Err(broken) = facts {
+        panic!("{broken}");
+    }
+});

@@ -1,0 +1,141 @@
+//! What must not change a frame, and what must not change in it.
+
+use super::frames::agree;
+use super::{OwnedPoints, TOLERANCE, check, cloud, drawn, frame, frame_is_sound, frames_are_identical};
+use crate::packed::{pack_colour, unpack_colour};
+use crate::{Focus, Frame, Options, Renderer, View};
+
+/// Any input gives a sound frame or is refused.
+///
+/// # Errors
+/// As [`frame_is_sound`].
+pub fn frames_are_sound(points: &OwnedPoints, view: &View, options: &Options) -> Result<(), String> {
+    let Some(frame) = frame(points, view, options) else { return Ok(()) };
+    let brightest = match &points.colours {
+        // Links round colours to 1/512 of the brightest channel.
+        Some(colours) => (1.0 + 1.0 / 512.0) * colours.iter().flatten().fold(0.0f32, |m, c| m.max(*c)),
+        None => options.base.max_element(),
+    };
+    frame_is_sound(&frame, brightest)
+}
+
+/// The order of points does not show.
+///
+/// # Errors
+/// As [`frames_are_identical`].
+pub fn order_does_not_matter(
+    points: &OwnedPoints,
+    view: &View,
+    options: &Options,
+    seed: u64,
+) -> Result<(), String> {
+    agree(frame(points, view, options), frame(&points.shuffled(seed), view, options))
+}
+
+/// A renderer and a frame that drew something else before draw the same as new ones.
+///
+/// # Errors
+/// As [`frames_are_identical`].
+pub fn use_before_does_not_matter(
+    points: &OwnedPoints,
+    before: (&View, &Options),
+    after: (&View, &Options),
+) -> Result<(), String> {
+    let Ok(cloud) = cloud(points) else { return Ok(()) };
+    let Some(fresh) = frame(points, after.0, after.1) else { return Ok(()) };
+    let (mut renderer, mut used) = (Renderer::new(), Frame::default());
+    // A refusal is something else too.
+    let _ = renderer.draw(&cloud, before.0, before.1, &mut used);
+    renderer.draw(&cloud, after.0, after.1, &mut used).map_err(|e| e.to_string())?;
+    frames_are_identical(&fresh, &used)
+}
+
+/// What is skipped because it faces away or is hidden does not show.
+///
+/// # Errors
+/// As [`frames_are_identical`].
+pub fn culling_changes_nothing(points: &OwnedPoints, view: &View, options: &Options) -> Result<(), String> {
+    let Ok(cloud) = cloud(points) else { return Ok(()) };
+    let by = |culling| drawn(&cloud, view, &Options { culling, ..*options });
+    agree(by(true), by(false))
+}
+
+/// No blur is no depth of field, at any focus.
+///
+/// # Errors
+/// As [`frames_are_identical`].
+pub fn no_blur_is_no_depth_of_field(
+    points: &OwnedPoints,
+    view: &View,
+    options: &Options,
+    focus: f64,
+) -> Result<(), String> {
+    let Ok(cloud) = cloud(points) else { return Ok(()) };
+    let by = |focus| drawn(&cloud, view, &Options { focus, ..*options });
+    let sharp = by(Focus::Everywhere);
+    for blurred in [by(Focus::Depth { depth: 0.0, focus }), by(Focus::Lens { aperture: 0.0, focus })] {
+        if blurred.is_some() {
+            agree(sharp.clone(), blurred)?;
+        }
+    }
+    Ok(())
+}
+
+/// A thin lens is the paper's parameter d = aperture / focus.
+///
+/// # Errors
+/// As [`frames_are_identical`].
+pub fn a_lens_is_a_depth(
+    points: &OwnedPoints,
+    view: &View,
+    options: &Options,
+    aperture: f64,
+    focus: f64,
+) -> Result<(), String> {
+    let Ok(cloud) = cloud(points) else { return Ok(()) };
+    let by = |focus| drawn(&cloud, view, &Options { focus, ..*options });
+    let depth = by(Focus::Depth { depth: aperture / focus, focus });
+    // A quotient beyond the range of numbers is refused as a depth only.
+    if depth.is_some() { agree(by(Focus::Lens { aperture, focus }), depth) } else { Ok(()) }
+}
+
+/// Points of one colour (at most 65,408), lit from everywhere, show that colour wherever anything is seen; with links, as
+/// exactly as these keep it.
+///
+/// # Errors
+/// The first pixel of another colour.
+pub fn one_colour_stays_one_colour(
+    points: &OwnedPoints,
+    view: &View,
+    options: &Options,
+    colour: [f32; 3],
+) -> Result<(), String> {
+    let options = Options { ambient: 1.0, ..*options };
+    let Some(frame) = frame(&points.painted(|_| colour), view, &options) else { return Ok(()) };
+    let most = colour.iter().fold(0.0f32, |m, c| m.max(*c));
+    let is_kept = unpack_colour(pack_colour(colour)) == colour;
+    let slack = most * if is_kept { TOLERANCE } else { TOLERANCE + 1.0 / 512.0 };
+    let same = |c: &[f32; 4]| c[..3].iter().zip(colour).all(|(v, w)| (v - w * c[3]).abs() <= slack * c[3]);
+    match frame.colour().iter().position(|c| !same(c)) {
+        Some(i) => {
+            let (x, y) = (i % frame.width(), i / frame.width());
+            Err(format!("pixel ({x}, {y}): {:?}, not {colour:?}", frame.colour()[i]))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Two frames differ only by a factor of all depths.
+///
+/// # Errors
+/// The first pixel that differs.
+pub fn frames_are_identical_but_for_size(a: &Frame, b: &Frame, k: f64) -> Result<(), String> {
+    let scaled = a.depth().iter().map(|d| (f64::from(*d) * k) as f32);
+    for (i, (wanted, got)) in scaled.zip(b.depth()).enumerate() {
+        // Below 1e-38, a depth has fewer digits than its multiple.
+        let holds = wanted == *got || wanted.abs() < f32::MIN_POSITIVE || !a.depth()[i].is_normal();
+        check(holds, || format!("pixel {i}: depths {wanted} and {got}"))?;
+    }
+    let colours = a.colour() == b.colour() && a.normal() == b.normal();
+    check(colours, || "colours or normals differ".to_owned())
+}

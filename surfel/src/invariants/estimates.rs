@@ -1,0 +1,114 @@
+//! What is estimated for clouds that come with positions alone.
+
+use super::check;
+use crate::neighbours::Places;
+use crate::{areas, normals, radius};
+use glam::{DVec3, Vec3};
+
+/// What is estimated for a cloud of positions: each list in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimates {
+    /// Unit normals, signs arbitrary.
+    pub normals: Vec<Vec3>,
+    /// Radii of discs, the cloud's unit.
+    pub radii: Vec<f32>,
+    /// Shares of the surface, the square of the cloud's unit.
+    pub areas: Vec<f32>,
+}
+
+/// Normals, radii and areas of finite positions.
+#[must_use]
+pub fn estimates(positions: &[DVec3]) -> Estimates {
+    let places = Places::new(positions);
+    let normals = normals::estimate(&places);
+    let radii = radius::of_cloud(&places, &normals, true);
+    let areas = areas::of_cloud(&places, &normals, &radii, true);
+    Estimates { normals, radii, areas }
+}
+
+/// Any finite positions have unit normals, and radii and areas that are normal numbers, the same ones in any order.
+///
+/// # Errors
+/// The first point for which that does not hold.
+pub fn estimates_are_sound(positions: &[DVec3]) -> Result<(), String> {
+    let Estimates { normals, radii, areas } = estimates(positions);
+    for (i, normal) in normals.iter().enumerate() {
+        check((normal.length() - 1.0).abs() < 1e-6, || format!("normal {normal}"))?;
+        let largest = normal.abs().max_element();
+        check(normal.max_element() >= largest - 1e-6, || format!("normal {normal} has the other sign"))?;
+        let (radius, area) = (radii[i], areas[i]);
+        check(radius.is_normal() && radius > 0.0, || format!("radius {radius:e}"))?;
+        check(area.is_normal() && area > 0.0, || format!("area {area:e}"))?;
+    }
+    let mut backwards = positions.to_vec();
+    backwards.reverse();
+    let mut other = estimates(&backwards);
+    other.normals.reverse();
+    other.radii.reverse();
+    other.areas.reverse();
+    check(other == Estimates { normals: normals.clone(), radii, areas }, || "the order matters".to_owned())
+}
+
+/// Areas of points with normals and radii: where a normal has a front and a back, and where it has not.
+#[must_use]
+pub fn areas_by_sides(positions: &[DVec3], normals: &[Vec3], radii: &[f32]) -> (Vec<f32>, Vec<f32>) {
+    let places = Places::new(positions);
+    let by = |two_sided| areas::of_cloud(&places, normals, radii, two_sided);
+    (by(false), by(true))
+}
+
+/// Given normals and radii of any size give areas that are normal numbers, on surfaces with sides and without.
+///
+/// # Errors
+/// The first area that is none.
+pub fn areas_are_sound(positions: &[DVec3], normals: &[Vec3], radii: &[f32]) -> Result<(), String> {
+    let places = Places::new(positions);
+    let (one, two) = areas_by_sides(positions, normals, radii);
+    for area in one.into_iter().chain(two) {
+        check(area.is_normal() && area > 0.0, || format!("area {area:e}"))?;
+    }
+    for two_sided in [false, true] {
+        for radius in radius::of_cloud(&places, normals, two_sided) {
+            check(radius.is_normal() && radius > 0.0, || format!("radius {radius:e}"))?;
+        }
+    }
+    Ok(())
+}
+
+/// Mean and deviation, over some places of a surface, of the sum of kernels that have the areas of the points around.
+#[must_use]
+pub fn kernel_sum(positions: &[DVec3], estimates: &Estimates, probes: &[DVec3]) -> (f64, f64) {
+    let sums: Vec<f64> = probes.iter().map(|&probe| kernel_sum_at(positions, estimates, probe)).collect();
+    let mean = sums.iter().sum::<f64>() / sums.len() as f64;
+    let variance = sums.iter().map(|sum| (sum - mean).powi(2)).sum::<f64>() / sums.len() as f64;
+    (mean, variance.sqrt())
+}
+
+fn kernel_sum_at(positions: &[DVec3], estimates: &Estimates, probe: DVec3) -> f64 {
+    let of_point = |(i, p): (usize, &DVec3)| {
+        let radius = 2.0 * areas::SIGMA_PER_RADIUS * f64::from(estimates.radii[i]);
+        let offset = probe - p;
+        let height = offset.dot(estimates.normals[i].as_dvec3());
+        let share = (offset.length_squared() - height * height) / (radius * radius);
+        // Nearer than a few radii: not the other side of the thing.
+        let counts = share < 1.0 && height.abs() < 2.0 * radius;
+        let kernel = (1.0 - share).powi(2) / (std::f64::consts::PI * radius * radius / 3.0);
+        if counts { f64::from(estimates.areas[i]) * kernel } else { 0.0 }
+    };
+    positions.iter().enumerate().map(of_point).sum()
+}
+
+/// The kernel sum at places of a surface is near 1: its mean to within `off`, its deviation at most `ripple`.
+///
+/// # Errors
+/// Mean and deviation.
+pub fn areas_reproduce_constants(
+    positions: &[DVec3],
+    probes: &[DVec3],
+    off: f64,
+    ripple: f64,
+) -> Result<(), String> {
+    let (mean, deviation) = kernel_sum(positions, &estimates(positions), probes);
+    let holds = (mean - 1.0).abs() <= off && deviation <= ripple;
+    check(holds, || format!("kernels add up to {mean:.4} ± {deviation:.4}"))
+}

@@ -1,0 +1,98 @@
+//! Bugs that were fixed, each with the smallest input that showed it.
+
+use glam::{DAffine3, DMat3, DVec3, Vec3, dvec3};
+use pointillist_surfel::invariants::{
+    OwnedPoints, cloud, frame, frame_is_sound, frames_are_identical, look_at, use_before_does_not_matter,
+};
+use pointillist_surfel::{
+    Focus, Light, Options, Projection, SampleOptions, SurfelError, View, field_of_view_rad, sample,
+};
+
+const PERSPECTIVE: Projection = Projection::Perspective { fov_y_rad: 0.7 };
+
+fn disc(at: DVec3, normal: Vec3, radius: f32) -> OwnedPoints {
+    OwnedPoints { normals: Some(vec![normal]), radii: Some(vec![radius]), ..OwnedPoints::loose(vec![at]) }
+}
+
+/// The largest of three numbers passes over NaN, and so did the check of positions.
+#[test]
+fn one_coordinate_that_is_nan_is_refused() {
+    let points = OwnedPoints::loose(vec![DVec3::ZERO, dvec3(0.0, f64::NAN, 0.0)]);
+    assert_eq!(cloud(&points).unwrap_err(), SurfelError::NotFinite { index: 1 });
+}
+
+/// Runs of eight pixels added up what lay beyond a disc's columns; nobody took it away, and the next tile showed it.
+#[test]
+fn a_disc_leaves_nothing_beyond_its_columns() {
+    let point = disc(dvec3(0.0, 0.0, -0.887_584_319_129_471_8), Vec3::Z, 0.007_071_067_6);
+    let look = |width| {
+        look_at(DVec3::Z * 0.1, DVec3::ZERO, Projection::Perspective { fov_y_rad: 0.2 }, width, 65).unwrap()
+    };
+    let mut blurred = Options::default();
+    blurred.focus = Focus::Depth { depth: 0.093_650_515_018_749_38, focus: 5.634_840_340_433_71 };
+    use_before_does_not_matter(&point, (&look(129), &blurred), (&look(129), &blurred)).unwrap();
+    use_before_does_not_matter(&point, (&look(121), &blurred), (&look(129), &Options::default())).unwrap();
+}
+
+/// The plane of a disc beside the eye was followed to behind it.
+#[test]
+fn no_depth_is_behind_the_eye() {
+    let (eye, target) = (DVec3::ZERO, dvec3(0.147_988_420_035_264_77, 0.0, 1.098_836_798_271_553));
+    let points = OwnedPoints::loose(vec![
+        dvec3(1.167_266_769_150_518_7, 0.0, 0.0),
+        dvec3(0.0, 1.484_223_487_486_215_2, 0.0),
+    ]);
+    let view = look_at(eye, target, Projection::Orthographic { height: 2.0 }, 24, 17).unwrap();
+    let drawn = frame(&points, &view, &Options::default()).unwrap();
+    frame_is_sound(&drawn, 1.0).unwrap();
+}
+
+/// The square of a short direction vanished.
+#[test]
+fn light_may_come_along_a_short_direction() {
+    let point = disc(DVec3::ZERO, Vec3::Z, 0.5);
+    let view = look_at(DVec3::Z * 3.0, DVec3::ZERO, PERSPECTIVE, 16, 16).unwrap();
+    let by = |length: f64| {
+        let mut options = Options::default();
+        options.light = Light::Towards(DVec3::Z * length);
+        frame(&point, &view, &options).unwrap()
+    };
+    frames_are_identical(&by(1.0), &by(1e-200)).unwrap();
+}
+
+/// An infinite focus gave a field of view that was not a number.
+#[test]
+fn a_lens_can_be_focused_on_infinity() {
+    assert_eq!(field_of_view_rad(1.0, 2.0, f64::INFINITY), Some(std::f64::consts::FRAC_PI_2));
+}
+
+/// Places in the cloud were rounded in world coordinates before the eye was taken from them.
+#[test]
+fn a_scene_far_from_the_origin_gives_the_same_frame() {
+    let near = OwnedPoints::sphere(DVec3::ZERO, 0.5, 200).moved(|p| (p * 1_048_576.0).round() / 1_048_576.0);
+    let look = |shift: DVec3| {
+        let map = DAffine3::from_mat3_translation(DMat3::IDENTITY, -(DVec3::Z * 2.0 + shift));
+        View::new(map, PERSPECTIVE, 20, 20).unwrap()
+    };
+    let far = DVec3::splat(1_048_576.0);
+    let a = frame(&near, &look(DVec3::ZERO), &Options::default()).unwrap();
+    let b = frame(&near.moved(|p| p + far), &look(far), &Options::default()).unwrap();
+    frames_are_identical(&a, &b).unwrap();
+}
+
+/// Points with neither extent nor blur on the picture were thinned by 0/0, and then counted by it.
+#[test]
+fn points_without_extent_on_the_picture_are_drawn() {
+    let camera = Projection::Orthographic { height: 1e300 };
+    let view = look_at(DVec3::Z, DVec3::ZERO, camera, 8, 8).unwrap();
+    let drawn = frame(&disc(DVec3::ZERO, Vec3::Z, 0.5), &view, &Options::default()).unwrap();
+    frame_is_sound(&drawn, 1.0).unwrap();
+}
+
+/// Found by `surfel_sample`: a triangle longer than the largest number of `f32` had discs without end.
+#[test]
+fn radii_of_huge_triangles_are_numbers() {
+    let corners = [DVec3::Z * 5.1e115, dvec3(1.6, 0.0, 1.6), DVec3::Z * 0.5];
+    let points = sample(&corners, &[[0, 1, 2]], &SampleOptions::DEFAULT.with_count(183)).unwrap();
+    assert!(points.iter().all(|p| p.radius.is_finite()));
+}
