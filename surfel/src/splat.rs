@@ -401,7 +401,7 @@ fn project_lanes(lanes: &mut Projector, camera: &Camera, shape: &Shape, map: &Ma
         let long = slant([disc[0] + blur, disc[1], disc[2] + blur]).min(longest);
         let shrink = (long / slant(v).max(f32::MIN_POSITIVE)).min(1.0).sqrt();
         let (kx, ky) = (kx * shrink, ky * shrink);
-        let bend = if camera.is_perspective { reference * reference * inverse } else { 1.0 };
+        let bend = if camera.is_perspective { reference * (reference * inverse) } else { 1.0 };
         // The planes of an orthographic view keep their shape: h is 1.
         let (hkx, hky) = (kx * slope * focal, ky * slope * focal);
         // 5
@@ -428,7 +428,7 @@ fn project_lanes(lanes: &mut Projector, camera: &Camera, shape: &Shape, map: &Ma
             camera.thickness(radii[i], slope_of_disc, 1.0 / scale, blur_radius) * camera.bending(inverse);
         out.flat[i] = if is_flat { 1.0 } else { 0.0 };
         let edge = (narrow / (EDGE_VARIANCE + blur)).max(1.0).sqrt();
-        out.sharpness[i] = if shape.is_paper { radius * scale } else { edge };
+        out.sharpness[i] = if shape.is_paper { (radius * scale).min(1e6) } else { edge };
         (out.normals[0][i], out.normals[1][i], out.normals[2][i]) = (a, b, c);
         (out.ends[0][i], out.ends[1][i], out.ends[2][i], out.ends[3][i]) = (left, right, top, bottom);
         out.kept[i] = if kept { 1.0 } else { 0.0 };

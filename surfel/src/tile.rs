@@ -233,7 +233,7 @@ impl Tile {
         for row in touched.rows[0]..touched.rows[1] {
             for i in touched.pixels(row) {
                 let sums = &self.layer.sums[i];
-                if sums[0] <= LEAST_WEIGHT {
+                if sums[0].is_nan() || sums[0] <= LEAST_WEIGHT {
                     // Nothing here, now or later.
                     self.layer.floor[i] = f32::INFINITY;
                     continue;
