@@ -119,20 +119,23 @@ fn options(rules: &Rules, k: f64) -> Options {
     o
 }
 
-fn view(picture: &Picture, k: f64) -> Option<View> {
+/// Of up to this many pixels a side.
+fn view(picture: &Picture, k: f64, most: [u8; 2]) -> Option<View> {
     let span = 0.05 + f64::from(picture.fov) / 100.0;
     let projection = match picture.orthographic {
         true => Projection::Orthographic { height: span * k },
         false => Projection::Perspective { fov_y_rad: span },
     };
-    let (w, h) = (u32::from(picture.size.0 % 150), u32::from(picture.size.1 % 80));
+    let (w, h) = (u32::from(picture.size.0 % most[0]), u32::from(picture.size.1 % most[1]));
     look_at(steps(picture.eye) * k, steps(picture.target) * k, projection, w, h)
 }
 
 fuzz_target!(|input: (Vec<Shape>, Attributes, Picture, Rules, u64)| {
     let (shapes, attributes, picture, rules, seed) = input;
     let k = f64::from(picture.power).exp2();
-    let Some(view) = view(&picture, k) else { return };
+    // The paper's filter takes thousands of steps per pixel where discs are large.
+    let most = if rules.paper { [40, 30] } else { [150, 80] };
+    let Some(view) = view(&picture, k, most) else { return };
     let points = points(&shapes, &attributes).resized(k);
     let options = options(&rules, k);
     let facts = invariants::octrees_are_sound(&points)

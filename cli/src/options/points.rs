@@ -21,7 +21,7 @@ impl FromStr for PointLayerRequest {
             "N" => Ok(Self::One(PointLayer::Normal)),
             "P" => Ok(Self::One(PointLayer::Position)),
             "count" => Ok(Self::One(PointLayer::Count)),
-            _ => Err("layers of points are all, N, P and (of `scan`) count".to_owned()),
+            _ => Err("layers of points are all, N, P and count (only of `scan`)".to_owned()),
         }
     }
 }
