@@ -271,6 +271,8 @@ fn the_energy_of_a_blurred_point_is_conserved() {
         for focus in [3.0, 7.0] {
             let blurred = covered(Focus::Depth { depth, focus });
             println!("d = {depth}, focus {focus}: {:.3}", blurred / sharp);
+            // A soft disc is cut where it covers half, which leaves 0.85 of its area. A blurred one's edge is made steep by as much
+            // as the disc is of the blur, which takes from where little is covered: measured 0.83 to 1.12.
             assert!(
                 (blurred / sharp - 1.0).abs() < 0.2,
                 "d = {depth}, focus {focus}: {blurred}, not {sharp}"
