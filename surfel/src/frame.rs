@@ -22,9 +22,9 @@ pub struct Frame {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FrameCounts {
-    /// Nodes of the octree that were drawn, and hidden ones among them.
+    /// Nodes of the octree that are in view, do not face away and are as coarse as they may be.
     pub nodes: usize,
-    /// Nodes that were skipped in all tiles because other surfaces hide them.
+    /// Nodes among them that were skipped in all tiles, because other surfaces hide them.
     pub nodes_hidden: usize,
     /// Nodes outside the view; what is below them is not looked at.
     pub nodes_outside: usize,

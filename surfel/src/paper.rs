@@ -82,19 +82,21 @@ impl PaperTile {
         for row in 0..place.height {
             cells[at(row, 0)..at(row, place.width)].fill(Cell::EMPTY);
         }
-        for (k, shape) in [Shape::DISC, Shape::WIDENED_DISC].iter().enumerate() {
+        // Without depth of field both z-buffers are the same.
+        let second = (scene.camera.blur > 0.0).then_some(Shape::WIDENED_DISC);
+        for (k, shape) in [Some(Shape::DISC), second].into_iter().flatten().enumerate() {
             self.splats.clear();
             for selected in nodes {
                 let node = &scene.cloud.nodes[selected.node as usize];
                 let items = Items { node, stride: selected.stride.into() };
-                self.projector.project(scene.cloud, &items, &scene.camera, shape, place, &mut self.splats);
+                self.projector.project(scene.cloud, &items, &scene.camera, &shape, place, &mut self.splats);
             }
             self.layer.near.fill(f32::INFINITY);
             kernel::nearest::<true>(&mut self.layer, &self.splats);
             for row in 0..place.height {
                 for column in 0..place.width {
                     let cell = &mut cells[at(row, column)];
-                    cell.near[k] = self.layer.near[row * PITCH + column];
+                    cell.near[k..].fill(self.layer.near[row * PITCH + column]);
                     cell.radius = self.layer.sharpness[row * PITCH + column];
                 }
             }

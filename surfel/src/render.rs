@@ -12,12 +12,14 @@ use crate::shade::Shader;
 use crate::tile::{Place, Scene, Tile};
 use crate::view::View;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Draws frames. Keeps its working memory, so that later frames hardly allocate.
 #[derive(Default)]
 pub struct Renderer {
     selected: Vec<Selected>,
     stack: Vec<u32>,
+    shown: Vec<AtomicBool>,
     tiles: Pool<Tile>,
     paper_tiles: Pool<PaperTile>,
     /// Of the paper's procedure: the picture between its two steps.
@@ -49,13 +51,20 @@ impl Renderer {
         frame.reshape(view.width as usize, view.height as usize, options.normals);
         let mut counts = FrameCounts::default();
         select::select(cloud, &camera, options, &mut self.selected, &mut self.stack, &mut counts);
-        frame.counts = counts;
         let shader = Shader::new(&camera, options, cloud.has_colours());
-        let scene = Scene { cloud, camera, shader, culling: options.culling };
+        let mut shown = std::mem::take(&mut self.shown);
+        shown.clear();
+        // The paper's procedure hides nothing.
+        let is_paper = options.procedure == Procedure::Paper;
+        shown.resize_with(self.selected.len(), || AtomicBool::new(is_paper));
+        let scene = Scene { cloud, camera, shader, culling: options.culling, shown: &shown };
         match options.procedure {
             Procedure::Blended => self.blend(&scene, frame),
             Procedure::Paper => self.link_and_filter(&scene, frame),
         }
+        counts.nodes_hidden = shown.iter().filter(|s| !s.load(Ordering::Relaxed)).count();
+        frame.counts = counts;
+        self.shown = shown;
         Ok(())
     }
 

@@ -20,6 +20,8 @@ const MOST_STRIDE: f32 = 4.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Selected {
     pub(crate) node: u32,
+    /// Its place among all that were selected.
+    pub(crate) place: u32,
     /// First and last pixels of all that it draws, within the picture.
     pub(crate) x: [u16; 2],
     pub(crate) y: [u16; 2],
@@ -67,9 +69,10 @@ pub(crate) fn select(
         counts.points += drawn;
         counts.links += if node.is_leaf() { 0 } else { drawn };
         let Seen { x, y, nearest, thickness, .. } = seen;
-        selected.push(Selected { node: number, x, y, stride, nearest, thickness });
+        selected.push(Selected { node: number, place: 0, x, y, stride, nearest, thickness });
     }
     selected.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.node.cmp(&b.node)));
+    selected.iter_mut().zip(0..).for_each(|(s, place)| s.place = place);
 }
 
 /// A node on the picture.

@@ -11,6 +11,7 @@ use crate::kernel;
 use crate::select::Selected;
 use crate::shade::{Pixel, Shader, opacity};
 use crate::splat::{Items, Projector, Shape, Splat};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Pixels of a tile: sums and depths fit into the second-level cache.
 pub(crate) const WIDTH: usize = 128;
@@ -114,6 +115,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) camera: Camera,
     pub(crate) shader: Shader,
     pub(crate) culling: bool,
+    /// Which of the selected nodes any tile has drawn.
+    pub(crate) shown: &'a [AtomicBool],
 }
 
 /// Pixels of a tile that discs may touch.
@@ -193,6 +196,7 @@ impl Tile {
 
     fn project(&mut self, scene: &Scene<'_>, place: &Place, selected: &Selected) {
         let node = &scene.cloud.nodes[selected.node as usize];
+        scene.shown[selected.place as usize].store(true, Ordering::Relaxed);
         let items = Items { node, stride: selected.stride.into() };
         self.projector.project(scene.cloud, &items, &scene.camera, &Shape::BLENDED, place, &mut self.splats);
     }

@@ -96,3 +96,18 @@ fn radii_of_huge_triangles_are_numbers() {
     let points = sample(&corners, &[[0, 1, 2]], &SampleOptions::DEFAULT.with_count(183)).unwrap();
     assert!(points.iter().all(|p| p.radius.is_finite()));
 }
+
+/// Hidden nodes were skipped, and the count of them said 0.
+#[test]
+fn nodes_behind_a_wall_are_counted_as_hidden() {
+    let wall = |z: f64| OwnedPoints::plane(DVec3::Z * z, DVec3::X * 0.01, DVec3::Y * 0.01, 150, 150);
+    let points = wall(0.0).and(&wall(-1.0));
+    let view = look_at(DVec3::Z * 2.0, DVec3::ZERO, PERSPECTIVE, 90, 90).unwrap();
+    let hidden = |culling| {
+        let mut options = Options::default();
+        options.culling = culling;
+        frame(&points, &view, &options).unwrap().counts.nodes_hidden
+    };
+    assert!(hidden(true) > 10, "{}", hidden(true));
+    assert_eq!(hidden(false), 0);
+}
