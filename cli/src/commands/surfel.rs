@@ -85,7 +85,13 @@ fn tell_counts(report: &Report<'_>, cloud: &surfel::Cloud, frame: &surfel::Frame
         cloud.spacing(),
         cloud.overhead_per_point()
     ));
-    if frame.depth().iter().all(|d| d.is_infinite()) {
+    let seen = || frame.depth().iter().copied().filter(|d| d.is_finite());
+    if let Some(nearest) = seen().min_by(f32::total_cmp) {
+        let farthest = seen().fold(nearest, f32::max);
+        report.detail(&format!(
+            "seen from {nearest:.4} to {farthest:.4} along the view axis: --focus goes there"
+        ));
+    } else {
         report.warn(if counts.points > 0 {
             "nothing was drawn: points are too far apart to cover a pixel, or blurred too much"
         } else if counts.nodes_facing_away > 0 {

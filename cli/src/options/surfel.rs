@@ -48,7 +48,7 @@ pub struct SurfelOptions {
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Depth of field (with --focus and one of --depth, --aperture, --lens)")]
 pub struct FocusOptions {
-    /// Distance along the view axis at which everything is sharp, world units
+    /// Distance along the view axis at which everything is sharp, world units; -v tells where things are
     #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = values::positive)]
     pub focus: Option<f64>,
     /// Radius of the blur per unit of distance from the focus (the paper's d); 0 is sharp everywhere
