@@ -16,6 +16,7 @@ pub mod mesh_io;
 pub mod options;
 pub mod pipeline;
 pub mod points;
+pub mod probe_io;
 pub mod scan;
 pub mod scene;
 

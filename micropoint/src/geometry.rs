@@ -334,6 +334,20 @@ impl Geometry {
         HiddenSides(self.solids.iter().enumerate().map(hidden).collect())
     }
 
+    /// The closed components with faces turned outward that a point lies in, each by a number that is its own. (Where faces are turned
+    /// inward, inside is a room.)
+    #[must_use]
+    pub fn solids_around(&self, p: DVec3) -> Vec<u32> {
+        let holds = |&i: &u32| {
+            let solid = &self.solids[i as usize];
+            solid.orientation > 0
+                && p.cmpge(solid.low).all()
+                && p.cmple(solid.high).all()
+                && self.winding(i, p).abs() > 0.5
+        };
+        (0..self.solids.len() as u32).filter(holds).collect()
+    }
+
     /// How often a closed component winds around a point.
     fn winding(&self, solid: u32, origin: DVec3) -> f64 {
         let mut total = 0.0;

@@ -23,6 +23,22 @@ mod micropoint;
 mod picture;
 mod picture_layers;
 mod point_sampling;
+mod probe_canvas;
+mod probe_delaunay;
+mod probe_layouts;
+mod probe_maps;
+mod probe_objects;
+mod probe_paper;
+mod probe_peer;
+mod probe_pictures;
+mod probe_projection;
+mod probe_rays;
+mod probe_rooms;
+mod probe_site;
+mod probe_streets;
+mod probe_trilinear;
+mod probe_truth;
+mod probe_walk;
 mod ray_reference;
 mod report;
 mod scans;
@@ -30,6 +46,7 @@ mod scenes;
 mod shadow;
 mod shadow_map;
 mod shadow_scenes;
+mod shprobe;
 mod similarity;
 mod speed;
 mod stress;
@@ -46,12 +63,17 @@ use report::Outcome;
 /// Name, what it measures, and the study itself.
 type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
 
-const STUDIES: [Study; 7] = [
+const STUDIES: [Study; 8] = [
     ("dice", "areas of a triangle in the cells of a grid", run_dice),
     ("micropoint", "pictures against point sampling", micropoint::run),
     ("shadow", "shadows against a shadow map", shadow::run),
     ("ibpr", "raw range scans against the surface that they measured", ibpr::run),
     ("surfel", "point clouds against rays through a lens; fails if order or threads show", surfel::run),
+    (
+        "shprobe",
+        "light probes: coefficients, tetrahedra, placement, against direct integration",
+        shprobe::run,
+    ),
     ("stress", "input at the limits of numbers; fails if a row does", stress::run),
     ("speed", "whole pictures: seconds, threads, memory", speed::run),
 ];
@@ -66,12 +88,14 @@ fn usage() -> String {
     for (name, what, _) in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n\n`surfel quick` is a trial of `surfel` that takes a minute and writes elsewhere.\n"
+    text + "  all         all of these\n\n`surfel quick` and `shprobe quick` are trials that take a minute and write elsewhere. `shprobe --pictures DIR` draws, too.\n"
 }
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let name = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let out_dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results");
+    let name = match arguments[..] {
         ["--help" | "-h"] => {
             print!("{}", usage());
             return ExitCode::SUCCESS;
@@ -82,13 +106,13 @@ fn main() -> ExitCode {
             return if ended { ExitCode::SUCCESS } else { ExitCode::FAILURE };
         }
         ["surfel", "quick"] => return code(surfel::run_quick()),
+        ["shprobe", _, ..] => return code(shprobe::run_with(&out_dir, &arguments[1..])),
         [name] if name == "all" || STUDIES.iter().any(|s| s.0 == name) => name,
         _ => {
             eprint!("{}", usage());
             return ExitCode::from(2);
         }
     };
-    let out_dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results");
     let chosen = STUDIES.iter().filter(|s| name == "all" || s.0 == name);
     let codes: Vec<ExitCode> = chosen.map(|(_, _, study)| code(study(&out_dir))).collect();
     codes.into_iter().find(|c| *c != ExitCode::SUCCESS).unwrap_or(ExitCode::SUCCESS)

@@ -208,6 +208,16 @@ pub(crate) fn chart_of(
     error: &str,
     rows: &[Row],
 ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    chart_along(out_dir, name, ["seconds", error], rows)
+}
+
+/// The same along another axis than time: `along` says what each row's `seconds` are, and what its errors.
+pub(crate) fn chart_along(
+    out_dir: &Path,
+    name: &str,
+    along: [&str; 2],
+    rows: &[Row],
+) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     let scenes = scenes(rows);
     let series = distinct(rows.iter().map(|r| r.series.as_str()));
     const COLUMNS: usize = 3;
@@ -224,7 +234,7 @@ pub(crate) fn chart_of(
     }
     for (area, scene) in panels.split_evenly((lines, COLUMNS)).iter().zip(scenes) {
         let of_scene: Vec<&Row> = rows.iter().filter(|r| r.scene == scene).collect();
-        panel(area, [scene, error], &series, &of_scene)?;
+        panel(area, scene, along, &series, &of_scene)?;
     }
     root.present()?;
     Ok(())
@@ -234,7 +244,8 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 fn panel(
     area: &Area<'_>,
-    [scene, error]: [&str; 2],
+    scene: &str,
+    [time, error]: [&str; 2],
     series: &[&str],
     rows: &[&Row],
 ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
@@ -255,7 +266,7 @@ fn panel(
     let power = |v: &f64| format!("{v:.0e}");
     chart
         .configure_mesh()
-        .x_desc("seconds")
+        .x_desc(time)
         .y_desc(error)
         .x_label_formatter(&power)
         .y_label_formatter(&power)

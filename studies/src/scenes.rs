@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use glam::{DMat3, DVec2, DVec3, Vec3, dvec2, dvec3};
 use pointillist_cli::scene::{
-    Camera, ImageSettings, LightSource, Material, Mesh, NONE, Object, Projection, RenderSettings, Resolution,
-    Scene, Texels, Texture,
+    AmbientLight, Camera, ImageSettings, LightSource, Material, Mesh, NONE, Object, Projection,
+    RenderSettings, Resolution, Scene, Texels, Texture,
 };
 use pointillist_shade::{self as shade, Falloff, Light, Wrap, face_normal, sees_light};
 
@@ -29,7 +29,7 @@ impl Sketch {
                 materials: vec![],
                 textures: vec![],
                 lights: vec![],
-                ambient: Vec3::ZERO,
+                ambient: AmbientLight::Color(Vec3::ZERO),
                 warnings: vec![],
                 fingerprint: 0,
             },
@@ -174,6 +174,14 @@ pub(crate) struct SurfaceSample {
 /// Whether light number `light`, sample `sample`, reaches a point: 0..=1.
 pub(crate) type Visibility<'a> = dyn Fn(&SurfaceSample, usize, u32) -> f64 + Sync + 'a;
 
+/// The ambient light of scenes without probes.
+fn ambient_color(scene: &Scene) -> Vec3 {
+    match scene.ambient {
+        AmbientLight::Color(color) => color,
+        AmbientLight::Probes { .. } => Vec3::ZERO,
+    }
+}
+
 /// Radiance towards the eye with flat, two-sided shading.
 pub(crate) fn radiance(scene: &Scene, at: &SurfaceSample, visible: &Visibility<'_>) -> DVec3 {
     let mesh = &scene.mesh;
@@ -183,7 +191,7 @@ pub(crate) fn radiance(scene: &Scene, at: &SurfaceSample, visible: &Visibility<'
     if let (Some(map), Some(uv)) = (material.diffuse_map, uv_at(scene, at)) {
         surface.diffuse *= scene.textures[map].lookup(material.wrap, uv).truncate();
     }
-    let mut color = surface.emission + scene.ambient * surface.diffuse;
+    let mut color = surface.emission + ambient_color(scene) * surface.diffuse;
     if surface.diffuse == Vec3::ZERO && surface.specular == Vec3::ZERO {
         return color.as_dvec3();
     }
@@ -371,7 +379,7 @@ pub(crate) fn checker_ground(size: u32, as_quads: bool) -> Scene {
     s.polygon(&[dvec3(-h, 0.0, h), dvec3(h, 0.0, h), dvec3(h, 0.0, -h), dvec3(-h, 0.0, -h)], ground);
     let uv = [dvec2(0.0, 0.0), dvec2(1.0, 0.0), dvec2(1.0, 1.0), dvec2(0.0, 1.0)];
     s.texture_coordinates(&[[uv[0], uv[1], uv[2]], [uv[0], uv[2], uv[3]]]);
-    s.scene.ambient = Vec3::ONE;
+    s.scene.ambient = AmbientLight::Color(Vec3::ONE);
     s.scene
 }
 

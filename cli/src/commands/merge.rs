@@ -1,6 +1,7 @@
 //! `merge`.
 
 use super::Report;
+use super::probe::{is_probe_file, merge_probes};
 use super::render::{OutputFormat, write_exr, write_png};
 use crate::error::CliError;
 use crate::image_io::{Channel, ExrFile, Frame, PngOptions, Stamp, Window};
@@ -18,6 +19,9 @@ struct Part {
 
 pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
+    if is_probe_file(&options.output) {
+        return merge_probes(options, &report);
+    }
     let format = OutputFormat::of(&options.output)?;
     let parts = options.parts.iter().map(|path| report.stats.stage("load", || read_part(path)));
     let mut parts = parts.collect::<Result<Vec<_>, _>>()?;

@@ -7,6 +7,7 @@ mod generate;
 mod info;
 mod merge;
 mod points;
+mod probe;
 mod render;
 mod report;
 mod sample;
@@ -28,6 +29,7 @@ pub fn run(cli: &Cli) -> Result<(), CliError> {
         Command::Scan(options) => scan::run(options),
         Command::Surfel(options) => surfel::run(options),
         Command::Sample(options) => sample::run(options),
+        Command::Probe { command } => probe::run(command),
         Command::Dice(options) => dice::run(options),
         Command::Compare(options) => compare::run(options),
         Command::Info(options) => info::run(options),

@@ -58,6 +58,8 @@ pub enum LayerKind {
     Lit(usize),
     /// `id`: object number from 1; 0 where nothing is.
     Id,
+    /// `back`: the share that shows backs of surfaces.
+    Back,
 }
 
 /// One layer's planes, each row-major over the frame's window.
@@ -96,6 +98,7 @@ impl LayerKind {
             Self::Indirect => named("indirect", ["R", "G", "B"]),
             Self::Lit(light) => vec![format!("lit.{}", lights.get(light).copied().unwrap_or("light"))],
             Self::Id => vec!["id".to_owned()],
+            Self::Back => vec!["back".to_owned()],
         }
     }
 }

@@ -10,6 +10,6 @@ mod stamp;
 pub use atomic::{remove_temporaries, write_atomically};
 pub use exr_file::{Channel, ExrError, ExrFile, Precision};
 pub use frame::{Frame, Layer, LayerKind, Window};
-pub use picture::{Picture, read_exr_picture, read_picture};
+pub use picture::{Levels, Picture, read_exr_picture, read_levels, read_picture};
 pub use png::{PngOptions, encode_png, encode_rgb_png};
 pub use stamp::Stamp;

@@ -41,6 +41,47 @@ pub fn read_exr_picture(bytes: &[u8]) -> Result<Picture, ExrError> {
 ///
 /// The file cannot be read or decoded.
 pub fn read_picture(path: &Path) -> Result<Picture, InputError> {
+    let image = match decode(path)? {
+        Decoded::Exr(picture) => return Ok(picture),
+        Decoded::Other(image) => image,
+    };
+    let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+    let decode = |c: f32| if is_float { c } else { linear_from_srgb(c) };
+    let pixel = |[r, g, b, a]: [f32; 4]| [decode(r) * a, decode(g) * a, decode(b) * a, a];
+    let (width, height) = (image.width(), image.height());
+    let color = image.into_rgba32f().pixels().map(|p| pixel(p.0)).collect();
+    Ok(Picture { size: [width, height], window: Window::whole(width, height), color })
+}
+
+/// The 8-bit values of a photograph.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Levels {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// Red, green and blue as stored, row-major.
+    pub pixels: Vec<[u8; 3]>,
+}
+
+/// The values of a picture as they are stored; `None` if they have more than 8 bits.
+///
+/// # Errors
+///
+/// The file cannot be read or decoded.
+pub fn read_levels(path: &Path) -> Result<Option<Levels>, InputError> {
+    let Decoded::Other(image) = decode(path)? else { return Ok(None) };
+    if image.color().bytes_per_pixel() != image.color().channel_count() {
+        return Ok(None);
+    }
+    let size = [image.width(), image.height()];
+    Ok(Some(Levels { size, pixels: image.into_rgb8().pixels().map(|p| p.0).collect() }))
+}
+
+enum Decoded {
+    Exr(Picture),
+    Other(DynamicImage),
+}
+
+fn decode(path: &Path) -> Result<Decoded, InputError> {
     let name = path.display().to_string();
     let bytes =
         std::fs::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")))?;
@@ -49,15 +90,9 @@ pub fn read_picture(path: &Path) -> Result<Picture, InputError> {
         error.with_help("EXR, PNG, JPEG and HDR pictures can be read")
     };
     if bytes.starts_with(&exr::meta::magic_number::BYTES) {
-        return read_exr_picture(&bytes).map_err(|error| fault(error.to_string()));
+        return read_exr_picture(&bytes).map(Decoded::Exr).map_err(|error| fault(error.to_string()));
     }
     let reader =
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| fault(e.to_string()))?;
-    let image = reader.decode().map_err(|error| fault(error.to_string()))?;
-    let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
-    let decode = |c: f32| if is_float { c } else { linear_from_srgb(c) };
-    let pixel = |[r, g, b, a]: [f32; 4]| [decode(r) * a, decode(g) * a, decode(b) * a, a];
-    let (width, height) = (image.width(), image.height());
-    let color = image.into_rgba32f().pixels().map(|p| pixel(p.0)).collect();
-    Ok(Picture { size: [width, height], window: Window::whole(width, height), color })
+    reader.decode().map(Decoded::Other).map_err(|error| fault(error.to_string()))
 }

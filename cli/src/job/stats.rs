@@ -24,6 +24,8 @@ struct Record {
     cpu_seconds: BTreeMap<String, f64>,
     counts: BTreeMap<String, u64>,
     skipped: BTreeMap<String, u64>,
+    #[serde(flatten)]
+    figures: BTreeMap<String, f64>,
     peak_bytes: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
     frame_ms: Option<FrameTimes>,
@@ -84,6 +86,11 @@ impl Stats {
         *self.lock().counts.entry(name.to_owned()).or_default() += n;
     }
 
+    /// Says a number that a command is asked for.
+    pub fn figure(&self, name: &str, value: f64) {
+        self.lock().figures.insert(name.to_owned(), value);
+    }
+
     /// Adds to the count of what was found not to matter.
     pub fn skip(&self, name: &str, n: u64) {
         *self.lock().skipped.entry(name.to_owned()).or_default() += n;
@@ -131,6 +138,11 @@ impl ThreadClock {
     /// Starts measuring on this thread.
     pub fn start() -> Self {
         Self(ThreadTime::try_now().ok())
+    }
+
+    /// Seconds of processor time since the start, or the last booking.
+    pub fn seconds(&self) -> f64 {
+        self.0.and_then(|start| start.try_elapsed().ok()).unwrap_or_default().as_secs_f64()
     }
 
     /// Books the time since the start, or the last call, under `name`: to be called on the thread that started it.

@@ -2,6 +2,7 @@
 
 mod common;
 mod points;
+mod probe;
 mod render;
 mod sample;
 mod scan;
@@ -10,11 +11,15 @@ mod values;
 
 pub use common::{Common, Progressive, TextOutput};
 pub use points::{PointLayerRequest, layer_list};
+pub use probe::{
+    BakeOptions, Inside, PlaceOptions, ProbeCommand, ProjectOptions, QueryOptions, Strategy, TetraOptions,
+    WeightRule, What,
+};
 pub use render::{CameraOptions, LayerRequest, PictureOptions, RenderOptions};
 pub use sample::{SampleMethod, SampleOptions};
 pub use scan::{ScanOptions, ShadingOptions, SurfaceOptions};
 pub use surfel::{DiscOptions, FocusOptions, ProcedureValue, SurfelOptions, SurfelShading};
-pub use values::{Tile, Vector};
+pub use values::{ResponseCurve, Tile, Vector};
 
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
@@ -79,6 +84,12 @@ pub enum Command {
         pointillist surfel room.ply --focus 2.5 --lens 50 --fstop 1.8 -o photograph.png\n  \
         pointillist surfel bunny.ply -o bunny.exr --layers all --float")]
     Surfel(SurfelOptions),
+    /// Light probes: place, bake, project, tetrahedralise, query
+    Probe {
+        /// What to do.
+        #[command(subcommand)]
+        command: ProbeCommand,
+    },
     /// Cut polygons by a grid: JSON lines in, JSON lines out
     #[command(after_help = "Example:\n  \
         echo '{\"polygon\":[[0.5,0.5],[1.5,0.5],[1.5,1.5],[0.5,1.5]]}' | pointillist dice --areas")]
@@ -99,10 +110,10 @@ pub enum Command {
         pointillist check house.toml\n  \
         pointillist check house.toml --set camera.fov=200")]
     Check(CheckOptions),
-    /// Join the EXR parts that `render --tile` wrote
-    #[command(
-        after_help = "Example:\n  pointillist merge part0.exr part1.exr part2.exr part3.exr -o house.exr"
-    )]
+    /// Join the parts that `render --tile` or `probe bake --part` wrote
+    #[command(after_help = "Examples:\n  \
+        pointillist merge part0.exr part1.exr part2.exr part3.exr -o house.exr\n  \
+        pointillist merge part0.json part1.json -o baked.json")]
     Merge(MergeOptions),
     /// Print a completion script for a shell
     #[command(after_help = "Example:\n  \
@@ -189,10 +200,10 @@ pub struct CheckOptions {
 /// `merge`.
 #[derive(Debug, clap::Args)]
 pub struct MergeOptions {
-    /// EXR files that `render --tile` wrote, in any order.
+    /// EXR files that `render --tile` wrote, or files that `probe bake --part` wrote, in any order.
     #[arg(required = true, value_name = "PART")]
     pub parts: Vec<PathBuf>,
-    /// The whole picture: .exr or .png.
+    /// The whole: .exr or .png for a picture, .json or .probes for probes.
     #[arg(short, long, value_name = "PATH")]
     pub output: PathBuf,
     /// For PNG: brighten by this many stops.

@@ -1,6 +1,7 @@
 //! Values of options: vectors, sizes, windows, tiles.
 
 use crate::image_io::Window;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Three finite numbers, as in `1,2.5,-3`.
@@ -113,6 +114,43 @@ pub(super) fn degrees(text: &str) -> Result<f64, String> {
 pub(super) fn exposure(text: &str) -> Result<f32, String> {
     let ev = text.parse::<f32>().map_err(|_| "must be a number of stops".to_owned())?;
     if ev.abs() <= 60.0 { Ok(ev) } else { Err("must be from -60 to 60".to_owned()) }
+}
+
+/// `NXxNYxNZ`.
+pub(super) fn grid(text: &str) -> Result<[usize; 3], String> {
+    const MOST: usize = 1 << 24;
+    let numbers: Vec<usize> = list(text, 'x', "numbers of probes such as 12x6x6")?;
+    match numbers[..] {
+        [_, _, _] if numbers.contains(&0) => Err("there must be at least 1 along each axis".to_owned()),
+        [x, y, z] if x.saturating_mul(y).saturating_mul(z) <= MOST => Ok([x, y, z]),
+        [_, _, _] => Err(format!("these are more than {MOST} probes")),
+        _ => Err("must be three numbers such as 12x6x6".to_owned()),
+    }
+}
+
+/// How the levels of a photograph follow the light.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ResponseCurve {
+    /// The curve of sRGB.
+    Srgb,
+    /// In proportion.
+    Linear,
+    /// To the power 1/γ.
+    Gamma(f64),
+    /// As the 256 numbers in a file say.
+    File(PathBuf),
+}
+
+/// `srgb`, `linear`, `gamma=2.2` or a file.
+pub(super) fn response(text: &str) -> Result<ResponseCurve, String> {
+    match text.split_once('=') {
+        _ if text == "srgb" => Ok(ResponseCurve::Srgb),
+        _ if text == "linear" => Ok(ResponseCurve::Linear),
+        Some(("gamma", value)) => positive(value).map(ResponseCurve::Gamma),
+        _ if Path::new(text).is_file() => Ok(ResponseCurve::File(PathBuf::from(text))),
+        _ => Err("must be srgb, linear, gamma=2.2, or a file with the radiance of each of the 256 levels"
+            .to_owned()),
+    }
 }
 
 /// A size.

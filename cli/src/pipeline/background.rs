@@ -6,23 +6,23 @@ use pointillist_micropoint::{MicropointError, TexelCorner, TexelSums, TexelWrap,
 use std::f64::consts::{PI, TAU};
 
 /// A constant colour or an equirectangular environment.
-pub(crate) struct Background {
+pub(crate) struct Background<'a> {
     color: Vec3,
-    environment: Option<TexelSums<3>>,
+    environment: Option<&'a TexelSums<3>>,
     view: View,
 }
 
-impl Background {
-    pub(crate) fn new(scene: &Scene, view: &View) -> Result<Self, MicropointError> {
-        let environment = match scene.image.environment {
-            None => None,
-            Some(i) => {
-                let t = &scene.textures[i];
-                let texel = |x, y| t.texel(x, y).truncate().to_array();
-                Some(TexelSums::new(t.width, t.height, TexelWrap::Repeat, texel)?)
-            }
-        };
-        Ok(Self { color: scene.image.background, environment, view: *view })
+/// The scene's environment, ready for means over any part of it.
+pub(super) fn sum_up_environment(scene: &Scene) -> Result<Option<TexelSums<3>>, MicropointError> {
+    let Some(i) = scene.image.environment else { return Ok(None) };
+    let t = &scene.textures[i];
+    let texel = |x, y| t.texel(x, y).truncate().to_array();
+    TexelSums::new(t.width, t.height, TexelWrap::Repeat, texel).map(Some)
+}
+
+impl<'a> Background<'a> {
+    pub(crate) fn new(scene: &Scene, environment: Option<&'a TexelSums<3>>, view: &View) -> Self {
+        Self { color: scene.image.background, environment, view: *view }
     }
 
     /// Mean radiance behind a pixel.

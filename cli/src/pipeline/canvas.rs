@@ -20,7 +20,7 @@ pub(crate) struct Canvas {
 }
 
 impl Canvas {
-    pub(crate) fn new(scene: &Scene, job: &RenderJob) -> Self {
+    pub(crate) fn new(scene: &Scene, size: [u32; 2], job: &RenderJob) -> Self {
         let pixels = job.window.pixels() as usize;
         let lights: Vec<&str> = scene.lights.iter().map(|l| l.name.as_str()).collect();
         let layer = |kind: &LayerKind| {
@@ -30,7 +30,7 @@ impl Canvas {
         };
         Self {
             frame: Frame {
-                size: [scene.image.width, scene.image.height],
+                size,
                 window: job.window,
                 color: vec![[0.0; 4]; pixels],
                 depth: vec![f32::INFINITY; pixels],

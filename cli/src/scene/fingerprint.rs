@@ -1,6 +1,6 @@
 //! One number for everything that a picture depends on.
 
-use super::{Material, Mesh, Projection, Resolution, Scene, Texels, Texture};
+use super::{AmbientLight, Material, Mesh, Projection, Resolution, Scene, Texels, Texture};
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade::{Falloff, Light, Material as Surface};
 use std::hash::Hasher as _;
@@ -14,6 +14,16 @@ struct Fingerprint(XxHash3_64);
 pub(super) fn of(scene: &Scene) -> u64 {
     let mut hash = Fingerprint::default();
     hash.camera_and_image(scene);
+    hash.int(of_light(scene));
+    hash.0.finish()
+}
+
+/// The hash of what light depends on: everything but the camera and the picture's size.
+pub fn of_light(scene: &Scene) -> u64 {
+    let mut hash = Fingerprint::default();
+    hash.color(scene.image.background);
+    hash.option(scene.image.environment);
+    hash.text(&format!("{:?}", scene.render));
     hash.mesh(&scene.mesh);
     scene.materials.iter().for_each(|material| hash.material(material));
     scene.textures.iter().for_each(|texture| hash.texture(texture));
@@ -26,7 +36,10 @@ pub(super) fn of(scene: &Scene) -> u64 {
             Resolution::Cells(n) => u64::from(n),
         });
     }
-    hash.color(scene.ambient);
+    match &scene.ambient {
+        AmbientLight::Color(color) => hash.color(*color),
+        AmbientLight::Probes { fingerprint, .. } => hash.int(*fingerprint),
+    }
     hash.0.finish()
 }
 
@@ -76,9 +89,6 @@ impl Fingerprint {
         }
         self.int(u64::from(scene.image.width));
         self.int(u64::from(scene.image.height));
-        self.color(scene.image.background);
-        self.option(scene.image.environment);
-        self.text(&format!("{:?}", scene.render));
     }
 
     fn mesh(&mut self, mesh: &Mesh) {

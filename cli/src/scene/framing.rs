@@ -1,7 +1,7 @@
 //! A camera that has everything in view, and a light for a mesh that comes without.
 
 use super::description::{CameraDescription, DEFAULT_FOV_DEG, Description, view_fault};
-use super::{Camera, LightSource, Mesh, Projection, Resolution, Scene};
+use super::{AmbientLight, Camera, LightSource, Mesh, Projection, Resolution, Scene};
 use crate::input_error::InputError;
 use glam::{DVec3, Vec3};
 use pointillist_shade::Light;
@@ -93,7 +93,7 @@ pub(super) fn add_light(scene: &mut Scene) {
         shadow: true,
         resolution: Resolution::Auto,
     });
-    if scene.ambient == Vec3::ZERO {
-        scene.ambient = Vec3::splat(AMBIENT);
+    if matches!(scene.ambient, AmbientLight::Color(Vec3::ZERO)) {
+        scene.ambient = AmbientLight::Color(Vec3::splat(AMBIENT));
     }
 }

@@ -17,7 +17,9 @@ mod textures;
 
 pub use builtin::builtin;
 pub use description::{Description, parse_str};
+pub use fingerprint::of_light as light_fingerprint;
 pub(crate) use framing::around as frame_around;
+pub(crate) use load::read_file;
 pub use load::{Overrides, load};
 pub use text::Format;
 pub use texture_lookup::{linear_from_srgb, srgb_from_linear};
@@ -46,12 +48,26 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// The lights, in the order of the file.
     pub lights: Vec<LightSource>,
-    /// Added as albedo · colour.
-    pub ambient: Vec3,
+    /// Light that does not come straight from the lights.
+    pub ambient: AmbientLight,
     /// What was odd but not wrong, for the user to read.
     pub warnings: Vec<String>,
     /// A hash of everything above but the warnings: equal scenes draw equal pictures.
     pub fingerprint: u64,
+}
+
+/// Light that does not come straight from the lights.
+#[derive(Clone, Debug)]
+pub enum AmbientLight {
+    /// The same everywhere, reflected as albedo · colour.
+    Color(Vec3),
+    /// Between baked probes, reflected as albedo/π · irradiance.
+    Probes {
+        /// The light.
+        field: Box<pointillist_shprobe::Field>,
+        /// A hash of the file.
+        fingerprint: u64,
+    },
 }
 
 /// Where the eye is and what it takes in.

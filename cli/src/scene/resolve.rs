@@ -1,13 +1,16 @@
 //! A description to a [`Scene`]: opens what it names and puts everything together.
 
 use super::builtin::Generated;
-use super::description::{Description, FileReference, ObjectDescription, TextureReference};
+use super::description::{
+    AmbientDescription, Description, FileReference, ObjectDescription, TextureReference,
+};
 use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
-use super::{ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene};
+use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene};
 use super::{fingerprint, framing, load, smooth};
 use crate::input_error::InputError;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
+use crate::probe_io::read_probes;
 use glam::{DMat3, Vec3};
 use pointillist_shade::Interpolation;
 use std::collections::HashMap;
@@ -36,6 +39,7 @@ pub(super) fn resolve(
         builder.add(object)?;
     }
     let environment = builder.environment()?;
+    let ambient = ambient(description, folder)?;
     let [width, height] = description.size;
     let aspect = f64::from(width) / f64::from(height);
     let camera = framing::place(description, &builder.mesh, aspect)?;
@@ -56,7 +60,7 @@ pub(super) fn resolve(
         materials: builder.materials.into_materials(),
         textures: builder.textures.into_textures(),
         lights: lights(description),
-        ambient: description.ambient,
+        ambient,
         warnings: builder.warnings,
         fingerprint: 0,
     };
@@ -65,6 +69,24 @@ pub(super) fn resolve(
     }
     scene.fingerprint = fingerprint::of(&scene);
     Ok(scene)
+}
+
+fn ambient(description: &Description, folder: &Path) -> Result<AmbientLight, InputError> {
+    match &description.ambient {
+        AmbientDescription::Color(color) => Ok(AmbientLight::Color(*color)),
+        AmbientDescription::Probes(file) => {
+            let path = folder.join(&file.path);
+            if !path.is_file() {
+                let message = format!("`{}` is not there", path.display());
+                let error = description.document.error(file.span, message);
+                return Err(error.with_help("bake it with `pointillist probe bake`"));
+            }
+            let name = path.display().to_string();
+            let fingerprint = twox_hash::XxHash3_64::oneshot(&super::read_file(&path)?);
+            let field = Box::new(read_probes(&path)?.field(&name)?);
+            Ok(AmbientLight::Probes { field, fingerprint })
+        }
+    }
 }
 
 fn lights(description: &Description) -> Vec<LightSource> {

@@ -57,8 +57,8 @@ pub struct Description {
     pub lights: Vec<LightDescription>,
     /// The materials by name.
     pub materials: Vec<(String, MaterialDescription)>,
-    /// Constant ambient light.
-    pub ambient: Vec3,
+    /// Light that does not come straight from lights.
+    pub ambient: AmbientDescription,
 }
 
 /// Reads a scene from its text, with the `--set` assignments on top; `name` is how messages call the text.
@@ -151,12 +151,30 @@ fn read_render(root: &mut Table<'_>) -> Result<Render, InputError> {
     Ok((subpixel, occlusion, shading))
 }
 
-fn read_ambient(root: &mut Table<'_>) -> Result<Vec3, InputError> {
-    let Some(mut table) = root.table("ambient")? else { return Ok(Vec3::ZERO) };
-    table.not_yet(&["probes", "radiosity"])?;
-    let color = table.color("color")?.unwrap_or(Vec3::ZERO);
+/// Light that does not come straight from lights.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AmbientDescription {
+    /// The same everywhere.
+    Color(Vec3),
+    /// A file of baked probes.
+    Probes(FileReference),
+}
+
+fn read_ambient(root: &mut Table<'_>) -> Result<AmbientDescription, InputError> {
+    let Some(mut table) = root.table("ambient")? else { return Ok(AmbientDescription::Color(Vec3::ZERO)) };
+    table.not_yet(&["radiosity"])?;
+    let color = table.color("color")?;
+    let probes = file(&mut table, "probes")?;
+    if color.is_some() && probes.is_some() {
+        return Err(table
+            .error("color", "`ambient.color` and `ambient.probes` are both given")
+            .with_help("probes hold all ambient light: leave one of them out"));
+    }
     table.finish()?;
-    Ok(color)
+    Ok(match probes {
+        Some(file) => AmbientDescription::Probes(file),
+        None => AmbientDescription::Color(color.unwrap_or(Vec3::ZERO)),
+    })
 }
 
 /// A key whose value names a file.

@@ -1,0 +1,186 @@
+//! `probe place`.
+
+use super::solids::{Outcome, Solids};
+use super::{check_output, failed, overrides, write};
+use crate::commands::Report;
+use crate::error::CliError;
+use crate::input_error::InputError;
+use crate::job::Progress;
+use crate::options::{Inside, PlaceOptions, Strategy};
+use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_all};
+use crate::probe_io::ProbeFile;
+use crate::scene::{self, NONE, Scene};
+use glam::DVec3;
+use pointillist_shade::face_normal;
+use pointillist_shprobe::sh::Sh;
+use pointillist_shprobe::{DistanceMap, Field, ProbeError, place};
+
+/// Height above their surface of probes at vertices, over the scene's diagonal.
+const LIFT: f64 = 0.02;
+
+/// Candidates for each probe of `cluster`, if the user does not say where they are.
+const CANDIDATES: usize = 8;
+
+pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
+    let report = Report::new(&options.common)?;
+    check_output(&options.output)?;
+    let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
+    scene.warnings.iter().for_each(|warning| report.warn(warning));
+    if scene.mesh.positions.is_empty() && options.low.is_none() {
+        let error = InputError::of_file(options.scene.display().to_string(), "the scene is empty");
+        return Err(error.with_help("say which box to fill with --low and --high").into());
+    }
+    let prepared = Prepared::new(&scene, &report.stats).map_err(failed)?;
+    let positions = candidates(&scene, options);
+    let positions = settle(&positions, &prepared, &scene, options, &report)?;
+    let positions = match options.strategy {
+        Strategy::Cluster => cluster(&prepared, &positions, options, &report)?,
+        _ => positions,
+    };
+    if positions.is_empty() {
+        return Err(CliError::Failed("no place is left for a probe: all are inside of solids".to_owned()));
+    }
+    report.stats.count("probes", positions.len() as u64);
+    report.stats.stage("write", || write(&options.output, &ProbeFile::of_positions(&positions)))?;
+    let seconds = report.stats.elapsed().as_secs_f64();
+    report.note(&format!("{}: {} probes in {seconds:.2} s", options.output.display(), positions.len()));
+    report.finish()
+}
+
+fn candidates(scene: &Scene, options: &PlaceOptions) -> Vec<DVec3> {
+    let (low, high) = region(scene, options);
+    let count = options.count as usize;
+    match options.strategy {
+        Strategy::Grid => {
+            place::grid(low, high, options.grid.unwrap_or_else(|| even_grid(high - low, count)))
+        }
+        Strategy::Cluster => {
+            let all = count.saturating_mul(CANDIDATES);
+            place::grid(low, high, options.grid.unwrap_or_else(|| even_grid(high - low, all)))
+        }
+        Strategy::Random => place::random(low, high, count, options.seed),
+        Strategy::Vertices => {
+            let lifted = lifted_vertices(scene, LIFT * (high - low).length());
+            place::spread(&lifted, count).into_iter().map(|i| lifted[i]).collect()
+        }
+    }
+}
+
+fn region(scene: &Scene, options: &PlaceOptions) -> (DVec3, DVec3) {
+    if let (Some(a), Some(b)) = (options.low, options.high) {
+        let (a, b) = (DVec3::from_array(a.0), DVec3::from_array(b.0));
+        return (a.min(b), a.max(b));
+    }
+    let infinite = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    scene.mesh.positions.iter().fold(infinite, |(l, h), &p| (l.min(p), h.max(p)))
+}
+
+/// About `count` probes in boxes as near to cubes as may be; at least two along an axis with any extent to speak of.
+fn even_grid(extent: DVec3, count: usize) -> [usize; 3] {
+    let longest = extent.max_element();
+    let thick = extent.to_array().map(|e| e > longest * 1e-3);
+    let axes = thick.iter().filter(|&&t| t).count().max(1) as f64;
+    let volume: f64 = extent.to_array().iter().zip(thick).filter(|(_, t)| *t).map(|(e, _)| e).product();
+    let side = (volume / count as f64).powf(1.0 / axes);
+    let along =
+        |axis: usize| ((extent[axis] / side).round() as usize).clamp(if count >= 8 { 2 } else { 1 }, count);
+    [0, 1, 2].map(|axis| if thick[axis] { along(axis) } else { 1 })
+}
+
+/// Every used vertex, lifted off the first of its triangles that has an area.
+fn lifted_vertices(scene: &Scene, height: f64) -> Vec<DVec3> {
+    let mesh = &scene.mesh;
+    let mut lifted = vec![None; mesh.positions.len()];
+    for (triangle, normals) in
+        mesh.triangles.iter().zip(mesh.normal_of.iter().map(Some).chain(std::iter::repeat(None)))
+    {
+        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
+        let face = face_normal(a, b, c);
+        for (k, &vertex) in triangle.iter().enumerate() {
+            let own =
+                normals.map(|n| n[k]).filter(|&n| n != NONE).map(|n| mesh.normals[n as usize].as_dvec3());
+            let normal = own.unwrap_or(face);
+            if normal != DVec3::ZERO && lifted[vertex as usize].is_none() {
+                lifted[vertex as usize] = Some(mesh.positions[vertex as usize] + normal * height);
+            }
+        }
+    }
+    lifted.into_iter().flatten().collect()
+}
+
+/// Positions outside of solids.
+fn settle(
+    positions: &[DVec3],
+    prepared: &Prepared<'_>,
+    scene: &Scene,
+    options: &PlaceOptions,
+    report: &Report<'_>,
+) -> Result<Vec<DVec3>, CliError> {
+    let solids = Solids::new(prepared, scene);
+    let (mut free, mut inside) = (vec![], 0);
+    for (i, &p) in positions.iter().enumerate() {
+        let outcome = solids.settle(i, p, options.inside)?;
+        inside += usize::from(matches!(outcome, Outcome::Moved(_) | Outcome::Dropped));
+        match outcome {
+            Outcome::Free | Outcome::Kept => free.push(p),
+            Outcome::Moved(to) => free.push(to),
+            Outcome::Dropped => {}
+        }
+    }
+    if inside > 0 {
+        report.warn(&format!("{inside} of {} places were inside of solids", positions.len()));
+    }
+    Ok(free)
+}
+
+/// The candidates between which light is interpolated best, by what they see with light sent on once.
+fn cluster(
+    prepared: &Prepared<'_>,
+    candidates: &[DVec3],
+    options: &PlaceOptions,
+    report: &Report<'_>,
+) -> Result<Vec<DVec3>, CliError> {
+    let broken = |error: ProbeError| CliError::Failed(error.to_string());
+    let capture = CaptureOptions { resolution: options.resolution, emission: false, thorough: false };
+    let look = LookOptions { capture, order: 2, distances: pointillist_shprobe::DEFAULT_DISTANCE_SIZE };
+    let progress = Progress::new(options.common.progress_mode());
+    progress.begin("look", 2 * candidates.len() as u64);
+    let stats = &report.stats;
+    let light = |ambient: Ambient<'_>, at: &[DVec3]| {
+        stats.stage("look", || look_all(prepared, at, look, ambient, &progress, stats)).map_err(failed)
+    };
+    let seen = light(prepared.ambient(), candidates)?;
+    let out = match options.inside {
+        Inside::Keep => vec![false; candidates.len()],
+        _ => buried(&seen),
+    };
+    let candidates: Vec<DVec3> =
+        candidates.iter().zip(&out).filter(|(_, out)| !**out).map(|(p, _)| *p).collect();
+    stats.skip("candidates_in_walls", out.iter().filter(|&&b| b).count() as u64);
+    let (direct, distances) = split(seen.into_iter().zip(out).filter(|(_, out)| !out).map(|(seen, _)| seen));
+    let field = Field::new(&candidates, &direct).and_then(|f| f.with_distances(distances)).map_err(broken)?;
+    let (radiance, distances) = split(light(Ambient::Probes(&field), &candidates)?);
+    progress.finish();
+    let known = place::Candidates {
+        positions: &candidates,
+        radiance: &radiance,
+        distances: Some(&distances),
+        weights: None,
+    };
+    let limits =
+        place::AdaptiveOptions::DEFAULT.with_max_count(options.count as usize).with_max_error(options.error);
+    let chosen = stats.stage("choose", || place::adaptive(known, &limits)).map_err(broken)?;
+    stats.count("candidates", candidates.len() as u64);
+    stats.figure("error", chosen.error);
+    report.note(&format!(
+        "{} of {} candidates; irradiance between them is off by {:.2} % (RMS)",
+        chosen.chosen.len(),
+        candidates.len(),
+        chosen.error * 100.0
+    ));
+    Ok(chosen.chosen.iter().map(|&i| candidates[i as usize]).collect())
+}
+
+fn split(seen: impl IntoIterator<Item = Seen>) -> (Vec<Sh>, Vec<DistanceMap>) {
+    seen.into_iter().filter_map(|s| s.distances.map(|d| (s.radiance, d))).unzip()
+}

@@ -1,0 +1,75 @@
+//! `probe tetra`.
+
+use crate::commands::Report;
+use crate::commands::report::write_text;
+use crate::error::CliError;
+use crate::input_error::InputError;
+use crate::job::ThreadClock;
+use crate::options::TetraOptions;
+use crate::probe_io::{format_cells, read_points};
+use glam::{DVec3, dvec3};
+use pointillist_shprobe::{Delaunay, Hint, Locator, Partition, ProbeError};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
+    let report = Report::new(&options.common)?;
+    let points = report.stats.stage("load", || read_points(&options.points))?;
+    let name = options.points.display().to_string();
+    let refused = |error: ProbeError| {
+        let error = InputError::of_file(&name, error.to_string());
+        CliError::Input(error.with_help("points are finite numbers, `x y z` a line"))
+    };
+    let start = std::time::Instant::now();
+    let partition =
+        report.stats.stage("build", || Delaunay::new(&points).map(|d| d.partition())).map_err(refused)?;
+    report.stats.figure("build_s", start.elapsed().as_secs_f64());
+    let cells = match &partition {
+        Partition::Tetrahedra(t) => t.corners.len(),
+        Partition::Triangles(t) => t.corners.len(),
+        Partition::Line(line) => line.len() - 1,
+        Partition::Point(_) => 1,
+    };
+    report.stats.count("points", points.len() as u64);
+    report.stats.figure("cells", cells as f64);
+    if let Some(path) = &options.locate {
+        let queries = report.stats.stage("load", || read_points(path))?;
+        measure(&points, &partition, &queries, &report);
+    }
+    let binary = options.output.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bin"));
+    if options.output.path != Path::new("-") || options.locate.is_none() {
+        write_text(&options.output.path, |output| format_cells(output, &partition, binary))?;
+    }
+    report.finish()
+}
+
+/// Millions of queries a second of processor time of one thread: one by one, and along a path from cell to cell.
+fn measure(points: &[DVec3], partition: &Partition, queries: &[DVec3], report: &Report<'_>) {
+    let locator = report.stats.stage("index", || Locator::new(points, partition));
+    let rate = |run: &dyn Fn() -> f64| {
+        let clock = ThreadClock::start();
+        // The sum is used, so that the work cannot be left out.
+        let sum = run();
+        let seconds = clock.seconds();
+        report.detail(&format!("mean of the first weights: {}", sum / queries.len().max(1) as f64));
+        queries.len() as f64 / seconds / 1e6
+    };
+    let random =
+        || queries.iter().filter_map(|&q| locator.locate_anywhere(q).ok()).map(|b| b.weights[0]).sum();
+    report.stats.figure("locate_random_mqps", rate(&random));
+    let (low, high) = points.iter().fold((points[0], points[0]), |(l, h), p| (l.min(*p), h.max(*p)));
+    let along = |i: usize| {
+        let f = i as f64 / queries.len() as f64;
+        let unit =
+            dvec3((TAU * 3.0 * f).sin(), (TAU * 5.0 * f).cos(), (TAU * 7.0 * f + 1.0).sin()) * 0.45 + 0.5;
+        low + (high - low) * unit
+    };
+    let coherent = || {
+        let mut hint = Hint::default();
+        (0..queries.len())
+            .filter_map(|i| locator.locate(along(i), &mut hint).ok())
+            .map(|b| b.weights[0])
+            .sum()
+    };
+    report.stats.figure("locate_coherent_mqps", rate(&coherent));
+}

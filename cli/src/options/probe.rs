@@ -1,0 +1,264 @@
+//! `probe` and its commands.
+
+use super::{Common, TextOutput, Tile, values};
+use clap::{Subcommand, ValueEnum};
+use pointillist_shprobe::sh;
+use std::path::PathBuf;
+
+/// What to do with light probes.
+#[derive(Debug, Subcommand)]
+pub enum ProbeCommand {
+    /// Choose where probes go
+    #[command(after_help = "Examples:\n  \
+        pointillist probe place house.toml --grid 12x6x6 -o probes.json\n  \
+        pointillist probe place house.toml --strategy cluster --count 86 -o probes.json\n  \
+        pointillist probe place house.toml --strategy random --count 200 --seed 3 -o -")]
+    Place(PlaceOptions),
+    /// Capture what probes see, as spherical harmonics
+    ///
+    /// Each probe looks around with six pictures of the scene. Probes of an output that is already there are kept where
+    /// nothing that they see has changed.
+    #[command(after_help = "Examples:\n  \
+        pointillist probe bake house.toml probes.json -o baked.json\n  \
+        pointillist probe bake house.toml probes.json --bounces 3 --resolution 64 -o baked.probes\n  \
+        pointillist probe bake house.toml probes.json --bounces 0 --part 0/4 -o part0.json\n\n\
+        Then add to the scene:\n  \
+        [ambient]\n  \
+        probes = \"baked.json\"")]
+    Bake(BakeOptions),
+    /// Turn an environment map into spherical harmonics
+    #[command(after_help = "Examples:\n  \
+        pointillist probe project sky.hdr\n  \
+        pointillist probe project strip.exr --weights exact --order 4\n  \
+        pointillist probe project px.png nx.png py.png ny.png pz.png nz.png -o sh.json")]
+    Project(ProjectOptions),
+    /// Divide space between points into Delaunay tetrahedra
+    #[command(after_help = "Examples:\n  \
+        pointillist probe tetra points.txt\n  \
+        pointillist probe tetra points.bin -o cells.bin --locate queries.bin --stats stats.json")]
+    Tetra(TetraOptions),
+    /// Irradiance at points with normals, from baked probes
+    #[command(after_help = "Example:\n  echo '0 1 0  0 1 0' | pointillist probe query baked.json -")]
+    Query(QueryOptions),
+}
+
+/// `probe place`.
+#[derive(Debug, clap::Args)]
+pub struct PlaceOptions {
+    /// A scene (.toml, .json) or mesh (.obj, .ply)
+    pub scene: PathBuf,
+    /// How places are chosen
+    #[arg(long, value_name = "STRATEGY", default_value = "grid")]
+    pub strategy: Strategy,
+    /// Probes to place; a grid has about as many
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub count: u32,
+    /// Probes along each axis: for `grid` where they are, for `cluster` where they may be
+    #[arg(long, value_name = "NXxNYxNZ", value_parser = values::grid)]
+    pub grid: Option<[usize; 3]>,
+    /// With `cluster`: stop when irradiance between probes is known up to this relative error
+    #[arg(long, value_name = "E", default_value_t = 0.0, value_parser = values::not_negative)]
+    pub error: f64,
+    /// With `cluster`: pixels on a side of the pictures that candidates are judged by
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(4..=1024))]
+    pub resolution: u32,
+    /// Another seed gives other random places
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// A corner of the box to fill (default: the scene's)
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "high")]
+    pub low: Option<values::Vector>,
+    /// The opposite corner of the box to fill
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "low")]
+    pub high: Option<values::Vector>,
+    /// What to do with a probe inside of a solid
+    #[arg(long, value_name = "WHAT", default_value = "move")]
+    pub inside: Inside,
+    /// The probes: .json, .probes (binary), or `-` for standard output
+    #[arg(short, long, value_name = "PATH", default_value = "probes.json")]
+    pub output: PathBuf,
+    /// Override a key of the scene
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `--strategy`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Strategy {
+    /// Evenly in a box
+    Grid,
+    /// Some of the scene's vertices, as far from one another as possible, lifted off their surface
+    Vertices,
+    /// Anywhere in a box
+    Random,
+    /// Where interpolation between them errs least, judged by what a grid of candidates sees
+    Cluster,
+}
+
+/// `--inside`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Inside {
+    /// Move it to the nearest place outside
+    Move,
+    /// Leave it out
+    Drop,
+    /// Refuse
+    Refuse,
+    /// Leave it where it is
+    Keep,
+}
+
+/// `probe bake`.
+#[derive(Debug, clap::Args)]
+pub struct BakeOptions {
+    /// A scene (.toml, .json) or mesh (.obj, .ply)
+    pub scene: PathBuf,
+    /// Where the probes are: .json or .probes
+    pub probes: PathBuf,
+    /// Pixels on a side of each of the six pictures
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub resolution: u32,
+    /// Highest band of the harmonics
+    #[arg(long, value_name = "L", default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=sh::MAX_ORDER as i64))]
+    pub order: u8,
+    /// How often light is sent on: each time, surfaces are lit by the probes of the time before
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..=64))]
+    pub bounces: u32,
+    /// Stop bouncing when the light changes by less than this share
+    #[arg(long, value_name = "E", default_value_t = 0.005, value_parser = values::not_negative)]
+    pub until: f64,
+    /// What probes hold
+    #[arg(long, value_name = "WHAT", default_value = "indirect")]
+    pub what: What,
+    /// Texels on a side of the map of how far each probe sees, against light through walls; 0 for none
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(0..=256))]
+    pub distances: u32,
+    /// Compute every shadow and texel within a pixel, not just enough of them for the sum
+    #[arg(long)]
+    pub thorough: bool,
+    /// What to do with a probe inside of a solid
+    #[arg(long, value_name = "WHAT", default_value = "move")]
+    pub inside: Inside,
+    /// Bake a part of the probes, from 0; `merge` joins parts. Needs `--bounces 0`
+    #[arg(long, value_name = "I/N")]
+    pub part: Option<Tile>,
+    /// Bake every probe, whatever the output holds already
+    #[arg(long)]
+    pub overwrite: bool,
+    /// The baked probes: .json, .probes (binary), or `-` for standard output
+    #[arg(short, long, value_name = "PATH", default_value = "baked.json")]
+    pub output: PathBuf,
+    /// Override a key of the scene
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `--what`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum What {
+    /// All light that arrives
+    Total,
+    /// Without what glowing surfaces send straight to the probe
+    Indirect,
+}
+
+impl What {
+    /// As in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Total => "total",
+            Self::Indirect => "indirect",
+        }
+    }
+}
+
+/// `probe project`.
+#[derive(Debug, clap::Args)]
+pub struct ProjectOptions {
+    /// One picture of all directions (equirectangular, or a cube as a strip of 6:1 or 1:6), or six of a cube: +X −X +Y −Y +Z −Z
+    #[arg(required = true, num_args = 1..=6, value_name = "IMAGE")]
+    pub images: Vec<PathBuf>,
+    /// Highest band of the harmonics
+    #[arg(long, value_name = "L", default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=sh::MAX_ORDER as i64))]
+    pub order: u8,
+    /// How much each texel of a cube counts
+    #[arg(long, value_name = "RULE", default_value = "gregory")]
+    pub weights: WeightRule,
+    /// Brighten by this many stops first
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = values::exposure)]
+    pub exposure: f32,
+    /// How a photograph's 8-bit values follow the light
+    #[arg(long, value_name = "CURVE", default_value = "srgb", value_parser = values::response)]
+    pub response: values::ResponseCurve,
+    /// Damp the harmonics so that irradiance is nowhere below 0
+    #[arg(long)]
+    pub dering: bool,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: TextOutput,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `--weights`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum WeightRule {
+    /// Fourth order in the texel's size (from 16 pixels up)
+    Gregory,
+    /// The texel's exact solid angle
+    Exact,
+    /// The paper's dS·cosθ/r²
+    Paper,
+}
+
+impl WeightRule {
+    /// As the library has it.
+    #[must_use]
+    pub const fn weights(self) -> sh::Weights {
+        match self {
+            Self::Gregory => sh::Weights::Gregory,
+            Self::Exact => sh::Weights::Exact,
+            Self::Paper => sh::Weights::Paper,
+        }
+    }
+}
+
+/// `probe tetra`.
+#[derive(Debug, clap::Args)]
+pub struct TetraOptions {
+    /// Text with `x y z` a line, raw doubles (.bin), or probes (.json, .probes)
+    pub points: PathBuf,
+    /// Points to find among the cells, to measure how long it takes
+    #[arg(long, value_name = "QUERIES")]
+    pub locate: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: TextOutput,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `probe query`.
+#[derive(Debug, clap::Args)]
+pub struct QueryOptions {
+    /// Baked probes
+    pub probes: PathBuf,
+    /// Text with `x y z nx ny nz` a line; `-` is standard input
+    #[arg(default_value = "-")]
+    pub points: PathBuf,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: TextOutput,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}

@@ -1,0 +1,61 @@
+//! The scene's lights as the points and directions that shadows are cast from.
+
+use super::PipelineError;
+use super::prepared::occlusion;
+use super::surfaces::Surfaces;
+use crate::scene::{Resolution, Scene};
+use pointillist_micropoint::{Geometry, Lens};
+use pointillist_shade::{Light, Source};
+use pointillist_shadow as shadow;
+use pointillist_shadow::{Emitter, ShadowLight, ShadowOptions};
+
+/// One point or direction from which light comes: a light, or a sample of an area light.
+pub(super) struct LightSample<'a> {
+    /// Index into [`Scene::lights`].
+    pub(super) light: usize,
+    pub(super) sample: u32,
+    /// `None`: casts no shadow.
+    pub(super) shadow: Option<ShadowLight<'a>>,
+}
+
+/// All lights, area lights sample by sample, for receivers that `lens` sees.
+pub(super) fn light_samples<'a>(
+    scene: &Scene,
+    geometry: &'a Geometry,
+    surfaces: &'a Surfaces,
+    lens: &Lens,
+) -> Result<Vec<LightSample<'a>>, PipelineError> {
+    let mut samples = Vec::new();
+    for (light, source) in scene.lights.iter().enumerate() {
+        let resolution = match source.resolution {
+            Resolution::Auto => shadow::Resolution::Auto,
+            Resolution::Cells(n) => shadow::Resolution::Cells(n),
+        };
+        let options = ShadowOptions::default().with_occlusion(occlusion(scene)).with_resolution(resolution);
+        for sample in 0..source.light.samples() {
+            let shadow = if source.shadow {
+                let emitter = emitter(&source.light, sample);
+                let named = |e| PipelineError::Shadow { name: source.name.clone(), source: e };
+                Some(ShadowLight::new(geometry, surfaces, emitter, options).map_err(named)?.seen_from(lens))
+            } else {
+                None
+            };
+            samples.push(LightSample { light, sample, shadow });
+        }
+    }
+    Ok(samples)
+}
+
+fn emitter(light: &Light, sample: u32) -> Emitter {
+    // The axis decides how the six screens lie: along a spot light's beam, or an area light's normal.
+    let axis = match light {
+        Light::Spot { direction, .. } => *direction,
+        Light::Rect { edge_u, edge_v, .. } => edge_u.cross(*edge_v),
+        _ => glam::DVec3::NEG_Y,
+    };
+    match light.source(sample) {
+        Source::Direction(direction) => Emitter::Directional { direction },
+        Source::Position(position) => Emitter::Point { position, axis },
+        _ => unreachable!("light comes from a point or a direction"),
+    }
+}

@@ -1,0 +1,116 @@
+//! What probes see, as spherical harmonics.
+
+use super::{Ambient, Capture, CaptureOptions, PipelineError, Prepared};
+use crate::job::{Progress, Stats};
+use glam::DVec3;
+use pointillist_shprobe::sh::{CubeMap, CubeProjector, Sh, Weights};
+use pointillist_shprobe::{DistanceMap, ProbeError};
+use rayon::prelude::*;
+use std::hash::Hasher as _;
+use twox_hash::XxHash3_64;
+
+/// How probes look.
+#[derive(Clone, Copy, Debug)]
+pub struct LookOptions {
+    /// The six pictures.
+    pub capture: CaptureOptions,
+    /// Highest band.
+    pub order: usize,
+    /// Texels on a side of maps of distances; 0 for none.
+    pub distances: usize,
+}
+
+/// Probes that see backs of surfaces in more than this share of all directions lie inside of walls.
+const BURIED: f64 = 0.5;
+
+/// Which probes lie inside of walls, by what they see; none if that is said of most of them, since then it says more about how the
+/// surfaces are turned.
+pub fn buried(seen: &[Seen]) -> Vec<bool> {
+    let buried: Vec<bool> = seen.iter().map(|s| s.back_share > BURIED).collect();
+    let count = buried.iter().filter(|&&b| b).count();
+    if 2 * count > seen.len() { vec![false; seen.len()] } else { buried }
+}
+
+/// What a probe saw.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    /// What arrives.
+    pub radiance: Sh,
+    /// The share of sky.
+    pub sky: Sh<f64>,
+    /// The share of all directions in which the back of a surface is seen.
+    pub back_share: f64,
+    /// How far it sees.
+    pub distances: Option<DistanceMap>,
+}
+
+/// Looks around from every position, on all cores.
+///
+/// # Errors
+/// [`PipelineError`] if a position cannot be looked from, or what it sees is not finite.
+pub fn look_all(
+    prepared: &Prepared<'_>,
+    positions: &[DVec3],
+    options: LookOptions,
+    ambient: Ambient<'_>,
+    progress: &Progress,
+    stats: &Stats,
+) -> Result<Vec<Seen>, PipelineError> {
+    let size = options.capture.resolution as usize;
+    let projector = CubeProjector::new(size, options.order, Weights::Gregory)?;
+    let bounds = prepared.geometry().bounds();
+    let far = ((bounds.high - bounds.low).length() * 2.0).max(f64::MIN_POSITIVE) as f32;
+    let one = |&position: &DVec3| {
+        let capture = prepared.capture(position, options.capture, ambient, stats)?;
+        stats.count("faces", u64::from(6 - capture.empty_faces));
+        stats.skip("faces_empty", u64::from(capture.empty_faces));
+        progress.advance(1);
+        Ok(seen(&capture, &projector, options.distances, far)?)
+    };
+    positions.par_iter().map(one).collect()
+}
+
+fn seen(
+    capture: &Capture,
+    projector: &CubeProjector,
+    distances: usize,
+    far: f32,
+) -> Result<Seen, ProbeError> {
+    let cube = CubeMap::from_planes(capture.size, capture.radiance.clone())?;
+    let map = match distances {
+        0 => None,
+        size => Some(DistanceMap::from_cube(size, capture.size, &capture.distance, far)?),
+    };
+    Ok(Seen {
+        radiance: projector.project(&cube)?,
+        back_share: capture.back_share(),
+        sky: projector.project_plane(&capture.sky)?,
+        distances: map,
+    })
+}
+
+/// Pixels on a side of the pictures that tell whether anything changed. Coverage is exact: whatever is seen leaves its mark in some
+/// pixel, however small it is.
+const WATCHED: u32 = 16;
+
+/// A number for everything that is seen from each position: surfaces, their light and their shadows.
+///
+/// # Errors
+/// As [`look_all`].
+pub fn fingerprints(
+    prepared: &Prepared<'_>,
+    positions: &[DVec3],
+    emission: bool,
+    ambient: Ambient<'_>,
+    stats: &Stats,
+) -> Result<Vec<u64>, PipelineError> {
+    let options = CaptureOptions { resolution: WATCHED, emission, thorough: false };
+    let one = |&position: &DVec3| {
+        let capture = prepared.capture(position, options, ambient, stats)?;
+        let mut hash = XxHash3_64::default();
+        let planes = capture.radiance.iter().chain([&capture.sky, &capture.distance]);
+        planes.flatten().for_each(|v| hash.write(&v.to_le_bytes()));
+        Ok(hash.finish())
+    };
+    positions.par_iter().map(one).collect()
+}

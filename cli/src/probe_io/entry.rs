@@ -1,0 +1,86 @@
+//! One probe of a file.
+
+use glam::DVec3;
+use pointillist_shprobe::DistanceMap;
+use pointillist_shprobe::sh::Sh;
+use serde::{Deserialize, Serialize};
+
+/// A probe: where it is and, once it is baked, what it holds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProbeEntry {
+    /// World position.
+    pub position: [f64; 3],
+    /// What people call it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Radiance: (order + 1)² RGB coefficients.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sh: Option<Vec<[f64; 3]>>,
+    /// The share of sky, in the same basis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sky: Option<Vec<f64>>,
+    /// Whether it lies inside of a wall, and lights nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub buried: Option<bool>,
+    /// How far it sees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distances: Option<Distances>,
+    /// Stands for everything that it saw when it was baked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fingerprint: Option<String>,
+}
+
+/// Distances in the directions of an octahedral square.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Distances {
+    /// Texels on a side.
+    pub size: usize,
+    /// Mean of each texel, row by row.
+    pub mean: Vec<f32>,
+    /// Standard deviation of each texel.
+    pub deviation: Vec<f32>,
+}
+
+impl ProbeEntry {
+    /// A probe that is not baked.
+    pub fn at(position: DVec3) -> Self {
+        Self { position: position.to_array(), ..Self::default() }
+    }
+
+    /// Its coefficients.
+    ///
+    /// # Errors
+    /// What is wrong with them, or that there are none.
+    pub fn radiance(&self) -> Result<Sh, String> {
+        let Some(sh) = &self.sh else { return Err("is missing: the probe is not baked".to_owned()) };
+        Sh::new(sh.iter().map(|&c| DVec3::from_array(c)).collect()).map_err(|error| error.to_string())
+    }
+}
+
+impl Distances {
+    /// As it is written.
+    pub fn of(map: &DistanceMap) -> Self {
+        let mean = map.moments().iter().map(|m| short(m[0])).collect();
+        let deviation = map.moments().iter().map(|m| short((m[1] - m[0] * m[0]).max(0.0).sqrt())).collect();
+        Self { size: map.size(), mean, deviation }
+    }
+
+    /// As it is used.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn map(&self) -> Result<DistanceMap, String> {
+        if self.mean.len() != self.deviation.len() {
+            return Err(format!("has {} means and {} deviations", self.mean.len(), self.deviation.len()));
+        }
+        let moments = self.mean.iter().zip(&self.deviation).map(|(m, d)| [*m, m * m + d * d]).collect();
+        DistanceMap::new(self.size, moments).map_err(|error| error.to_string())
+    }
+}
+
+/// With four digits: distances of surfaces are not known better than a texel is wide.
+fn short(value: f32) -> f32 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}

@@ -1,0 +1,244 @@
+//! `probe`: place, bake, project, tetra, query, parts, and light from probes in `render`.
+
+mod common;
+
+use common::Folder;
+use pointillist_cli::image_io::read_exr_picture;
+use serde_json::Value;
+use std::f64::consts::PI;
+
+/// A closed box whose inside glows at 1 and reflects half.
+const GLOWING_BOX: &str = "mtllib box.mtl\nusemtl glow\n\
+    v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
+    f 1 2 3 4\nf 8 7 6 5\nf 5 6 2 1\nf 4 3 7 8\nf 1 4 8 5\nf 6 7 3 2\n";
+
+const BOX_SCENE: &str = "[camera]\neye = [0, 0, 0.9]\ntarget = [0, 0, 0]\n[image]\nsize = [8, 8]\n[[object]]\nmesh = \"box.obj\"\n";
+
+/// A ball-like solid in a constant sky.
+const SKY_SCENE: &str = "[camera]\neye = [0, 0, 6]\ntarget = [0, 0, 0]\nfov = 30\n[image]\nsize = [16, 16]\n\
+    background = [0.8, 0.4, 0.2]\n[[object]]\nmesh = \"block.obj\"\nmaterial = \"grey\"\n\
+    [material.grey]\ndiffuse = [0.5, 0.5, 0.5]\n";
+
+/// The box with its faces turned outward.
+fn block() -> String {
+    let turned = |line: &str| match line.strip_prefix("f ") {
+        Some(corners) => format!("f {}\n", corners.split(' ').rev().collect::<Vec<_>>().join(" ")),
+        None if line.starts_with("mtllib") || line.starts_with("usemtl") => String::new(),
+        None => format!("{line}\n"),
+    };
+    GLOWING_BOX.lines().map(turned).collect()
+}
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("box.obj", GLOWING_BOX);
+    folder.write("box.mtl", "newmtl glow\nKd 0.5 0.5 0.5\nKe 1 1 1\n");
+    folder.write("box.toml", BOX_SCENE);
+    folder.write("block.obj", block());
+    folder.write("sky.toml", SKY_SCENE);
+    folder
+}
+
+fn json(folder: &Folder, name: &str) -> Value {
+    serde_json::from_slice(&std::fs::read(folder.path(name)).unwrap()).unwrap()
+}
+
+/// The mean radiance of each probe in green.
+fn radiance(file: &Value) -> Vec<f64> {
+    let of = |p: &Value| p["sh"][0][1].as_f64().unwrap() / (2.0 * PI.sqrt());
+    file["probes"].as_array().unwrap().iter().map(of).collect()
+}
+
+#[test]
+fn grids_have_the_size_asked_for_and_lie_in_the_scene() {
+    let folder = folder();
+    folder.prints(&["probe", "place", "box.toml", "--grid", "3x2x4", "-o", "p.json"]);
+    let probes = json(&folder, "p.json")["probes"].as_array().unwrap().clone();
+    assert_eq!(probes.len(), 24);
+    let inside =
+        |p: &Value| p["position"].as_array().unwrap().iter().all(|c| c.as_f64().unwrap().abs() < 1.0);
+    assert!(probes.iter().all(inside));
+    let text =
+        folder.prints(&["probe", "place", "box.toml", "--strategy", "random", "--count", "7", "-o", "-"]);
+    let text: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(text["probes"].as_array().unwrap().len(), 7);
+}
+
+#[test]
+fn light_in_a_glowing_box_grows_as_the_geometric_series() {
+    let folder = folder();
+    folder.prints(&["probe", "place", "box.toml", "--grid", "2x2x2", "-o", "p.json"]);
+    for (bounces, wanted) in [("0", 1.0), ("1", 1.5), ("3", 1.875)] {
+        let line = [
+            "probe",
+            "bake",
+            "box.toml",
+            "p.json",
+            "--what",
+            "total",
+            "--resolution",
+            "16",
+            "--bounces",
+            bounces,
+        ];
+        folder.prints(&[&line[..], &["--until", "0", "-o", "b.json"]].concat());
+        for light in radiance(&json(&folder, "b.json")) {
+            assert!((light - wanted).abs() < 1e-4, "{bounces} bounces: {light}");
+        }
+    }
+    // Without the glow itself, what it lights remains.
+    let line =
+        ["probe", "bake", "box.toml", "p.json", "--resolution", "16", "--bounces", "1", "-o", "b.json"];
+    folder.prints(&line);
+    radiance(&json(&folder, "b.json"))
+        .iter()
+        .for_each(|light| assert!((light - 0.5).abs() < 1e-4, "{light}"));
+}
+
+#[test]
+fn a_constant_sky_lights_everything_alike() {
+    let folder = folder();
+    let far = ["--low", "-90,-90,50", "--high", "90,90,90"];
+    folder.prints(&[&["probe", "place", "sky.toml", "--grid", "2x2x2", "-o", "p.json"], &far[..]].concat());
+    folder.prints(&[
+        "probe",
+        "bake",
+        "sky.toml",
+        "p.json",
+        "--resolution",
+        "16",
+        "--bounces",
+        "0",
+        "-o",
+        "b.json",
+    ]);
+    folder.write("q.txt", "0 0 70  0 1 0\n# a comment\n\n3 4 60  1 1 1\n");
+    let lines = folder.prints(&["probe", "query", "b.json", "q.txt"]);
+    for line in lines.lines() {
+        let rgb: Vec<f64> = line.split(' ').map(|v| v.parse().unwrap()).collect();
+        let wanted = [0.8, 0.4, 0.2].map(|l| l * PI);
+        assert!(rgb.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 2e-3), "{line}");
+    }
+    let sky = json(&folder, "b.json")["probes"][0]["sky"][0].as_f64().unwrap() / (2.0 * PI.sqrt());
+    assert!((sky - 1.0).abs() < 1e-2);
+    // And the block before it reflects half of that.
+    folder.write("lit.toml", format!("{SKY_SCENE}[ambient]\nprobes = \"b.json\"\n"));
+    folder.prints(&["render", "lit.toml", "--float", "-o", "lit.exr"]);
+    let picture = read_exr_picture(&std::fs::read(folder.path("lit.exr")).unwrap()).unwrap();
+    let middle = picture.color[8 * 16 + 8];
+    assert!((middle[0] - 0.4).abs() < 1e-3 && (middle[2] - 0.1).abs() < 1e-3, "{middle:?}");
+}
+
+#[test]
+fn parts_join_to_what_one_run_bakes() {
+    let folder = folder();
+    folder.prints(&["probe", "place", "sky.toml", "--grid", "3x2x1", "--inside", "keep", "-o", "p.json"]);
+    let bake = |more: &[&str]| {
+        let line = ["probe", "bake", "sky.toml", "p.json", "--resolution", "8", "--bounces", "0"];
+        folder.prints(&[&line, more].concat());
+    };
+    bake(&["-o", "whole.json"]);
+    bake(&["--part", "0/2", "-o", "a.json"]);
+    bake(&["--part", "1/2", "-o", "b.probes"]);
+    folder.prints(&["merge", "b.probes", "a.json", "-o", "joined.json"]);
+    let read = |name: &str| std::fs::read(folder.path(name)).unwrap();
+    assert_eq!(read("whole.json"), read("joined.json"));
+    folder.fails(&["merge", "a.json", "-o", "joined.json"], 4, &["gap"]);
+    folder.fails(&["merge", "a.json", "a.json", "-o", "joined.json"], 4, &["overlap"]);
+}
+
+#[test]
+fn probes_that_see_the_same_are_kept() {
+    let folder = folder();
+    // One probe on each side of the block.
+    folder.write("p.json", "{\"probes\":[{\"position\":[4,0,0]},{\"position\":[-4,0,0]}]}");
+    let lamp = |x: f64| format!("{SKY_SCENE}[[object]]\nmesh = \"triangle.obj\"\ntranslate = [{x}, 0, 1]\n");
+    folder.write("scene.toml", lamp(6.0));
+    let baked = |folder: &Folder| {
+        let line =
+            ["probe", "bake", "scene.toml", "p.json", "--resolution", "16", "--bounces", "0", "-o", "b.json"];
+        folder.prints(&[&line[..], &["--stats", "s.json"]].concat());
+        json(folder, "s.json")["counts"]["probes"].as_u64().unwrap()
+    };
+    assert_eq!(baked(&folder), 2);
+    let before = std::fs::read(folder.path("b.json")).unwrap();
+    assert_eq!(baked(&folder), 0);
+    assert_eq!(before, std::fs::read(folder.path("b.json")).unwrap());
+    // The triangle moves, behind the block for one of the probes.
+    folder.write("scene.toml", lamp(7.0));
+    assert_eq!(baked(&folder), 1);
+}
+
+#[test]
+fn panoramas_and_cubes_of_one_colour_have_one_coefficient() {
+    let folder = folder();
+    let grey = |name: &str, width: u32, height: u32| {
+        image::RgbImage::from_pixel(width, height, image::Rgb([188, 188, 188]))
+            .save(folder.path(name))
+            .unwrap();
+    };
+    grey("sky.png", 64, 32);
+    grey("strip.png", 96, 16);
+    grey("tall.png", 16, 96);
+    let level = (((188.0_f64 / 255.0) + 0.055) / 1.055).powf(2.4);
+    for name in ["sky.png", "strip.png", "tall.png"] {
+        let sh: Value =
+            serde_json::from_str(&folder.prints(&["probe", "project", name, "--exposure", "1"])).unwrap();
+        let first = sh["sh"][0][0].as_f64().unwrap() / (2.0 * PI.sqrt());
+        assert!((first - 2.0 * level).abs() < 1e-6, "{name}: {first}");
+        let rest = sh["sh"].as_array().unwrap().iter().skip(1).flat_map(|c| c.as_array().unwrap().clone());
+        assert!(rest.into_iter().all(|c| c.as_f64().unwrap().abs() < 1e-6));
+    }
+    grey("small.png", 8, 8);
+    let six =
+        ["probe", "project", "small.png", "small.png", "small.png", "small.png", "small.png", "sky.png"];
+    folder.fails(&six, 3, &["sky.png", "8×8"]);
+}
+
+#[test]
+fn cells_are_printed_as_the_contract_has_it() {
+    let folder = folder();
+    folder.write("cube.txt", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n");
+    let text = folder.prints(&["probe", "tetra", "cube.txt"]);
+    let (head, cells) = text.split_once('\n').unwrap();
+    let cells: Vec<Vec<usize>> =
+        cells.lines().map(|l| l.split(' ').map(|v| v.parse().unwrap()).collect()).collect();
+    assert_eq!(head, format!("# tetrahedra {}", cells.len()));
+    assert!(cells.iter().all(|c| c.len() == 4 && c.iter().all(|&i| i < 5)));
+    folder.write("flat.txt", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
+    assert!(folder.prints(&["probe", "tetra", "flat.txt"]).starts_with("# dimension 2\n"));
+    folder.write("line.txt", "0 0 0\n2 0 0\n1 0 0\n");
+    let line = folder.prints(&["probe", "tetra", "line.txt"]);
+    assert!(line == "# dimension 1\n0 2\n2 1\n" || line == "# dimension 1\n1 2\n2 0\n", "{line}");
+    assert_eq!(folder.prints(&["probe", "tetra", "cube.txt", "--quiet", "-o", "c.bin"]), "");
+    assert_eq!(std::fs::read(folder.path("c.bin")).unwrap().len(), cells.len() * 16);
+    folder.prints(&["probe", "tetra", "cube.txt", "--locate", "cube.txt", "--stats", "s.json"]);
+    let stats = json(&folder, "s.json");
+    for key in ["build_s", "cells", "locate_random_mqps", "locate_coherent_mqps"] {
+        assert!(stats[key].as_f64().is_some(), "{key}");
+    }
+}
+
+#[test]
+fn bad_input_is_named() {
+    let folder = folder();
+    folder.write("nan.txt", "0 0 0\n1 nan 0\n");
+    folder.fails(&["probe", "tetra", "nan.txt"], 3, &["nan.txt:2", "not finite"]);
+    folder.write("few.txt", "0 0\n");
+    folder.fails(&["probe", "tetra", "few.txt"], 3, &["only 2 numbers of 3"]);
+    folder.write("none.txt", "");
+    folder.fails(&["probe", "tetra", "none.txt"], 3, &["none.txt"]);
+    folder.write("bad.json", "{\"probes\":[\n{\"position\":[0,0,0],\"sh\":[[1,2]]}]}");
+    folder.fails(&["probe", "query", "bad.json"], 3, &["bad.json:2", "probes[0].sh[0]"]);
+    folder.write("raw.json", "{\"probes\":[{\"position\":[0,0,0]}]}");
+    folder.fails(&["probe", "query", "raw.json"], 3, &["probes[0].sh", "probe bake"]);
+    folder.write("mixed.json", "{\"probes\":[{\"position\":[0,0,0],\"sh\":[[1,1,1]]},{\"position\":[1,0,0],\"sh\":[[1,1,1],[0,0,0],[0,0,0],[0,0,0]]}]}");
+    folder.fails(&["probe", "query", "mixed.json"], 3, &["mixed.json"]);
+    folder.write("inside.json", "{\"probes\":[{\"position\":[0,0,0]}]}");
+    let refuse = ["probe", "bake", "sky.toml", "inside.json", "--inside", "refuse"];
+    folder.fails(&refuse, 1, &["inside of a solid"]);
+    folder.write("both.toml", format!("{SKY_SCENE}[ambient]\nprobes = \"nope.json\"\n"));
+    folder.fails(&["check", "both.toml"], 3, &["nope.json", "probe bake"]);
+    folder.fails(&["probe", "bake", "sky.toml", "raw.json", "--part", "0/1"], 2, &["--bounces 0"]);
+    folder.fails(&["probe", "place", "sky.toml", "--grid", "0x1x1"], 2, &["at least 1"]);
+}

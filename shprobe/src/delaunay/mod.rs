@@ -1,0 +1,225 @@
+//! Delaunay tetrahedralisation: exact, incremental, of any finite points.
+//!
+//! Points are inserted one by one (\[1\], \[2\]) in random rounds, each along a Hilbert curve (\[4\]): a point is found by a short walk from
+//! the one before, the cells whose spheres hold it are removed, and it is joined to the faces of the hole. Cells beyond the hull, *ghosts* that
+//! share a vertex at infinity, make the outside like the inside; there is no enclosing tetrahedron. A point is taken out by
+//! triangulating the vertices around it alone (\[3\]).
+//!
+//! With several threads, parts divided by planes are built at once and joined (\[6\]).
+//!
+//! # Accuracy
+//! Every decision is exact, for all finite coordinates. What is computed with are the coordinates times a power of two, counted
+//! from the least where that does not round. A determinant in `f64` decides where it exceeds its error; where not, one of
+//!
+//! * nothing, where differences are integers up to 659 after scaling, as those of most grids: `f64` does not round there;
+//! * `i128`, for integers up to about 2²⁴;
+//! * differences cut to integers of 61 bits, where that is exact or what is cut off cannot change the sign; and Shewchuk's
+//!   expansions (\[5\]) for the rest, while the lowest bit of all coordinates is worth at least 2⁻²⁰⁰ of the largest coordinate;
+//! * integers of any size, for all else: 1e-300 beside 1, or 1e300 beside 1e-300.
+//!
+//! Points on a common sphere are divided by a symbolic perturbation (\[3\]): the later of two points in lexicographic order counts as
+//! lifted infinitely more. So there is one result for every set of points, it has no flat cell, and order, threads and history do not
+//! matter: cells are reported in an order that depends on the points alone (along a Hilbert curve), named by the first of those that coincide.
+//!
+//! Points in a plane get the exact Delaunay triangles of that plane, also of a tilted one: as bases of the tetrahedra with one
+//! vertex more off the plane. Points on a line are ordered along it.
+//!
+//! # Cost
+//! About linear for points spread evenly in space, and for grids; in the worst case, points on a curve, the number of tetrahedra is quadratic.
+//! 32 bytes a cell, about 7 cells a point. Inserting and removing cost a walk, which from an arbitrary place takes about n^⅓ steps, and as
+//! much as there is to change; all is built anew where the dimension changes.
+//!
+//! # References
+//! 1. A. Bowyer: *Computing Dirichlet tessellations*, The Computer Journal 24, 1981.
+//! 2. D. F. Watson: *Computing the n-dimensional Delaunay tessellation*, The Computer Journal 24, 1981.
+//! 3. O. Devillers, M. Teillaud: *Perturbations for Delaunay and weighted Delaunay 3D triangulations*, Computational Geometry 44, 2011.
+//! 4. N. Amenta, S. Choi, G. Rote: *Incremental constructions con BRIO*, SoCG 2003.
+//! 5. J. R. Shewchuk: *Adaptive precision floating-point arithmetic and fast robust geometric predicates*, Discrete & Computational
+//!    Geometry 18, 1997.
+//! 6. D. Funke, P. Sanders: *Parallel d-D Delaunay triangulations in shared and distributed memory*, ALENEX 2017.
+
+mod border;
+mod build;
+mod canonical;
+mod cavity;
+mod cell;
+mod divide;
+mod exact;
+mod hilbert;
+mod insert;
+mod limbs;
+mod locate;
+mod mesh;
+mod remove;
+mod scale;
+mod seam;
+mod simplex;
+mod sites;
+mod solid;
+mod wide;
+
+use crate::{OUTSIDE, Partition, ProbeError};
+use build::Shape;
+use glam::DVec3;
+use solid::Added;
+
+/// As many points as one triangulation takes: random ones have about seven cells each.
+const MAX_POINTS: usize = 1 << 27;
+
+/// A Delaunay triangulation that grows and shrinks: of space, or of the plane or line in which all points lie.
+#[derive(Clone, Debug)]
+pub struct Delaunay {
+    /// All ever given.
+    points: Vec<DVec3>,
+    /// [`OUTSIDE`] for those removed.
+    representative: Vec<u32>,
+    live: usize,
+    /// Points that another one stands for.
+    duplicates: usize,
+    shape: Shape,
+}
+
+impl Delaunay {
+    /// Of these points.
+    ///
+    /// # Errors
+    /// No points, too many, or one that is not finite.
+    pub fn new(points: &[DVec3]) -> Result<Self, ProbeError> {
+        if points.is_empty() {
+            return Err(ProbeError::NoProbes);
+        }
+        check_count(points.len())?;
+        (0..).zip(points).try_for_each(|(i, p)| check_finite(i, *p))?;
+        Self::of(points.to_vec(), vec![0; points.len()])
+    }
+
+    /// Of those points whose representative is not [`OUTSIDE`].
+    fn of(points: Vec<DVec3>, mut representative: Vec<u32>) -> Result<Self, ProbeError> {
+        let indices: Vec<u32> =
+            (0..points.len() as u32).filter(|&i| representative[i as usize] != OUTSIDE).collect();
+        let shape = build::shape(&points, &indices, &mut representative)?;
+        let duplicates = indices.iter().filter(|&&i| representative[i as usize] != i).count();
+        Ok(Self { points, representative, live: indices.len(), duplicates, shape })
+    }
+
+    /// 3 if the points span space, 2 if they lie in a plane, 1 on a line, 0 if they coincide.
+    pub fn dimension(&self) -> usize {
+        match &self.shape {
+            Shape::Point(_) => 0,
+            Shape::Line(_) => 1,
+            Shape::Solid(solid) => 3 - usize::from(solid.apex.is_some()),
+        }
+    }
+
+    /// For each point given, the first that coincides with it, mostly itself; [`OUTSIDE`] if it was removed.
+    pub fn representative(&self) -> &[u32] {
+        &self.representative
+    }
+
+    /// The points given, those removed too.
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// The cells. For the same points it is the same value, however they came to be there.
+    pub fn partition(&self) -> Partition {
+        match &self.shape {
+            Shape::Point(index) => Partition::Point(*index),
+            Shape::Line(along) => Partition::Line(along.clone()),
+            Shape::Solid(solid) => canonical::partition(solid),
+        }
+    }
+
+    /// Adds a point and returns its index: one more than the largest so far, those removed included.
+    ///
+    /// # Errors
+    /// The point is not finite, or one too many. Then nothing has changed.
+    pub fn insert(&mut self, point: DVec3) -> Result<u32, ProbeError> {
+        let index = self.points.len();
+        check_finite(index, point)?;
+        check_count(index + 1)?;
+        let index = index as u32;
+        let added = match &mut self.shape {
+            Shape::Solid(solid) => solid.add(point, index)?,
+            _ => Added::Unfit,
+        };
+        let representative = match added {
+            Added::Unfit => {
+                return self.rebuild(|points, r| [points.push(point), r.push(index)]).map(|()| index);
+            }
+            Added::New => index,
+            Added::Same(first) => first,
+        };
+        self.points.push(point);
+        self.representative.push(representative);
+        self.live += 1;
+        self.duplicates += usize::from(representative != index);
+        Ok(index)
+    }
+
+    /// Takes a point out. Indices of the others stay.
+    ///
+    /// # Errors
+    /// There is no such point, or no other one. Then nothing has changed.
+    pub fn remove(&mut self, index: u32) -> Result<(), ProbeError> {
+        let first = self.representative.get(index as usize).copied().filter(|&r| r != OUTSIDE);
+        let first = first.ok_or(ProbeError::NoSuchProbe { index })?;
+        if self.live == 1 {
+            return Err(ProbeError::NoProbes);
+        }
+        if first != index {
+            self.duplicates -= 1;
+        } else if let Some(next) = self.next_duplicate(index) {
+            self.hand_over(index, next);
+        } else {
+            let removed = match &mut self.shape {
+                Shape::Solid(solid) => solid.remove(index)?,
+                _ => false,
+            };
+            if !removed {
+                return self.rebuild(|_, r| r[index as usize] = OUTSIDE);
+            }
+        }
+        self.representative[index as usize] = OUTSIDE;
+        self.live -= 1;
+        Ok(())
+    }
+
+    /// The next point in the place of this one.
+    fn next_duplicate(&self, index: u32) -> Option<u32> {
+        let after = index as usize + 1;
+        let at = self.representative[after..].iter().position(|&r| r == index);
+        at.filter(|_| self.duplicates > 0).map(|at| (after + at) as u32)
+    }
+
+    /// Lets another point in the same place stand for all that this one stands for.
+    fn hand_over(&mut self, from: u32, to: u32) {
+        self.representative.iter_mut().filter(|r| **r == from).for_each(|r| *r = to);
+        self.duplicates -= 1;
+        match &mut self.shape {
+            Shape::Point(index) => *index = to,
+            Shape::Line(along) => along.iter_mut().filter(|i| **i == from).for_each(|i| *i = to),
+            Shape::Solid(solid) => solid.rename(from, to),
+        }
+    }
+
+    /// Builds all anew, after a change to points and representatives that is undone if that fails.
+    fn rebuild<T>(
+        &mut self,
+        change: impl FnOnce(&mut Vec<DVec3>, &mut Vec<u32>) -> T,
+    ) -> Result<(), ProbeError> {
+        let (mut points, mut representative) = (self.points.clone(), self.representative.clone());
+        change(&mut points, &mut representative);
+        *self = Self::of(points, representative)?;
+        Ok(())
+    }
+}
+
+fn check_finite(index: usize, p: DVec3) -> Result<(), ProbeError> {
+    if p.is_finite() { Ok(()) } else { Err(ProbeError::PositionNotFinite { index }) }
+}
+
+fn check_count(count: usize) -> Result<(), ProbeError> {
+    let limit = MAX_POINTS;
+    if count <= limit { Ok(()) } else { Err(ProbeError::TooManyProbes { count, limit }) }
+}

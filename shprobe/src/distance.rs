@@ -1,0 +1,131 @@
+//! How far a probe sees in every direction, and so which positions it sees.
+
+use crate::octahedron::{direction_from_square, square_from_direction, wrapped};
+use crate::sh::{CubePoint, cube_direction, texel_solid_angle};
+use crate::{ProbeError, parallel};
+use glam::{DVec3, dvec2};
+
+/// Mean distance to the nearest surface, and its variation, in the directions of an octahedral square.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DistanceMap {
+    size: usize,
+    /// Mean and mean square of each texel, row by row.
+    moments: Vec<[f32; 2]>,
+}
+
+/// Texels on a side of a map that [`DistanceMap::from_cube`] makes by default: a texel is some 10° wide.
+pub const DEFAULT_DISTANCE_SIZE: usize = 16;
+
+/// Farther than this times the mean, a position counts as unseen however little is known about the surface.
+const RELATIVE_SLACK: f64 = 0.01;
+
+impl DistanceMap {
+    /// Of moments, mean and mean square of each texel of a `size` × `size` square, row by row.
+    ///
+    /// # Errors
+    /// [`ProbeError::BadDistances`] if there are not `size²`, or one is negative or not finite.
+    pub fn new(size: usize, moments: Vec<[f32; 2]>) -> Result<Self, ProbeError> {
+        if size == 0 || moments.len() != size * size {
+            return Err(ProbeError::BadDistances { index: moments.len().min(size * size) });
+        }
+        let bad = |m: &[f32; 2]| !m.iter().all(|v| v.is_finite() && *v >= 0.0);
+        match moments.iter().position(bad) {
+            Some(index) => Err(ProbeError::BadDistances { index }),
+            None => Ok(Self { size, moments }),
+        }
+    }
+
+    /// Of a cube map of distances: six faces of `cube_size`² texels, row by row. What is farther than `far`, or infinite, counts as
+    /// `far`.
+    ///
+    /// # Errors
+    /// [`ProbeError::BadDistances`] if there are not `6 · cube_size²`, or one is negative or NaN.
+    pub fn from_cube(size: usize, cube_size: usize, distances: &[f32], far: f32) -> Result<Self, ProbeError> {
+        let area = cube_size * cube_size;
+        if size == 0 || cube_size == 0 || distances.len() != 6 * area {
+            return Err(ProbeError::BadDistances { index: distances.len().min(6 * area) });
+        }
+        if let Some(index) = distances.iter().position(|d| d.is_nan() || *d < 0.0) {
+            return Err(ProbeError::BadDistances { index });
+        }
+        let mut sums = vec![[0.0_f64; 3]; size * size];
+        let weights: Vec<f64> =
+            (0..area).map(|i| texel_solid_angle(cube_size, i % cube_size, i / cube_size)).collect();
+        for (i, distance) in distances.iter().enumerate() {
+            let (face, texel) = (i / area, i % area);
+            let square = square_from_direction(direction(face, texel, cube_size)) * size as f64;
+            let (x, y) = ((square.x as usize).min(size - 1), (square.y as usize).min(size - 1));
+            let (distance, weight) = (f64::from(distance.min(far)), weights[texel]);
+            let sum = &mut sums[y * size + x];
+            *sum = [sum[0] + weight, sum[1] + weight * distance, sum[2] + weight * distance * distance];
+        }
+        let moments = parallel::map(size * size, |i| {
+            let [weight, first, second] = sums[i];
+            if weight > 0.0 {
+                return [(first / weight) as f32, (second / weight) as f32];
+            }
+            // No texel of the cube is centred here: the one that this texel's centre lies in.
+            let at = (dvec2((i % size) as f64, (i / size) as f64) + 0.5) / size as f64;
+            let distance = nearest(direction_from_square(at), cube_size, distances).min(far);
+            [distance, distance * distance]
+        });
+        Ok(Self { size, moments })
+    }
+
+    /// Texels on a side.
+    pub const fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Mean and mean square of each texel, row by row.
+    pub fn moments(&self) -> &[[f32; 2]] {
+        &self.moments
+    }
+
+    /// How much of the neighbourhood of a position this far from the probe the probe sees, 0..=1; continuous in the position.
+    ///
+    /// Where the position is farther than the surface on average, Chebyshev's inequality bounds how much of the surface is farther
+    /// still (Donnelly & Lauritzen, *Variance shadow maps*, 2006, eq. 5), and its cube keeps light from leaking past edges.
+    pub fn visibility(&self, offset: DVec3) -> f64 {
+        let distance = offset.length();
+        if distance == 0.0 {
+            return 1.0;
+        }
+        let [mean, square] = self.at(offset);
+        let behind = distance - mean;
+        if behind <= 0.0 {
+            return 1.0;
+        }
+        let slack = mean * RELATIVE_SLACK;
+        let variance = (square - mean * mean).max(0.0) + slack * slack;
+        let seen = variance / (variance + behind * behind);
+        seen * seen * seen
+    }
+
+    /// The moments in a direction, interpolated between texels.
+    fn at(&self, direction: DVec3) -> [f64; 2] {
+        let size = self.size as i32;
+        let p = square_from_direction(direction) * f64::from(size) - 0.5;
+        let low = p.floor();
+        let t = p - low;
+        let texel = |dx: i32, dy: i32| {
+            let (x, y) = wrapped(low.x as i32 + dx, low.y as i32 + dy, size);
+            self.moments[(y * size + x) as usize].map(f64::from)
+        };
+        let corners = [texel(0, 0), texel(1, 0), texel(0, 1), texel(1, 1)];
+        let weights = [(1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y];
+        [0, 1].map(|k| corners.iter().zip(weights).map(|(c, w)| c[k] * w).sum())
+    }
+}
+
+fn direction(face: usize, texel: usize, size: usize) -> DVec3 {
+    let to_unit = |i: usize| (2 * i + 1) as f64 / size as f64 - 1.0;
+    cube_direction(CubePoint { face, s: to_unit(texel % size), t: to_unit(texel / size) })
+}
+
+/// The texel of a cube map that a direction lies in.
+fn nearest(d: DVec3, size: usize, texels: &[f32]) -> f32 {
+    let Some(point) = crate::sh::cube_point(d) else { return 0.0 };
+    let column = |s: f64| (((s + 1.0) * 0.5 * size as f64) as usize).min(size - 1);
+    texels[(point.face * size + column(point.t)) * size + column(point.s)]
+}

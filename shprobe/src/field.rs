@@ -1,0 +1,239 @@
+//! Probes that light what lies between them.
+
+use crate::sh::{Irradiance, Lobe, MAX_COUNT, Sh, basis, coefficient_count};
+use crate::sight::{Near, Shares, by_sight};
+use crate::{Delaunay, DistanceMap, Hint, Locator, Partition, ProbeError, parallel};
+use glam::{DVec3, Vec3};
+
+/// Probes with what they hold, ready to light positions between them.
+///
+/// Space is divided into Delaunay tetrahedra; a position takes from the four probes around it by barycentric weights, and, where
+/// the probes' distances are known, from those among them that see it.
+#[derive(Clone, Debug)]
+pub struct Field {
+    positions: Vec<DVec3>,
+    locator: Locator,
+    partition: Partition,
+    order: usize,
+    /// Coefficients of irradiance, probe after probe.
+    irradiance: Vec<Vec3>,
+    /// The same up to band 2, for objects.
+    lights: Vec<Irradiance>,
+    distances: Option<Vec<DistanceMap>>,
+    /// Where probes are that help out, once it is known what they see.
+    near: Near,
+    bias: f64,
+}
+
+/// Something that moves between probes.
+#[derive(Clone, Copy, Debug)]
+pub struct LitObject {
+    /// Where it is; set by the caller.
+    pub position: DVec3,
+    /// Where it was found last.
+    pub hint: Hint,
+    /// What lights it.
+    pub light: Irradiance,
+}
+
+impl LitObject {
+    /// An object that is not lit yet.
+    pub const fn at(position: DVec3) -> Self {
+        Self { position, hint: Hint::START, light: Irradiance::DARK }
+    }
+}
+
+/// How far away probes may be that help out where those of a cell see nothing, over the mean spacing of probes.
+const HELP: f64 = 2.0;
+
+/// Default distance, over the mean spacing of probes, by which positions on a surface are lifted off it.
+const BIAS: f64 = 0.02;
+
+impl Field {
+    /// Divides the space between `positions`, whose probes hold `radiance`.
+    ///
+    /// # Errors
+    /// No probes, as many coefficients as positions, positions that are not finite, coefficients of mixed orders.
+    pub fn new(positions: &[DVec3], radiance: &[Sh]) -> Result<Self, ProbeError> {
+        if positions.len() != radiance.len() {
+            return Err(ProbeError::CountMismatch { probes: positions.len(), given: radiance.len() });
+        }
+        let partition = Delaunay::new(positions)?.partition();
+        let order = radiance.first().map_or(0, Sh::order);
+        if let Some(other) = radiance.iter().find(|sh| sh.order() != order) {
+            return Err(ProbeError::MixedOrders { left: order, right: other.order() });
+        }
+        let scaled = |sh: &Sh| sh.convolved(&Lobe::COSINE).into_coefficients();
+        let irradiance = radiance.iter().flat_map(scaled).map(|c| c.as_vec3()).collect();
+        let lights = radiance.iter().map(Irradiance::new).collect();
+        let bias = BIAS * spacing(positions, &partition);
+        let locator = Locator::new(positions, &partition);
+        Ok(Self {
+            positions: positions.to_vec(),
+            locator,
+            partition,
+            order,
+            irradiance,
+            lights,
+            distances: None,
+            near: Near::default(),
+            bias,
+        })
+    }
+
+    /// Lets a position take only from probes that see it.
+    ///
+    /// # Errors
+    /// [`ProbeError::CountMismatch`] if there is not one map for each probe.
+    pub fn with_distances(mut self, distances: Vec<DistanceMap>) -> Result<Self, ProbeError> {
+        let probes = self.probe_count();
+        if distances.len() != probes {
+            return Err(ProbeError::CountMismatch { probes, given: distances.len() });
+        }
+        self.near = Near::new(&self.positions, help(&self.positions, &self.partition));
+        self.distances = Some(distances);
+        Ok(self)
+    }
+
+    /// Sets how far positions on a surface are lifted off it along its normal before they are looked up. Default: 2 % of the mean
+    /// distance between neighbouring probes.
+    #[must_use]
+    pub const fn with_bias(mut self, bias: f64) -> Self {
+        self.bias = bias;
+        self
+    }
+
+    /// The cells.
+    pub const fn partition(&self) -> &Partition {
+        &self.partition
+    }
+
+    /// Finds cells, without regard to what is seen.
+    pub const fn locator(&self) -> &Locator {
+        &self.locator
+    }
+
+    /// The order of the probes' coefficients.
+    pub const fn order(&self) -> usize {
+        self.order
+    }
+
+    /// How many probes there are.
+    pub fn probe_count(&self) -> usize {
+        self.lights.len()
+    }
+
+    /// From which probes a position takes how much; continuous in the position.
+    ///
+    /// # Errors
+    /// [`ProbeError::QueryNotFinite`].
+    pub fn shares(&self, position: DVec3, hint: &mut Hint) -> Result<Vec<(u32, f64)>, ProbeError> {
+        Ok(self.weigh(position, hint)?.iter().collect())
+    }
+
+    fn weigh(&self, position: DVec3, hint: &mut Hint) -> Result<Shares, ProbeError> {
+        let cell = self.locator.locate(position, hint)?;
+        let Some(distances) = &self.distances else { return Ok(Shares::of_cell(&cell)) };
+        let at = |probe: u32| self.positions[probe as usize];
+        let visibility = |probe: u32| distances[probe as usize].visibility(position - at(probe));
+        Ok(by_sight(&cell, position, at, &self.near, visibility))
+    }
+
+    /// Irradiance on a surface in space: `face_normal` points away from it, on the side that is lit, and `normal` is what it is
+    /// shaded with, both of length 1. Linear RGB, at least 0.
+    ///
+    /// # Errors
+    /// [`ProbeError::QueryNotFinite`].
+    pub fn irradiance(
+        &self,
+        position: DVec3,
+        face_normal: Vec3,
+        normal: Vec3,
+        hint: &mut Hint,
+    ) -> Result<Vec3, ProbeError> {
+        let shares = self.weigh(position + face_normal.as_dvec3() * self.bias, hint)?;
+        let basis: [f64; MAX_COUNT] = basis(self.order, normal.as_dvec3());
+        let count = coefficient_count(self.order);
+        let mut sum = Vec3::ZERO;
+        for (probe, weight) in shares.iter() {
+            let light = &self.irradiance[probe as usize * count..][..count];
+            let at: Vec3 = light.iter().zip(basis).map(|(c, y)| *c * y as f32).sum();
+            sum += at * weight as f32;
+        }
+        Ok(sum.max(Vec3::ZERO))
+    }
+
+    /// The light at an object, up to band 2, to be evaluated at each of its normals: one look-up a frame.
+    ///
+    /// # Errors
+    /// [`ProbeError::QueryNotFinite`].
+    pub fn light(&self, position: DVec3, hint: &mut Hint) -> Result<Irradiance, ProbeError> {
+        let shares = self.weigh(position, hint)?;
+        let mut light = Irradiance::DARK;
+        for (probe, weight) in shares.iter() {
+            light.add_scaled(&self.lights[probe as usize], weight as f32);
+        }
+        Ok(light)
+    }
+
+    /// The light at each of many moving objects, on all cores; `objects` keep their hints from frame to frame.
+    ///
+    /// # Errors
+    /// [`ProbeError::QueryNotFinite`] for the first that is not; then none is changed.
+    pub fn light_objects(&self, objects: &mut [LitObject]) -> Result<(), ProbeError> {
+        if let Some(index) = objects.iter().position(|o| !o.position.is_finite()) {
+            return Err(ProbeError::QueryNotFinite { index });
+        }
+        parallel::for_each_mut(objects, |object| {
+            if let Ok(light) = self.light(object.position, &mut object.hint) {
+                object.light = light;
+            }
+        });
+        Ok(())
+    }
+
+    /// Irradiance at many positions and unit normals, on all cores.
+    ///
+    /// # Errors
+    /// [`ProbeError::QueryNotFinite`] for the first that is not.
+    pub fn irradiance_all(&self, queries: &[(DVec3, Vec3)]) -> Result<Vec<Vec3>, ProbeError> {
+        if let Some(index) = queries.iter().position(|(p, n)| !p.is_finite() || !n.is_finite()) {
+            return Err(ProbeError::QueryNotFinite { index });
+        }
+        let one = |i: usize| {
+            let (position, normal) = queries[i];
+            let mut hint = self.locator.hint(position);
+            self.irradiance(position, normal, normal, &mut hint)
+        };
+        parallel::map(queries.len(), one).into_iter().collect()
+    }
+}
+
+/// How far away a probe may be and still help.
+pub(crate) fn help(positions: &[DVec3], partition: &Partition) -> f64 {
+    HELP * spacing(positions, partition)
+}
+
+/// Mean length of the edges between probes; 0 for a single probe.
+pub(crate) fn spacing(positions: &[DVec3], partition: &Partition) -> f64 {
+    let mut sum = 0.0;
+    let mut count = 0_usize;
+    let mut add = |a: u32, b: u32| {
+        sum += positions[a as usize].distance(positions[b as usize]);
+        count += 1;
+    };
+    match partition {
+        Partition::Point(_) => {}
+        Partition::Line(line) => line.windows(2).for_each(|ends| add(ends[0], ends[1])),
+        Partition::Triangles(t) => {
+            t.corners
+                .iter()
+                .for_each(|&[a, b, c]| [(a, b), (b, c), (c, a)].into_iter().for_each(|(i, j)| add(i, j)));
+        }
+        Partition::Tetrahedra(t) => {
+            let edges = |&[a, b, c, d]: &[u32; 4]| [(a, b), (a, c), (a, d), (b, c), (b, d), (c, d)];
+            t.corners.iter().flat_map(edges).for_each(|(i, j)| add(i, j));
+        }
+    }
+    if count == 0 { 0.0 } else { sum / count as f64 }
+}

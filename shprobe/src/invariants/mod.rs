@@ -1,0 +1,11 @@
+//! Facts that hold for every set of probes and every image, as functions: property tests and fuzz targets call the same ones.
+//!
+//! Each takes any input at all. What is refused satisfies every fact.
+
+pub mod delaunay;
+pub mod sh;
+
+fn check(holds: bool, message: impl FnOnce() -> String) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(message()) }
+}
+pub mod weights;

@@ -1,0 +1,73 @@
+//! Light probes: what light arrives at points in space, as spherical harmonics, and between them.
+//!
+//! ```
+//! use glam::{DVec3, Vec3, dvec3};
+//! use pointillist_shprobe::sh::Sh;
+//! use pointillist_shprobe::{Field, Hint};
+//!
+//! // Four probes; the radiance of each is the same from everywhere, and grows along x.
+//! let positions = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+//! let radiance = positions.map(|p| Sh::constant(DVec3::splat(1.0 + p.x), 2));
+//! let radiance: Vec<Sh> = radiance.into_iter().collect::<Result<_, _>>()?;
+//! let field = Field::new(&positions, &radiance)?;
+//!
+//! // Between them the radiance is 1.25 where x is a quarter, and irradiance is π times that.
+//! let mut hint = Hint::default();
+//! let light = field.light(dvec3(0.25, 0.25, 0.25), &mut hint)?.at(Vec3::Y);
+//! assert!((light - Vec3::splat(1.25 * std::f32::consts::PI)).length() < 1e-6);
+//! # Ok::<(), pointillist_shprobe::ProbeError>(())
+//! ```
+//!
+//! * [`sh`]: spherical harmonics of images, irradiance from them, and what one does with both.
+//! * [`Delaunay`]: tetrahedra between probes, exact for any positions; triangles, a line or a point where there is no more. Probes
+//!   can be added and taken away.
+//! * [`Locator`]: which probes a position lies between, and how much of each it takes. Outside of the hull: as at the hull's nearest point.
+//! * [`DistanceMap`]: what a probe sees, so that light does not pass through walls.
+//! * [`Field`]: all of it together: light at a position, on a surface, and on many moving objects at once.
+//! * [`place`]: where to put probes; [`place::adaptive`] chooses them by the error of interpolation.
+//!
+//! Capturing what a probe sees is the caller's: any renderer will do that makes six pictures.
+//!
+//! # Accuracy and cost
+//! Every decision of [`Delaunay`] is exact. Weights sum to 1, reproduce linear functions up to rounding, and are continuous, also across the
+//! hull. Times, errors and peers: `studies/results/shprobe.md`.
+//!
+//! # Features
+//! `rayon` (default) uses all cores; it never changes a result. `invariants`: facts for property tests and fuzzing.
+//!
+//! # References
+//! 1. The seed of this crate: capture-based lighting (in Japanese): probes, nine coefficients, Delaunay tetrahedra, barycentric blending.
+//! 2. R. Ramamoorthi, P. Hanrahan: *An efficient representation for irradiance environment maps*, SIGGRAPH 2001.
+//! 3. R. Cupisz: *Light probe interpolation using tetrahedral tessellations*, GDC 2012.
+//! 4. Z. Majercik, J.-P. Guertin, D. Nowrouzezahrai, M. McGuire: *Dynamic diffuse global illumination with ray-traced irradiance
+//!    fields*, JCGT 2019: octahedral maps of distance, and visibility from them.
+//! 5. W. Donnelly, A. Lauritzen: *Variance shadow maps*, I3D 2006.
+//!
+//! The parts name theirs.
+#![forbid(unsafe_code)]
+
+mod blend;
+mod delaunay;
+mod distance;
+mod error;
+mod field;
+mod hull;
+#[cfg(feature = "invariants")]
+pub mod invariants;
+mod locate;
+mod octahedron;
+mod parallel;
+mod partition;
+pub mod place;
+mod scale;
+pub mod sh;
+mod sight;
+mod simplex;
+
+pub use blend::Blend;
+pub use delaunay::Delaunay;
+pub use distance::{DEFAULT_DISTANCE_SIZE, DistanceMap};
+pub use error::ProbeError;
+pub use field::{Field, LitObject};
+pub use locate::{Hint, Locator};
+pub use partition::{OUTSIDE, Partition, Tetrahedra, Triangles};

@@ -1,0 +1,139 @@
+//! How well some candidates light all of them.
+
+use crate::field::help;
+use crate::sh::{Lobe, Sh};
+use crate::sight::{Near, Shares, by_sight};
+use crate::{Blend, Delaunay, DistanceMap, Hint, Locator, Partition, ProbeError};
+use glam::DVec3;
+
+/// Positions at which probes may be, and the light there.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidates<'a> {
+    /// Where they are.
+    pub positions: &'a [DVec3],
+    /// What arrives there; all of one order.
+    pub radiance: &'a [Sh],
+    /// How far they see; without, light passes through walls.
+    pub distances: Option<&'a [DistanceMap]>,
+    /// What the error at each counts, for example the volume it stands for; 1 without.
+    pub weights: Option<&'a [f64]>,
+}
+
+/// Candidates ready to be tried.
+pub(super) struct Bench<'a> {
+    candidates: Candidates<'a>,
+    /// Coefficients of irradiance over √(4π): sums of squares are means over all normals.
+    irradiance: Vec<Vec<DVec3>>,
+    /// What a squared error at each candidate counts.
+    weights: Vec<f64>,
+}
+
+/// Light weaker than this share of the RMS counts as this much, so that errors where it is dark do not count without end.
+const DARK: f64 = 0.02;
+
+/// What a set of probes leaves wrong.
+pub(super) struct Outcome {
+    /// Square of the relative error over all candidates.
+    pub(super) error2: f64,
+    /// The part of it at each candidate.
+    pub(super) parts: Vec<f64>,
+    /// For each candidate the probes of the cell it is in, as indices into those chosen.
+    pub(super) cells: Vec<[u32; 4]>,
+    pub(super) partition: Partition,
+}
+
+impl<'a> Bench<'a> {
+    pub(super) fn new(candidates: Candidates<'a>, balance: f64) -> Result<Self, ProbeError> {
+        let count = candidates.positions.len();
+        if count == 0 {
+            return Err(ProbeError::NoProbes);
+        }
+        let lengths = [
+            candidates.radiance.len(),
+            candidates.distances.map_or(count, <[_]>::len),
+            candidates.weights.map_or(count, <[_]>::len),
+        ];
+        if let Some(&given) = lengths.iter().find(|&&n| n != count) {
+            return Err(ProbeError::CountMismatch { probes: count, given });
+        }
+        if let Some(index) = candidates.positions.iter().position(|p| !p.is_finite()) {
+            return Err(ProbeError::PositionNotFinite { index });
+        }
+        let order = candidates.radiance[0].order();
+        if let Some(other) = candidates.radiance.iter().find(|sh| sh.order() != order) {
+            return Err(ProbeError::MixedOrders { left: order, right: other.order() });
+        }
+        let norm = (4.0 * std::f64::consts::PI).sqrt();
+        let normed = |sh: &Sh| sh.convolved(&Lobe::COSINE).scaled(1.0 / norm).into_coefficients();
+        let irradiance: Vec<Vec<DVec3>> = candidates.radiance.iter().map(normed).collect();
+        let square = |c: &Vec<DVec3>| c.iter().map(|v| v.length_squared()).sum::<f64>();
+        let squares: Vec<f64> = irradiance.iter().map(square).collect();
+        let given = |i: usize| candidates.weights.map_or(1.0, |w| w[i]);
+        let total: f64 = (0..count).map(given).sum();
+        let mean = squares.iter().enumerate().map(|(i, s)| given(i) * s).sum::<f64>() / total;
+        let weight = |i: usize| given(i) * (squares[i] + DARK * DARK * mean).powf(-balance);
+        let weights: Vec<f64> = (0..count).map(weight).collect();
+        let power: f64 = weights.iter().zip(&squares).map(|(w, s)| w * s).sum();
+        // Where all is dark nothing can be wrong.
+        let scale = if power > 0.0 { 1.0 / power } else { 0.0 };
+        let weights = weights.into_iter().map(|w| if scale > 0.0 { w * scale } else { 0.0 }).collect();
+        Ok(Self { candidates, irradiance, weights })
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.irradiance.len()
+    }
+
+    /// Lights all candidates from those chosen.
+    pub(super) fn outcome(&self, chosen: &[u32]) -> Result<Outcome, ProbeError> {
+        let (locator, near, partition) = self.locator(chosen)?;
+        let mut hint = Hint::default();
+        let mut outcome = Outcome { error2: 0.0, parts: vec![], cells: vec![], partition };
+        for i in 0..self.count() {
+            let plain = locator.locate(self.candidates.positions[i], &mut hint)?;
+            let part = self.squared_error(i, chosen, &plain, &near);
+            outcome.error2 += part;
+            outcome.parts.push(part);
+            outcome.cells.push(plain.probes);
+        }
+        Ok(outcome)
+    }
+
+    /// The errors of a few candidates, lit from those chosen.
+    pub(super) fn errors_of(&self, candidates: &[u32], chosen: &[u32]) -> Result<f64, ProbeError> {
+        let (locator, near, _) = self.locator(chosen)?;
+        let mut hint = Hint::default();
+        let mut sum = 0.0;
+        for &i in candidates {
+            let plain = locator.locate(self.candidates.positions[i as usize], &mut hint)?;
+            sum += self.squared_error(i as usize, chosen, &plain, &near);
+        }
+        Ok(sum)
+    }
+
+    fn locator(&self, chosen: &[u32]) -> Result<(Locator, Near, Partition), ProbeError> {
+        let positions: Vec<DVec3> = chosen.iter().map(|&i| self.candidates.positions[i as usize]).collect();
+        let partition = Delaunay::new(&positions)?.partition();
+        let reach = if self.candidates.distances.is_some() { help(&positions, &partition) } else { 0.0 };
+        Ok((Locator::new(&positions, &partition), Near::new(&positions, reach), partition))
+    }
+
+    fn squared_error(&self, i: usize, chosen: &[u32], cell: &Blend, near: &Near) -> f64 {
+        let here = self.candidates.positions[i];
+        let at = |probe: u32| self.candidates.positions[chosen[probe as usize] as usize];
+        let shares = match self.candidates.distances {
+            None => Shares::of_cell(cell),
+            Some(maps) => by_sight(cell, here, at, near, |probe| {
+                maps[chosen[probe as usize] as usize].visibility(here - at(probe))
+            }),
+        };
+        let truth = &self.irradiance[i];
+        let square: f64 = (0..truth.len())
+            .map(|k| {
+                let mixed = |(p, w): (u32, f64)| self.irradiance[chosen[p as usize] as usize][k] * w;
+                (shares.iter().map(mixed).sum::<DVec3>() - truth[k]).length_squared()
+            })
+            .sum();
+        self.weights[i] * square
+    }
+}

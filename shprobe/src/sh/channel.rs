@@ -1,0 +1,65 @@
+//! What a coefficient can be.
+
+use glam::DVec3;
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Mul, Sub};
+
+/// A colour (`DVec3`) or one number (`f64`): what coefficients are made of. Products are channel by channel.
+pub trait Channel:
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + AddAssign
+    + Mul<f64, Output = Self>
+    + Mul<Output = Self>
+    + private::Sealed
+{
+    /// How many numbers it holds.
+    const CHANNELS: usize;
+
+    /// From one number a channel.
+    fn from_channels(value: impl FnMut(usize) -> f64) -> Self;
+
+    /// The number of a channel, or of the last where there are not so many.
+    fn channel(self, index: usize) -> f64;
+
+    /// Whether all numbers are finite.
+    fn is_finite(self) -> bool {
+        (0..Self::CHANNELS).all(|i| self.channel(i).is_finite())
+    }
+}
+
+mod private {
+    pub trait Sealed {}
+    impl Sealed for f64 {}
+    impl Sealed for glam::DVec3 {}
+}
+
+impl Channel for f64 {
+    const CHANNELS: usize = 1;
+
+    fn from_channels(mut value: impl FnMut(usize) -> f64) -> Self {
+        value(0)
+    }
+
+    fn channel(self, _: usize) -> f64 {
+        self
+    }
+}
+
+impl Channel for DVec3 {
+    const CHANNELS: usize = 3;
+
+    fn from_channels(mut value: impl FnMut(usize) -> f64) -> Self {
+        Self::new(value(0), value(1), value(2))
+    }
+
+    fn channel(self, index: usize) -> f64 {
+        self[index.min(2)]
+    }
+}

@@ -1,0 +1,270 @@
+//! What must hold between probes: weights, location, distances, placement.
+
+use glam::{DVec3, Vec3, dvec3};
+use pointillist_shprobe::invariants::weights;
+use pointillist_shprobe::sh::Sh;
+use pointillist_shprobe::{
+    Delaunay, DistanceMap, Field, Hint, LitObject, Locator, Partition, ProbeError, place,
+};
+use proptest::prelude::*;
+use proptest::test_runner::TestCaseError;
+
+/// Points of a small lattice: grids, planes, lines and repeats come often, and no cell is thinner than a thousandth.
+fn lattice_points() -> impl Strategy<Value = Vec<DVec3>> {
+    let coordinate = -4..=4_i8;
+    let axis = prop_oneof![
+        coordinate.clone().prop_map(|c| [c, c]),
+        (coordinate.clone(), coordinate).prop_map(|(a, b)| [a, b])
+    ];
+    // Both numbers of an axis equal: all points lie in one plane.
+    let point = |x: [i8; 2], y: [i8; 2], z: [i8; 2]| {
+        prop::collection::vec((x[0]..=x[0].max(x[1]), y[0]..=y[0].max(y[1]), z[0]..=z[0].max(z[1])), 1..24)
+    };
+    (axis.clone(), axis.clone(), axis)
+        .prop_flat_map(move |(x, y, z)| point(x, y, z))
+        .prop_map(|list| list.into_iter().map(|(x, y, z)| dvec3(x.into(), y.into(), z.into())).collect())
+}
+
+fn query() -> impl Strategy<Value = DVec3> {
+    let near = prop::array::uniform3(-6.0..6.0_f64);
+    let on_lattice = prop::array::uniform3((-12..=12_i8).prop_map(|c| f64::from(c) * 0.5));
+    prop_oneof![near, on_lattice].prop_map(DVec3::from_array)
+}
+
+fn fail(message: String) -> TestCaseError {
+    TestCaseError::fail(message)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn weights_reproduce_linear_functions_and_hold_the_light_beyond_the_hull(
+        points in lattice_points(), queries in prop::collection::vec(query(), 1..20)
+    ) {
+        weights::weights_find_the_nearest_point(&points, &queries, 1e-9).map_err(fail)?;
+    }
+
+    #[test]
+    fn far_away_and_resized_probes_are_weighted_alike(
+        points in lattice_points(), queries in prop::collection::vec(query(), 1..8), power in -200..200_i32
+    ) {
+        let scale = 2.0_f64.powi(power);
+        let resized = |list: &[DVec3]| list.iter().map(|p| *p * scale).collect::<Vec<_>>();
+        weights::weights_find_the_nearest_point(&resized(&points), &resized(&queries), 1e-9).map_err(fail)?;
+        let moved = |list: &[DVec3]| list.iter().map(|p| *p + dvec3(1e8, -2e8, 3e8)).collect::<Vec<_>>();
+        weights::weights_find_the_nearest_point(&moved(&points), &moved(&queries), 1e-6).map_err(fail)?;
+    }
+
+    #[test]
+    fn hints_change_nothing(points in lattice_points(), queries in prop::collection::vec(query(), 1..20)) {
+        weights::hints_do_not_matter(&points, &queries, 1e-9).map_err(fail)?;
+    }
+
+    #[test]
+    fn light_does_not_jump_on_the_way_through_cells_and_out_of_the_hull(
+        points in lattice_points(), values in prop::collection::vec(-1.0..1.0_f64, 24), a in query(), b in query()
+    ) {
+        weights::nothing_jumps(&points, &values, a, b, 1e-6).map_err(fail)?;
+    }
+
+    #[test]
+    fn location_ends_for_any_query(points in lattice_points(), raw in prop::array::uniform3(any::<f64>())) {
+        let locator = Locator::new(&points, &Delaunay::new(&points).unwrap().partition());
+        let p = DVec3::from_array(raw);
+        match locator.locate_anywhere(p) {
+            Ok(blend) => prop_assert!((blend.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12),
+            Err(error) => {
+                prop_assert!(!p.is_finite());
+                prop_assert_eq!(error, ProbeError::QueryNotFinite { index: 0 });
+            }
+        }
+    }
+
+    #[test]
+    fn spread_places_are_far_apart(points in lattice_points(), count in 1..12_usize) {
+        let chosen = place::spread(&points, count);
+        let apart = |list: &[usize]| {
+            let pairs = (0..list.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+            pairs.map(|(i, j)| points[list[i]].distance(points[list[j]])).fold(f64::INFINITY, f64::min)
+        };
+        prop_assert!(apart(&chosen) > 0.0);
+        // Each new place is at least as far from the others as any place left out is.
+        let left = points.iter().map(|p| chosen.iter().map(|&c| points[c].distance(*p)).fold(f64::INFINITY, f64::min));
+        prop_assert!(chosen.len() < count || left.fold(0.0, f64::max) <= apart(&chosen) + 1e-12);
+    }
+}
+
+/// Probes that see the same radiance from everywhere.
+fn constant(values: &[f64]) -> Vec<Sh> {
+    values.iter().map(|&v| Sh::constant(DVec3::splat(v), 2).unwrap()).collect()
+}
+
+#[test]
+fn fewer_dimensions_fall_back_to_triangles_segments_and_a_constant() {
+    let kinds = [
+        (vec![DVec3::ONE; 3], 0),
+        (vec![DVec3::ZERO, DVec3::X * 2.0, DVec3::X], 1),
+        (vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y], 2),
+        (vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z], 3),
+    ];
+    for (points, dimension) in kinds {
+        let partition = Delaunay::new(&points).unwrap().partition();
+        assert_eq!(partition.dimension(), dimension);
+        let values: Vec<f64> = points.iter().map(|p| p.x).collect();
+        let field = Field::new(&points, &constant(&values)).unwrap();
+        let light = field.light(dvec3(0.5, 0.25, 7.0), &mut Hint::default()).unwrap().at(Vec3::Y);
+        let wanted = if dimension == 0 { 1.0 } else { 0.5 } * std::f32::consts::PI;
+        // Above a tetrahedron the nearest point is not below.
+        assert!(dimension == 3 || (light.x - wanted).abs() < 1e-6, "{dimension}: {light}");
+    }
+}
+
+#[test]
+fn bad_input_is_refused_with_what_is_wrong() {
+    let nan = dvec3(0.0, f64::NAN, 0.0);
+    assert_eq!(Field::new(&[], &[]).err(), Some(ProbeError::NoProbes));
+    assert_eq!(
+        Field::new(&[DVec3::ZERO, nan], &constant(&[1.0, 1.0])).err(),
+        Some(ProbeError::PositionNotFinite { index: 1 })
+    );
+    assert_eq!(
+        Field::new(&[DVec3::ZERO], &constant(&[1.0, 1.0])).err(),
+        Some(ProbeError::CountMismatch { probes: 1, given: 2 })
+    );
+    let mixed = [Sh::constant(DVec3::ONE, 1).unwrap(), Sh::constant(DVec3::ONE, 2).unwrap()];
+    assert_eq!(
+        Field::new(&[DVec3::ZERO, DVec3::X], &mixed).err(),
+        Some(ProbeError::MixedOrders { left: 1, right: 2 })
+    );
+    let field = Field::new(&[DVec3::ZERO, DVec3::X], &constant(&[1.0, 1.0])).unwrap();
+    assert_eq!(
+        field.irradiance_all(&[(DVec3::ZERO, Vec3::Y), (nan, Vec3::Y)]).err(),
+        Some(ProbeError::QueryNotFinite { index: 1 })
+    );
+    let mut objects = [LitObject::at(DVec3::ZERO), LitObject::at(nan)];
+    assert_eq!(field.light_objects(&mut objects).err(), Some(ProbeError::QueryNotFinite { index: 1 }));
+    assert_eq!(DistanceMap::new(2, vec![[1.0, 1.0]; 3]).err(), Some(ProbeError::BadDistances { index: 3 }));
+    let negative = DistanceMap::from_cube(4, 1, &[1.0, 1.0, -1.0, 1.0, 1.0, 1.0], 9.0);
+    assert_eq!(negative.err(), Some(ProbeError::BadDistances { index: 2 }));
+}
+
+/// Distances from the middle of a cube-shaped room of half-width `reach`, as six faces of `size`² texels.
+fn room(size: usize, reach: f32) -> Vec<f32> {
+    let unit = |i: usize| (2 * i + 1) as f32 / size as f32 - 1.0;
+    let face =
+        (0..size * size).map(|i| reach * (1.0 + unit(i % size).powi(2) + unit(i / size).powi(2)).sqrt());
+    let face: Vec<f32> = face.collect();
+    face.iter().copied().cycle().take(6 * size * size).collect()
+}
+
+#[test]
+fn what_is_in_the_room_is_seen_and_what_is_behind_its_walls_is_not() {
+    let map = DistanceMap::from_cube(16, 64, &room(64, 1.0), 100.0).unwrap();
+    for i in 0..1000 {
+        let a = f64::from(i);
+        let d = dvec3((a * 0.7).sin(), (a * 1.3).cos(), (a * 2.1).sin());
+        let to_wall = d / d.abs().max_element();
+        assert!(map.visibility(to_wall * 0.8) > 0.95, "{d}: {}", map.visibility(to_wall * 0.8));
+        assert!(map.visibility(to_wall * 1.6) < 0.05, "{d}: {}", map.visibility(to_wall * 1.6));
+    }
+    assert_eq!(map.visibility(DVec3::ZERO), 1.0);
+}
+
+#[test]
+fn light_does_not_pass_through_a_wall() {
+    // A bright probe at −1 and a dark one at 1; each sees half a unit far, to the wall at 0 that is a unit thick.
+    let positions = [dvec3(-1.0, 0.0, 0.0), dvec3(1.0, 0.0, 0.0)];
+    let field = Field::new(&positions, &constant(&[1.0, 0.0])).unwrap();
+    let dark = dvec3(0.6, 0.0, 0.0);
+    let through = field.light(dark, &mut Hint::default()).unwrap().at(Vec3::Y).x;
+    assert!((through - 0.2 * std::f32::consts::PI).abs() < 1e-5, "{through}");
+    let map = DistanceMap::from_cube(16, 32, &room(32, 0.5), 100.0).unwrap();
+    let field = field.with_distances(vec![map.clone(), map]).unwrap();
+    let behind = field.light(dark, &mut Hint::default()).unwrap().at(Vec3::Y).x;
+    assert!(behind < 0.01 * through, "{behind}");
+}
+
+#[test]
+fn moving_objects_are_lit_as_still_ones() {
+    let positions = place::grid(DVec3::ZERO, DVec3::ONE, [4, 4, 4]);
+    let values: Vec<f64> = positions.iter().map(|p| p.x + 2.0 * p.y).collect();
+    let field = Field::new(&positions, &constant(&values)).unwrap();
+    let mut objects: Vec<LitObject> =
+        place::random(DVec3::splat(-0.2), DVec3::splat(1.2), 500, 5).into_iter().map(LitObject::at).collect();
+    for _ in 0..2 {
+        field.light_objects(&mut objects).unwrap();
+        for object in &objects {
+            let still = field.irradiance(object.position, Vec3::ZERO, Vec3::Z, &mut Hint::default()).unwrap();
+            assert!((object.light.at(Vec3::Z) - still).abs().max_element() < 1e-5);
+        }
+        objects.iter_mut().for_each(|o| o.position += dvec3(0.01, 0.02, -0.01));
+    }
+}
+
+#[test]
+fn grids_fill_their_box() {
+    let grid = place::grid(DVec3::ZERO, dvec3(12.0, 6.0, 6.0), [12, 6, 1]);
+    assert_eq!(grid.len(), 72);
+    assert!(
+        grid.iter().all(|p| p.cmpgt(DVec3::ZERO).all() && p.cmplt(dvec3(12.0, 6.0, 6.0)).all() && p.z == 3.0)
+    );
+    assert_eq!(place::random(DVec3::ZERO, DVec3::ONE, 5, 1), place::random(DVec3::ZERO, DVec3::ONE, 5, 1));
+}
+
+/// Candidates on a grid in light that changes quickly about one place only.
+fn spotted() -> (Vec<DVec3>, Vec<Sh>) {
+    let positions = place::grid(DVec3::ZERO, dvec3(4.0, 2.0, 2.0), [16, 6, 6]);
+    let values: Vec<f64> =
+        positions.iter().map(|p| 1.0 + 5.0 * (-4.0 * p.distance_squared(DVec3::ONE)).exp()).collect();
+    (positions, constant(&values))
+}
+
+#[test]
+fn adaptive_probes_gather_where_light_changes_and_beat_a_grid() {
+    let (positions, radiance) = spotted();
+    let candidates =
+        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    let options = place::AdaptiveOptions::DEFAULT.with_max_count(60).with_balance(0.0);
+    let chosen = place::adaptive(candidates, &options).unwrap();
+    assert_eq!(chosen.chosen.len(), 60);
+    let near = chosen.chosen.iter().filter(|&&i| positions[i as usize].distance(DVec3::ONE) < 1.2).count();
+    assert!(near > 30, "{near} of 60 are near the spot");
+
+    // A grid of the same candidates, every other one along each axis: 72 probes.
+    let on_grid: Vec<usize> =
+        (0..positions.len()).filter(|i| i % 2 == 0 && i / 16 % 3 == 0 && i / 96 % 2 == 0).collect();
+    let pick = |list: &[usize]| -> (Vec<DVec3>, Vec<Sh>) {
+        list.iter().map(|&i| (positions[i], radiance[i].clone())).unzip()
+    };
+    let rms = |list: &[usize]| {
+        let (at, light) = pick(list);
+        let field = Field::new(&at, &light).unwrap();
+        let one = |i: usize| {
+            let mixed = field.light(positions[i], &mut Hint::default()).unwrap().at(Vec3::Y).x;
+            f64::from(mixed - radiance[i].irradiance(DVec3::Y).x as f32).powi(2)
+        };
+        ((0..positions.len()).map(one).sum::<f64>() / positions.len() as f64).sqrt()
+    };
+    let ours: Vec<usize> = chosen.chosen.iter().map(|&i| i as usize).collect();
+    assert!(rms(&ours) < 0.5 * rms(&on_grid), "{} against {}", rms(&ours), rms(&on_grid));
+}
+
+#[test]
+fn adaptive_placement_stops_at_the_error_asked_for_and_says_what_it_reached() {
+    let (positions, radiance) = spotted();
+    let candidates =
+        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    let options = place::AdaptiveOptions::DEFAULT.with_max_count(positions.len()).with_max_error(0.05);
+    let chosen = place::adaptive(candidates, &options).unwrap();
+    assert!(
+        chosen.error <= 0.05 && chosen.chosen.len() < 300,
+        "{} probes, {}",
+        chosen.chosen.len(),
+        chosen.error
+    );
+    assert!(chosen.errors[0].0 == positions.len() && chosen.errors[0].1 < 1e-15);
+    let one = place::adaptive(candidates, &place::AdaptiveOptions::DEFAULT.with_max_count(1)).unwrap();
+    assert_eq!(one.chosen.len(), 1);
+    assert!(matches!(Delaunay::new(&positions[..1]).unwrap().partition(), Partition::Point(0)));
+}
