@@ -242,3 +242,49 @@ fn bad_input_is_named() {
     folder.fails(&["probe", "bake", "sky.toml", "raw.json", "--part", "0/1"], 2, &["--bounces 0"]);
     folder.fails(&["probe", "place", "sky.toml", "--grid", "0x1x1"], 2, &["at least 1"]);
 }
+
+#[test]
+fn fitted_probes_light_what_lies_between_them_better() {
+    let folder = folder();
+    // A lamp close to the wall between two of the probes: they see little of the bright spot.
+    let scene = format!(
+        "{BOX_SCENE}material = \"grey\"\n[material.grey]\ndiffuse = [0.8, 0.8, 0.8]\n\
+         [[light]]\ntype = \"point\"\nposition = [0, 0, -0.7]\nintensity = [1, 1, 1]\n"
+    );
+    folder.write("lamp.toml", scene);
+    folder.prints(&["probe", "place", "lamp.toml", "--grid", "2x2x2", "-o", "p.json"]);
+    folder.prints(&["probe", "place", "lamp.toml", "--grid", "5x5x5", "-o", "fine.json"]);
+    let bake = |probes: &str, fit: &str, output: &str| {
+        let line =
+            ["probe", "bake", "lamp.toml", probes, "--resolution", "16", "--bounces", "0", "--fit", fit];
+        folder.prints(&[&line[..], &["-o", output]].concat());
+        json(&folder, output)
+    };
+    let (plain, fitted, fine) = (
+        bake("p.json", "0", "plain.json"),
+        bake("p.json", "200", "fit.json"),
+        bake("fine.json", "0", "f.json"),
+    );
+    assert_eq!(fitted["fit"], 200);
+    let about: Value = serde_json::from_str(&folder.prints(&["info", "fit.json"])).unwrap();
+    assert_eq!((&about["kind"], &about["baked"], &about["fit"]), (&"probes".into(), &8.into(), &200.into()));
+    assert_ne!(plain["fingerprint"], fitted["fingerprint"]);
+    let queries: String = fine["probes"].as_array().unwrap().iter().fold(String::new(), |text, p| {
+        let at: Vec<String> = p["position"].as_array().unwrap().iter().map(Value::to_string).collect();
+        text + &at.join(" ") + " 0 0 1\n" + &at.join(" ") + " 0 0 -1\n"
+    });
+    folder.write("q.txt", queries);
+    let light = |file: &str| -> Vec<f64> {
+        let text = folder.prints(&["probe", "query", file, "q.txt"]);
+        text.lines().map(|l| l.split(' ').next().unwrap().parse().unwrap()).collect()
+    };
+    let truth = light("f.json");
+    let error = |file: &str| -> f64 { light(file).iter().zip(&truth).map(|(a, b)| (a - b).powi(2)).sum() };
+    let (with, without) = (error("fit.json"), error("plain.json"));
+    assert!(with < 0.7 * without, "{with} against {without}");
+    folder.fails(
+        &["probe", "bake", "lamp.toml", "p.json", "--bounces", "0", "--fit", "9", "--part", "0/2"],
+        2,
+        &["--part and --fit"],
+    );
+}

@@ -42,6 +42,7 @@
 //! 4. Z. Majercik, J.-P. Guertin, D. Nowrouzezahrai, M. McGuire: *Dynamic diffuse global illumination with ray-traced irradiance
 //!    fields*, JCGT 2019: octahedral maps of distance, and visibility from them.
 //! 5. W. Donnelly, A. Lauritzen: *Variance shadow maps*, I3D 2006.
+//! 6. L. Kavan, A. W. Bargteil, P.-P. Sloan: *Least squares vertex baking*, EGSR 2011.
 //!
 //! The parts name theirs.
 #![forbid(unsafe_code)]

@@ -268,3 +268,64 @@ fn adaptive_placement_stops_at_the_error_asked_for_and_says_what_it_reached() {
     assert_eq!(one.chosen.len(), 1);
     assert!(matches!(Delaunay::new(&positions[..1]).unwrap().partition(), Partition::Point(0)));
 }
+
+/// The mean squared difference between what candidates saw and what probes with this light give them.
+fn squared_error(positions: &[DVec3], radiance: &[Sh], chosen: &[u32], held: &[Sh]) -> f64 {
+    let at: Vec<DVec3> = chosen.iter().map(|&i| positions[i as usize]).collect();
+    let field = Field::new(&at, held).unwrap();
+    let one = |(p, saw): (&DVec3, &Sh)| {
+        let mut sum = Sh::constant(DVec3::ZERO, saw.order()).unwrap();
+        for (probe, share) in field.shares(*p, &mut Hint::default()).unwrap() {
+            sum = sum.plus(&held[probe as usize].scaled(share)).unwrap();
+        }
+        let rest = sum.plus(&saw.scaled(-1.0)).unwrap();
+        rest.coefficients().iter().map(|c| c.length_squared()).sum::<f64>()
+    };
+    positions.iter().zip(radiance).map(one).sum::<f64>() / positions.len() as f64
+}
+
+#[test]
+fn fitted_probes_are_a_minimum_of_the_error() {
+    let (positions, radiance) = spotted();
+    let candidates =
+        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    // Every other place along each axis: none on top of the spot.
+    let chosen: Vec<u32> =
+        (0..positions.len() as u32).filter(|i| i % 2 == 0 && i / 16 % 3 == 0 && i / 96 % 2 == 0).collect();
+    let options = place::FitOptions::DEFAULT.with_balance(0.0).with_hold(0.0);
+    let fitted = place::fit(candidates, &chosen, &options).unwrap();
+    let saw: Vec<Sh> = chosen.iter().map(|&i| radiance[i as usize].clone()).collect();
+    let error = |held: &[Sh]| squared_error(&positions, &radiance, &chosen, held);
+    let best = error(&fitted);
+    assert!(best < 0.8 * error(&saw), "{best} against {}", error(&saw));
+    for probe in [0, 7, 39] {
+        for change in [1e-3, -1e-3] {
+            let mut other = fitted.clone();
+            other[probe] = other[probe].plus(&Sh::constant(DVec3::splat(change), 2).unwrap()).unwrap();
+            assert!(error(&other) > best, "probe {probe} by {change}");
+        }
+    }
+    let held = place::fit(candidates, &chosen, &options.with_hold(1e9)).unwrap();
+    let moved = held.iter().zip(&saw).map(|(a, b)| (a.coefficients()[0] - b.coefficients()[0]).length());
+    assert!(moved.fold(0.0, f64::max) < 1e-6);
+    assert_eq!(
+        place::fit(candidates, &[3, 700], &options).unwrap_err(),
+        ProbeError::NoSuchProbe { index: 700 }
+    );
+}
+
+#[test]
+fn fitting_keeps_what_is_right_already() {
+    let positions = place::grid(DVec3::ZERO, DVec3::ONE, [5, 5, 5]);
+    let values: Vec<f64> = positions.iter().map(|p| 1.0 + p.x + 2.0 * p.y - 0.5 * p.z).collect();
+    let radiance = constant(&values);
+    let candidates =
+        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    // The corners of the grid: light is linear between them.
+    let corners: Vec<u32> = (0..8).map(|i| 4 * (i & 1) + 20 * (i >> 1 & 1) + 100 * (i >> 2)).collect();
+    let fitted = place::fit(candidates, &corners, &place::FitOptions::DEFAULT).unwrap();
+    for (&i, sh) in corners.iter().zip(&fitted) {
+        let change = sh.coefficients()[0] - radiance[i as usize].coefficients()[0];
+        assert!(change.length() < 1e-12, "probe {i}: {change}");
+    }
+}

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use std::time::Instant;
 
 use glam::DVec3;
-use pointillist_shprobe::place::{self, AdaptiveOptions, Candidates, adaptive};
+use pointillist_shprobe::place::{self, AdaptiveOptions, Candidates, FitOptions, adaptive};
 use pointillist_shprobe::sh::Irradiance;
 use pointillist_shprobe::{Field, Hint, Partition};
 
@@ -33,6 +33,7 @@ pub(crate) const GRID: &str = "grid, tetrahedra";
 pub(crate) const RANDOM: &str = "random";
 pub(crate) const VERTICES: &str = "vertices";
 pub(crate) const ADAPTIVE: &str = "adaptive";
+pub(crate) const FITTED: &str = "adaptive, fitted";
 
 /// Adaptive placement is not asked for more probes than this: it is there to need few.
 const MOST_ADAPTIVE: usize = 192;
@@ -115,16 +116,36 @@ impl<'a> Survey<'a> {
         for &count in counts.iter().filter(|&&c| c <= MOST_ADAPTIVE) {
             for distances in [false, true] {
                 let start = Instant::now();
-                let baked =
-                    chosen(self.candidates()?, distances, &AdaptiveOptions::DEFAULT.with_max_count(count))?;
-                self.tetrahedra_with(ADAPTIVE, count, &baked, distances)?;
-                if let Some(layout) = self.layouts.last_mut() {
-                    layout.seconds = start.elapsed().as_secs_f64();
-                    eprintln!("{}", line(self.ground.site.name, layout));
+                let chosen = self.chosen(count, distances)?;
+                let seconds = start.elapsed().as_secs_f64();
+                for (placement, baked) in [(ADAPTIVE, &chosen.seen), (FITTED, &chosen.fitted)] {
+                    self.tetrahedra_with(placement, count, baked, distances)?;
+                    if let Some(layout) = self.layouts.last_mut() {
+                        layout.seconds = seconds;
+                        eprintln!("{}", line(self.ground.site.name, layout));
+                    }
                 }
             }
         }
         Ok(())
+    }
+
+    /// The candidates that adaptive placement takes.
+    pub(crate) fn chosen(&self, count: usize, distances: bool) -> Result<Chosen, Fault> {
+        let all = self.candidates()?;
+        let candidates = Candidates {
+            positions: &all.positions,
+            radiance: &all.radiance,
+            distances: distances.then_some(all.distances.as_slice()),
+            weights: None,
+        };
+        let balance = self.ground.site.balance;
+        let options = AdaptiveOptions::DEFAULT.with_max_count(count).with_balance(balance);
+        let chosen = adaptive(candidates, &options)?.chosen;
+        let seen = all.pick(chosen.iter().map(|&i| i as usize));
+        let radiance = place::fit(candidates, &chosen, &FitOptions::DEFAULT.with_balance(balance))?;
+        let fitted = Baked { radiance, ..seen.clone() };
+        Ok(Chosen { seen, fitted })
     }
 
     /// A fine grid with what is seen from it.
@@ -164,15 +185,12 @@ impl<'a> Survey<'a> {
     }
 }
 
-/// The candidates that adaptive placement takes.
-pub(crate) fn chosen(all: &Baked, distances: bool, options: &AdaptiveOptions) -> Result<Baked, Fault> {
-    let candidates = Candidates {
-        positions: &all.positions,
-        radiance: &all.radiance,
-        distances: distances.then_some(all.distances.as_slice()),
-        weights: None,
-    };
-    Ok(all.pick(adaptive(candidates, options)?.chosen.iter().map(|&i| i as usize)))
+/// Probes placed where light asks for them.
+pub(crate) struct Chosen {
+    /// With what they saw.
+    pub(crate) seen: Baked,
+    /// With what lights all candidates best.
+    pub(crate) fitted: Baked,
 }
 
 /// What lights an object at a position.

@@ -2,9 +2,7 @@
 
 use std::fmt::Write as _;
 
-use pointillist_shprobe::place::AdaptiveOptions;
-
-use crate::probe_layouts::{GRID, Survey, cell_count, chosen, light};
+use crate::probe_layouts::{GRID, Survey, cell_count, light};
 
 type Fault = Box<dyn std::error::Error + Send + Sync>;
 
@@ -19,7 +17,7 @@ pub(crate) const HEAD: &str = "| scene | grid | its error % | distances | probes
 const COUNTS: [usize; 20] =
     [4, 5, 6, 8, 10, 13, 16, 20, 24, 30, 39, 48, 64, 86, 110, 140, 192, 256, 320, 400];
 
-/// The rows of a scene: fewest adaptive probes whose error is at most that of the plain grid of tetrahedra, the paper's.
+/// The rows of a scene: fewest adaptive, fitted probes whose error is at most that of the plain grid of tetrahedra, the paper's.
 pub(crate) fn rows(survey: &Survey<'_>) -> Result<String, Fault> {
     let name = survey.ground.site.name;
     let Some(&(_, grid, probes, cells)) = PAPERS.iter().find(|p| p.0 == name) else {
@@ -53,12 +51,10 @@ pub(crate) fn rows(survey: &Survey<'_>) -> Result<String, Fault> {
 
 /// Halves the list of counts, as if more probes were never worse.
 fn fewest(survey: &Survey<'_>, distances: bool, limit: f64) -> Result<Option<(usize, usize, f64)>, Fault> {
-    let candidates = survey.candidates()?;
     let (mut low, mut high, mut best) = (0, COUNTS.len(), None);
     while low < high {
         let middle = usize::midpoint(low, high);
-        let options = AdaptiveOptions::DEFAULT.with_max_count(COUNTS[middle]);
-        let field = chosen(candidates, distances, &options)?.field(distances)?;
+        let field = survey.chosen(COUNTS[middle], distances)?.fitted.field(distances)?;
         let wrong = survey.truth.wrong(None, |p| light(&field, p));
         if wrong.all <= limit {
             best = Some((field.probe_count(), cell_count(&field), wrong.all));

@@ -4,12 +4,11 @@ use std::path::Path;
 
 use glam::{DVec3, Vec3};
 use pointillist_cli::scene::{AmbientLight, Scene};
-use pointillist_shprobe::place::AdaptiveOptions;
 use pointillist_shprobe::sh::Panorama;
 
 use crate::picture::Picture;
 use crate::probe_canvas::{save, sheet, sphere};
-use crate::probe_layouts::{Survey, chosen};
+use crate::probe_layouts::Survey;
 use crate::probe_site::{Baked, Site};
 use crate::probe_walk::walk;
 use crate::{draw, probe_maps, probe_streets};
@@ -52,8 +51,7 @@ pub(crate) fn all(folder: &Path) -> Result<String, Fault> {
 fn room_pictures(survey: &Survey<'_>, folder: &Path, count: usize, gain: f64) -> Result<(), Fault> {
     let site = survey.ground.site;
     eprintln!("shprobe: pictures of {}", site.name);
-    let options = AdaptiveOptions::DEFAULT.with_max_count(count);
-    let bake = |distances| chosen(survey.candidates()?, distances, &options);
+    let bake = |distances| survey.chosen(count, distances).map(|chosen| chosen.fitted);
     let probes = [bake(false)?, bake(true)?];
     let mut scene = site.scene.clone();
     [scene.image.width, scene.image.height] = SIZE;

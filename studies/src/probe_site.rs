@@ -39,6 +39,8 @@ pub(crate) struct Site {
     pub(crate) grids: &'static [[usize; 3]],
     /// Grid of candidates for adaptive placement.
     pub(crate) candidates: [usize; 3],
+    /// How much errors in the dark count in choosing.
+    pub(crate) balance: f64,
     /// Whether pictures are drawn to see light, or rays cast.
     pub(crate) eye: Eye,
     /// Pixels on a side of what probes see, and of what is true.
@@ -57,7 +59,8 @@ impl Site {
             high: ROOMS,
             dark_from: Some(WALL[1]),
             grids: &[[4, 2, 3], [6, 2, 4], [7, 3, 4], [8, 3, 4], [8, 4, 6], [12, 6, 6]],
-            candidates: [20, 8, 10],
+            candidates: [28, 11, 14],
+            balance: 0.5,
             eye: Eye::Pictures,
             probe_px: 32,
             truth_px: 64,
@@ -74,6 +77,7 @@ impl Site {
             dark_from: None,
             grids: &[[4, 4, 4]],
             candidates: [10, 8, 10],
+            balance: 0.0,
             eye: Eye::Pictures,
             probe_px: 32,
             truth_px: 64,
@@ -97,7 +101,8 @@ impl Site {
             high: dvec3(14.0, 10.5, 6.2),
             dark_from: None,
             grids: &[[5, 2, 4], [7, 3, 4], [8, 4, 6], [12, 6, 6]],
-            candidates: [16, 7, 9],
+            candidates: [32, 13, 18],
+            balance: 0.0,
             eye: Eye::Rays,
             probe_px: 32,
             truth_px: 48,
@@ -117,7 +122,8 @@ impl Site {
             high: dvec3(30.0, 12.5, 6.0),
             dark_from: None,
             grids: &[[12, 6, 6]],
-            candidates: [16, 7, 8],
+            candidates: [24, 10, 12],
+            balance: 0.0,
             eye: Eye::Rays,
             probe_px: 32,
             truth_px: 48,

@@ -6,12 +6,11 @@ use std::path::Path;
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_shade::Material;
 use pointillist_shprobe::Hint;
-use pointillist_shprobe::place::AdaptiveOptions;
 use pointillist_shprobe::sh::Irradiance;
 
 use crate::draw;
 use crate::probe_canvas::{save, sheet};
-use crate::probe_layouts::{Survey, chosen, light};
+use crate::probe_layouts::{Survey, light};
 use crate::probe_pictures::lit_by;
 use crate::probe_site::Baked;
 use crate::probe_trilinear::Grid;
@@ -51,8 +50,7 @@ pub(crate) fn walk(survey: &Survey<'_>, folder: &Path) -> Result<String, Fault> 
     text += &probes_row("grid of 432", &grid, false, &truth)?;
     text += &probes_row("grid of 432, distances", &grid, true, &truth)?;
     for distances in [false, true] {
-        let options = AdaptiveOptions::DEFAULT.with_max_count(192);
-        let baked = chosen(survey.candidates()?, distances, &options)?;
+        let baked = survey.chosen(192, distances)?.fitted;
         let name = if distances { "192 adaptive, distances" } else { "192 adaptive" };
         text += &probes_row(name, &baked, distances, &truth)?;
         if distances {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::data;
-use crate::probe_layouts::{ADAPTIVE, GRID, HEAD, Layout, Survey, TRILINEAR, line};
+use crate::probe_layouts::{ADAPTIVE, FITTED, GRID, HEAD, Layout, Survey, TRILINEAR, line};
 use crate::probe_pictures;
 use crate::probe_site::Site;
 use crate::report::{Limit, Outcome, Row, chart_along, chart_of, machine, verdict, write, write_csv};
@@ -232,9 +232,9 @@ const PLACEMENT: &str = "Irradiance for 26 normals at random free positions, aga
      they shine on is seen: no probe depends on another. In the two rooms, pictures of our own renderer are seen, by probes of 32² and for the \
      truth of 64²; in Sponza and Sibenik it is rays, 32² and 48² a face, because pictures of so many small triangles take half a second a probe. \
      *Distances*: a position takes from probes that see it. *Dark room*: over the light there. Adaptive placement chooses with the same \
-     interpolation as is measured.\n\n";
+     interpolation as is measured; *fitted* probes hold what lights all candidates best, not what they saw.\n\n";
 
-const PAPER: &str = "The fewest adaptive probes, of those numbers that were tried, that err no more than the paper's grid of tetrahedra without distances.\n\n";
+const PAPER: &str = "The fewest adaptive, fitted probes, of those numbers that were tried, that err no more than the paper's grid of tetrahedra without distances.\n\n";
 
 fn survey_table(survey: &Survey<'_>) -> String {
     let name = survey.ground.site.name;
@@ -255,7 +255,11 @@ fn survey_table(survey: &Survey<'_>) -> String {
 fn goals_of(report: &mut Report, survey: &Survey<'_>) {
     let name = survey.ground.site.name;
     let adaptive = |most: usize| {
-        survey.layouts.iter().filter(move |l| l.placement == ADAPTIVE && l.wanted <= most).map(|l| l.wrong)
+        survey
+            .layouts
+            .iter()
+            .filter(move |l| [ADAPTIVE, FITTED].contains(&l.placement) && l.wanted <= most)
+            .map(|l| l.wrong)
     };
     let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
     let few = least(&mut adaptive(FEW).map(|w| w.all));

@@ -8,9 +8,12 @@ use crate::image_io::{ExrFile, read_picture};
 use crate::input_error::InputError;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::options::InfoOptions;
+use crate::probe_io::{ProbeEntry, ProbeFile, read_probes};
 use crate::scene::{self, Overrides, Projection, Scene};
 use glam::DVec3;
+use serde::de::IgnoredAny;
 use serde_json::{Value, json};
+use std::collections::HashMap;
 use std::path::Path;
 
 pub(super) fn run(options: &InfoOptions) -> Result<(), CliError> {
@@ -29,6 +32,8 @@ fn describe(path: &Path) -> Result<Value, InputError> {
         || std::fs::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")));
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match extension.as_str() {
+        "probes" => Ok(of_probes(&read_probes(path)?)),
+        "json" if has_key(&bytes()?, "probes") => Ok(of_probes(&read_probes(path)?)),
         "toml" | "json" => Ok(of_scene(&scene::load(path, &Overrides::default())?)),
         "obj" => Ok(of_mesh("obj", &read_obj(&name, &bytes()?)?)),
         "ply" => of_ply(path, &name),
@@ -41,7 +46,7 @@ fn describe(path: &Path) -> Result<Value, InputError> {
         }
         _ => Err(InputError::of_file(&name, "the name does not say what kind of file this is")
             .with_help(
-                "known are .toml, .json, .obj, .ply, .exr, .png, .jpg and .hdr, and of clouds .ply.gz, .xyz, .txt, \
+                "known are .toml, .json, .probes, .obj, .ply, .exr, .png, .jpg and .hdr, and of clouds .ply.gz, .xyz, .txt, \
                  .asc, .pts, .csv, .las, .laz, .e57 and .conf",
             )),
     }
@@ -73,6 +78,31 @@ fn of_scene(scene: &Scene) -> Value {
         "lights": scene.lights.iter().map(|light| &light.name).collect::<Vec<_>>(),
         "fingerprint": format!("{:016x}", scene.fingerprint),
         "warnings": scene.warnings,
+    })
+}
+
+/// Whether a text is a JSON object with this key. A scene's JSON has comments now and then, which this reader refuses: no matter.
+fn has_key(text: &[u8], key: &str) -> bool {
+    let keys = serde_json::from_slice::<HashMap<String, IgnoredAny>>(text);
+    keys.is_ok_and(|keys| keys.contains_key(key))
+}
+
+fn of_probes(file: &ProbeFile) -> Value {
+    let count = |f: fn(&ProbeEntry) -> bool| file.probes.iter().filter(|p| f(p)).count();
+    json!({
+        "kind": "probes",
+        "probes": file.probes.len(),
+        "baked": count(|p| p.sh.is_some()),
+        "in_walls": count(|p| p.buried == Some(true)),
+        "with_distances": count(|p| p.distances.is_some()),
+        "order": file.order,
+        "resolution": file.resolution,
+        "what": file.what,
+        "bounces": file.bounces,
+        "fit": file.fit,
+        "part": file.part,
+        "bounds": bounds(&file.positions()),
+        "fingerprint": file.fingerprint,
     })
 }
 

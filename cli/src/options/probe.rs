@@ -21,6 +21,7 @@ pub enum ProbeCommand {
     #[command(after_help = "Examples:\n  \
         pointillist probe bake house.toml probes.json -o baked.json\n  \
         pointillist probe bake house.toml probes.json --bounces 3 --resolution 64 -o baked.probes\n  \
+        pointillist probe bake house.toml probes.json --fit 800 --resolution 32\n  \
         pointillist probe bake house.toml probes.json --bounces 0 --part 0/4 -o part0.json\n\n\
         Then add to the scene:\n  \
         [ambient]\n  \
@@ -130,6 +131,10 @@ pub struct BakeOptions {
     /// Stop bouncing when the light changes by less than this share
     #[arg(long, value_name = "E", default_value_t = 0.005, value_parser = values::not_negative)]
     pub until: f64,
+    /// Look around from N more places between the probes, and let the probes hold what lights all places best, not what they see
+    /// themselves: fewer probes for the same error
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    pub fit: u32,
     /// What probes hold
     #[arg(long, value_name = "WHAT", default_value = "indirect")]
     pub what: What,

@@ -26,6 +26,9 @@ pub struct ProbeFile {
     /// How often light was sent on from surface to surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bounces: Option<u32>,
+    /// How many more places the probes' light is fitted to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fit: Option<u32>,
     /// Stands for the scene and the settings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fingerprint: Option<String>,
@@ -179,6 +182,7 @@ impl ProbeFile {
             resolution: self.resolution,
             what: self.what.clone(),
             bounces: self.bounces,
+            fit: self.fit,
             fingerprint: self.fingerprint.clone(),
             part: self.part.clone(),
             first: self.first,

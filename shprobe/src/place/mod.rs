@@ -2,12 +2,15 @@
 //!
 //! * [`grid`], [`random`], [`spread`]: without knowing the light.
 //! * [`adaptive`]: from candidates whose light is known, those between which the others are interpolated best.
+//! * [`fit`]: what those should hold so that all candidates are lit right.
 
 mod adaptive;
+mod fit;
 mod regular;
 mod thin;
 mod trial;
 
 pub use adaptive::{Adaptive, AdaptiveOptions, adaptive};
+pub use fit::{FitOptions, fit};
 pub use regular::{grid, random, spread};
 pub use trial::Candidates;

@@ -118,15 +118,35 @@ impl<'a> Bench<'a> {
         Ok((Locator::new(&positions, &partition), Near::new(&positions, reach), partition))
     }
 
-    fn squared_error(&self, i: usize, chosen: &[u32], cell: &Blend, near: &Near) -> f64 {
+    /// What each candidate counts.
+    pub(super) fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// From which of those chosen each candidate takes how much.
+    pub(super) fn shares(&self, chosen: &[u32]) -> Result<Vec<Shares>, ProbeError> {
+        let (locator, near, _) = self.locator(chosen)?;
+        let mut hint = Hint::default();
+        let mut one = |i: usize| {
+            let cell = locator.locate(self.candidates.positions[i], &mut hint)?;
+            Ok(self.shares_in(i, chosen, &cell, &near))
+        };
+        (0..self.count()).map(&mut one).collect()
+    }
+
+    fn shares_in(&self, i: usize, chosen: &[u32], cell: &Blend, near: &Near) -> Shares {
         let here = self.candidates.positions[i];
         let at = |probe: u32| self.candidates.positions[chosen[probe as usize] as usize];
-        let shares = match self.candidates.distances {
+        match self.candidates.distances {
             None => Shares::of_cell(cell),
             Some(maps) => by_sight(cell, here, at, near, |probe| {
                 maps[chosen[probe as usize] as usize].visibility(here - at(probe))
             }),
-        };
+        }
+    }
+
+    fn squared_error(&self, i: usize, chosen: &[u32], cell: &Blend, near: &Near) -> f64 {
+        let shares = self.shares_in(i, chosen, cell, near);
         let truth = &self.irradiance[i];
         let square: f64 = (0..truth.len())
             .map(|k| {

@@ -8,8 +8,9 @@ use std::f64::consts::PI;
 /// Smaller faces have too few texels for end corrections: [`Weights::Gregory`] is [`Weights::Paper`] there.
 pub const GREGORY_FROM: usize = 16;
 
-/// Factors of the outer three texels of a row or column: the midpoint rule with its end corrections, fourth order.
-const GREGORY: [f64; 3] = [13.0 / 12.0, 7.0 / 8.0, 25.0 / 24.0];
+/// Factors of the outer five texels of a row or column: the midpoint rule, sixth order. They integrate what the Euler–Maclaurin
+/// formula leaves at an end, −f′/24 + 7f‴/5760, of polynomials of degree up to 4 through the five samples.
+const GREGORY: [f64; 5] = [741.0 / 640.0, 3547.0 / 5760.0, 527.0 / 384.0, 1571.0 / 1920.0, 2983.0 / 2880.0];
 
 /// How much each sample of an image counts in an integral over the sphere. Whichever it is, coefficients are then scaled by
 /// 4π/ΣA, so that a constant image is projected exactly.
@@ -19,7 +20,7 @@ const GREGORY: [f64; 3] = [13.0 / 12.0, 7.0 / 8.0, 25.0 / 24.0];
 ///
 /// | rule | cube | panorama |
 /// |---|---|---|
-/// | `Gregory` | 8e-9, fourth order | 5e-9, rounding of the pixels |
+/// | `Gregory` | GREG, sixth order | 5e-9, rounding of the pixels |
 /// | `Exact` | 4e-6, second order | 5e-5, second order |
 /// | `Paper` | 2e-6, second order | the same |
 ///
@@ -27,8 +28,8 @@ const GREGORY: [f64; 3] = [13.0 / 12.0, 7.0 / 8.0, 25.0 / 24.0];
 /// texel's mean. `Gregory` integrates the smooth function through the samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Weights {
-    /// Cubes: the differential solid angle of the centre with Gregory's end corrections, factors 13/12, 7/8 and 25/24 of
-    /// the outer three texels of each row and column; below [`GREGORY_FROM`] as `Paper`. Panoramas: Fejér's rule, whose nodes the
+    /// Cubes: the differential solid angle of the centre with Gregory's end corrections, factors of
+    /// the outer five texels of each row and column; below [`GREGORY_FROM`] as `Paper`. Panoramas: Fejér's rule, whose nodes the
     /// rows' centres are.
     #[default]
     Gregory,

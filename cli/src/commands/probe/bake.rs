@@ -1,17 +1,15 @@
 //! `probe bake`.
 
+use super::rounds::{Lit, Rounds};
 use super::solids::{Outcome, Solids};
 use super::{check_output, failed, overrides, write};
 use crate::commands::Report;
 use crate::error::CliError;
-use crate::job::Progress;
-use crate::options::{BakeOptions, Inside, What};
-use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, fingerprints, look_all};
+use crate::options::{BakeOptions, What};
+use crate::pipeline::{Prepared, fingerprints};
 use crate::probe_io::{Distances, ProbeEntry, ProbeFile, read_probes};
 use crate::scene::{self, Scene};
-use glam::{DVec3, Vec3};
-use pointillist_shprobe::Field;
-use pointillist_shprobe::sh::Sh;
+use glam::DVec3;
 use std::hash::Hasher as _;
 use std::ops::Range;
 use std::path::Path;
@@ -25,12 +23,18 @@ pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
                        for one more bounce, bake again with [ambient] probes naming the merged file";
         return Err(CliError::Usage(message.to_owned()));
     }
+    if options.part.is_some() && options.fit > 0 {
+        let message = "--part and --fit do not go together: probes are fitted to one another, too";
+        return Err(CliError::Usage(message.to_owned()));
+    }
     let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
     scene.warnings.iter().for_each(|warning| report.warn(warning));
     let given = report.stats.stage("load", || read_probes(&options.probes))?;
     let prepared = Prepared::new(&scene, &report.stats).map_err(failed)?;
-    let (mut file, positions) = settled(&given, &prepared, &scene, options, &report)?;
-    let mut bake = Bake { prepared: &prepared, scene: &scene, options, report: &report, positions };
+    let solids = Solids::new(&prepared, &scene);
+    let (mut file, positions) = settled(&given, &solids, &scene, options, &report)?;
+    let bake =
+        Bake { prepared: &prepared, solids: &solids, scene: &scene, options, report: &report, positions };
     let old = if options.overwrite { None } else { Old::read(&options.output, options) };
     let (kept, marks) = bake.unchanged(old.as_ref())?;
     bake.fill(&mut file, old.as_ref(), &kept, &marks)?;
@@ -57,6 +61,7 @@ impl Old {
         let same = file.order == Some(options.order.into())
             && file.resolution == Some(options.resolution)
             && file.bounces == Some(options.bounces)
+            && file.fit.unwrap_or(0) == options.fit
             && file.what.as_deref() == Some(options.what.name());
         same.then_some(Self { file })
     }
@@ -70,7 +75,7 @@ impl Old {
 /// The probes of this run with their final positions.
 fn settled(
     given: &ProbeFile,
-    prepared: &Prepared<'_>,
+    solids: &Solids<'_>,
     scene: &Scene,
     options: &BakeOptions,
     report: &Report<'_>,
@@ -81,13 +86,13 @@ fn settled(
         resolution: Some(options.resolution),
         what: Some(options.what.name().to_owned()),
         bounces: Some(options.bounces),
+        fit: (options.fit > 0).then_some(options.fit),
         fingerprint: Some(format!("{:016x}", fingerprint(scene, options))),
         part: options.part.map(|part| part.to_string()),
         first: options.part.map(|_| range.start),
         total: options.part.map(|_| given.probes.len()),
         probes: vec![],
     };
-    let solids = Solids::new(prepared, scene);
     let (mut moved, mut dropped) = (0, 0);
     for (i, probe) in given.probes.iter().enumerate().take(range.end).skip(range.start) {
         let mut position = DVec3::from_array(probe.position);
@@ -128,7 +133,8 @@ fn part(count: usize, options: &BakeOptions) -> Result<Range<usize>, CliError> {
 fn fingerprint(scene: &Scene, options: &BakeOptions) -> u64 {
     let mut hash = XxHash3_64::default();
     hash.write(&scene::light_fingerprint(scene).to_le_bytes());
-    let numbers = [options.resolution, options.bounces, options.distances, u32::from(options.order)];
+    let numbers =
+        [options.resolution, options.bounces, options.fit, options.distances, u32::from(options.order)];
     numbers.iter().for_each(|n| hash.write(&n.to_le_bytes()));
     hash.write(&options.until.to_le_bytes());
     hash.write(&[u8::from(options.thorough)]);
@@ -140,6 +146,7 @@ fn fingerprint(scene: &Scene, options: &BakeOptions) -> u64 {
 /// One run.
 struct Bake<'a> {
     prepared: &'a Prepared<'a>,
+    solids: &'a Solids<'a>,
     scene: &'a Scene,
     options: &'a BakeOptions,
     report: &'a Report<'a>,
@@ -150,14 +157,15 @@ impl Bake<'_> {
     /// Which probes need not be baked again, and the fingerprints of what probes see.
     ///
     /// If the scene is the same, all that are there already. Otherwise those that see the same as before; with bounces, light gets
-    /// everywhere, and then all or none are kept.
+    /// everywhere, and then all or none are kept. Fitted probes are kept only if the scene is the same: what is seen between them
+    /// counts, too.
     fn unchanged(&self, old: Option<&Old>) -> Result<(Vec<bool>, Vec<String>), CliError> {
         let Self { options, report, positions, .. } = self;
         let same = format!("{:016x}", fingerprint(self.scene, options));
         let before = |i: usize| old.and_then(|old| old.at(positions[i]));
         let fresh = (0..positions.len()).filter(|&i| before(i).is_none());
         if old.is_some_and(|old| old.file.fingerprint.as_ref() == Some(&same))
-            && (options.bounces == 0 || fresh.clone().next().is_none())
+            && (options.bounces + options.fit == 0 || fresh.clone().next().is_none())
         {
             let marks = |i: usize| before(i).and_then(|p| p.fingerprint.clone());
             let mut marks: Vec<Option<String>> = (0..positions.len()).map(marks).collect();
@@ -170,7 +178,9 @@ impl Bake<'_> {
             return Ok((kept, marks.into_iter().map(Option::unwrap_or_default).collect()));
         }
         let marks = report.stats.stage("watch", || self.marks(positions))?;
-        let same = |i: usize| before(i).is_some_and(|p| p.fingerprint.as_deref() == Some(&marks[i]));
+        let same = |i: usize| {
+            options.fit == 0 && before(i).is_some_and(|p| p.fingerprint.as_deref() == Some(&marks[i]))
+        };
         let mut kept: Vec<bool> = (0..positions.len()).map(same).collect();
         let as_many = old.is_some_and(|old| old.file.probes.len() == positions.len());
         if options.bounces > 0 && !(as_many && kept.iter().all(|&k| k)) {
@@ -191,7 +201,7 @@ impl Bake<'_> {
 
     /// Bakes what is not kept, bounce after bounce.
     fn fill(
-        &mut self,
+        &self,
         file: &mut ProbeFile,
         old: Option<&Old>,
         kept: &[bool],
@@ -200,7 +210,8 @@ impl Bake<'_> {
         let stats = &self.report.stats;
         let todo: Vec<usize> = (0..self.positions.len()).filter(|&i| !kept[i]).collect();
         let at: Vec<DVec3> = todo.iter().map(|&i| self.positions[i]).collect();
-        let seen = self.bounce(&at)?;
+        let lit =
+            Rounds::new(self.prepared, self.scene, self.options, self.report, &at, self.solids).run()?;
         stats.count("probes", at.len() as u64);
         stats.skip("probes_unchanged", (self.positions.len() - at.len()) as u64);
         for (i, probe) in file.probes.iter_mut().enumerate() {
@@ -209,12 +220,11 @@ impl Bake<'_> {
             }
             probe.fingerprint = Some(marks[i].clone());
         }
-        let buried = self.buried(&seen);
-        let count = buried.iter().filter(|&&b| b).count();
+        let count = lit.iter().filter(|l| l.buried).count();
         if count > 0 {
             self.report.warn(&format!("{count} probes lie inside of walls, and light nothing"));
         }
-        for ((i, seen), buried) in todo.into_iter().zip(seen).zip(buried) {
+        for (i, Lit { seen, buried }) in todo.into_iter().zip(lit) {
             let probe = &mut file.probes[i];
             probe.buried = buried.then_some(true);
             probe.sh = Some(seen.radiance.coefficients().iter().map(DVec3::to_array).collect());
@@ -223,76 +233,4 @@ impl Bake<'_> {
         }
         Ok(())
     }
-
-    /// Looks around, lights surfaces by what was seen, and looks again.
-    ///
-    /// What lights surfaces holds all light. If glowing surfaces are to be left out in the end, another look with the light of the last
-    /// bounce but without their glow is needed.
-    fn bounce(&self, at: &[DVec3]) -> Result<Vec<Seen>, CliError> {
-        let bounces = if at.is_empty() { 0 } else { self.options.bounces };
-        let glows = self.scene.materials.iter().any(|m| m.surface.emission != Vec3::ZERO);
-        let wanted = self.options.what == What::Total || !glows;
-        let extra = usize::from(!wanted && bounces > 0);
-        let progress = Progress::new(self.options.common.progress_mode());
-        progress.begin("bake", (at.len() * (bounces as usize + 1 + extra)) as u64);
-        let mut seen = self.look(at, self.prepared.ambient(), wanted || bounces > 0, &progress)?;
-        for bounce in 1..=bounces {
-            let field = self.field(at, &seen)?;
-            let next = self.look(at, Ambient::Probes(&field), true, &progress)?;
-            let change = change(&seen, &next);
-            self.report.detail(&format!("bounce {bounce}: light changed by {:.2} %", change * 100.0));
-            seen = next;
-            if change < self.options.until || bounce == bounces {
-                if !wanted {
-                    seen = self.look(at, Ambient::Probes(&field), false, &progress)?;
-                }
-                break;
-            }
-        }
-        progress.finish();
-        Ok(seen)
-    }
-
-    fn look(
-        &self,
-        at: &[DVec3],
-        ambient: Ambient<'_>,
-        emission: bool,
-        progress: &Progress,
-    ) -> Result<Vec<Seen>, CliError> {
-        let capture =
-            CaptureOptions { resolution: self.options.resolution, emission, thorough: self.options.thorough };
-        let distances = self.options.distances as usize;
-        let options = LookOptions { capture, order: self.options.order.into(), distances };
-        let stats = &self.report.stats;
-        stats.stage("bake", || look_all(self.prepared, at, options, ambient, progress, stats)).map_err(failed)
-    }
-
-    /// The light of the bounce before.
-    fn field(&self, at: &[DVec3], seen: &[Seen]) -> Result<Field, CliError> {
-        let out = self.buried(seen);
-        let lit = |i: &usize| !out[*i];
-        let positions: Vec<DVec3> = (0..at.len()).filter(lit).map(|i| at[i]).collect();
-        let radiance: Vec<Sh> = (0..at.len()).filter(lit).map(|i| seen[i].radiance.clone()).collect();
-        let maps = (0..at.len()).filter(lit).map(|i| seen[i].distances.clone()).collect::<Option<Vec<_>>>();
-        let broken = |error: pointillist_shprobe::ProbeError| CliError::Failed(error.to_string());
-        let field = Field::new(&positions, &radiance).map_err(broken)?;
-        match maps {
-            Some(maps) => field.with_distances(maps).map_err(broken),
-            None => Ok(field),
-        }
-    }
-
-    fn buried(&self, seen: &[Seen]) -> Vec<bool> {
-        if self.options.inside == Inside::Keep { vec![false; seen.len()] } else { buried(seen) }
-    }
-}
-
-/// How much the mean light of probes changed, over the light there is.
-fn change(before: &[Seen], after: &[Seen]) -> f64 {
-    let mean = |s: &Seen| s.radiance.coefficients()[0];
-    let difference: f64 =
-        before.iter().zip(after).map(|(a, b)| (mean(a) - mean(b)).abs().element_sum()).sum();
-    let light: f64 = after.iter().map(|s| mean(s).abs().element_sum()).sum();
-    if light > 0.0 { difference / light } else { 0.0 }
 }

@@ -5,6 +5,7 @@ mod merge;
 mod place;
 mod project;
 mod query;
+mod rounds;
 mod solids;
 mod tetra;
 

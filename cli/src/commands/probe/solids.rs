@@ -45,7 +45,8 @@ impl<'a> Solids<'a> {
         Self { prepared, rooms, diagonal: (bounds.high - bounds.low).length() }
     }
 
-    fn is_free(&self, p: DVec3) -> bool {
+    /// Whether it lies in no solid.
+    pub(super) fn is_free(&self, p: DVec3) -> bool {
         self.prepared.geometry().solids_around(p).iter().all(|solid| self.rooms.contains(solid))
     }
 

@@ -1,0 +1,160 @@
+//! What probes should hold so that what lies between them is lit right.
+
+use super::trial::{Bench, Candidates};
+use crate::sh::Sh;
+use crate::sight::Shares;
+use crate::{ProbeError, parallel};
+use glam::DVec3;
+
+/// How [`fit`] weighs what it is given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct FitOptions {
+    /// As [`AdaptiveOptions::balance`](super::AdaptiveOptions::balance). Default: 0.5.
+    pub balance: f64,
+    /// How strongly a probe is held to what it saw itself, against what is seen by the candidates that it lights; 0 holds it by nothing.
+    /// Default: 0.1, found by experiment: with less there is hardly anything to be gained where candidates are dense, and where they are
+    /// not, probes follow what the few happen to see.
+    pub hold: f64,
+}
+
+impl FitOptions {
+    /// The defaults, as a constant.
+    pub const DEFAULT: Self = Self { balance: 0.5, hold: 0.1 };
+
+    /// Sets how much errors in the dark count.
+    #[must_use]
+    pub const fn with_balance(mut self, balance: f64) -> Self {
+        self.balance = balance;
+        self
+    }
+
+    /// Sets how strongly probes are held to what they saw.
+    #[must_use]
+    pub const fn with_hold(mut self, hold: f64) -> Self {
+        self.hold = hold;
+        self
+    }
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// The remainder at which the solver stops, over that at its start; and when it stops anyway.
+const ENOUGH: f64 = 1e-8;
+const MOST_STEPS: usize = 500;
+
+/// What each of the `chosen` candidates should hold as a probe so that interpolation between them comes closest, in the sense of
+/// least squares, to what all candidates saw.
+///
+/// A probe that holds what it saw is right where it is, and on one side of the truth all around if light has a peak or a hollow
+/// there; one that is fitted is a little wrong everywhere and much less so on the whole. The same idea for vertices of meshes is
+/// \[6\]. The normal equations Σ wₛ aₛaₛᵀ X = Σ wₛ aₛ Tₛ, with a row aₛ of shares for each candidate, are solved by conjugate gradients
+/// from what the probes saw.
+///
+/// # Errors
+/// As [`adaptive`](super::adaptive), and [`ProbeError::NoSuchProbe`] for a number that is no candidate.
+pub fn fit(candidates: Candidates<'_>, chosen: &[u32], options: &FitOptions) -> Result<Vec<Sh>, ProbeError> {
+    let bench = Bench::new(candidates, options.balance)?;
+    if let Some(&index) = chosen.iter().find(|&&i| i as usize >= bench.count()) {
+        return Err(ProbeError::NoSuchProbe { index });
+    }
+    let equations = Equations::new(&bench, chosen, options.hold)?;
+    let count = candidates.radiance[0].coefficients().len();
+    let saw = |i: usize| candidates.radiance[i].coefficients();
+    let start: Vec<Vec<DVec3>> = chosen.iter().map(|&i| saw(i as usize).to_vec()).collect();
+    // What is missing at the candidates is what there is to be gained.
+    let missing: Vec<Vec<DVec3>> = parallel::map(bench.count(), |s| {
+        let mut rest = saw(s).to_vec();
+        for (p, share) in equations.rows[s].iter() {
+            rest.iter_mut().zip(&start[p as usize]).for_each(|(r, x)| *r -= *x * share);
+        }
+        rest
+    });
+    let gain = solve(&equations, equations.gathered(&missing, count), count);
+    let sum =
+        |(x, dx): (Vec<DVec3>, Vec<DVec3>)| Sh::new(x.into_iter().zip(dx).map(|(a, b)| a + b).collect());
+    start.into_iter().zip(gain).map(sum).collect()
+}
+
+/// The normal equations, never written out.
+struct Equations {
+    rows: Vec<Shares>,
+    weights: Vec<f64>,
+    /// What holds each probe.
+    held: Vec<f64>,
+}
+
+impl Equations {
+    fn new(bench: &Bench<'_>, chosen: &[u32], hold: f64) -> Result<Self, ProbeError> {
+        let rows = bench.shares(chosen)?;
+        let weights = bench.weights().to_vec();
+        let mut lit = vec![0.0; chosen.len()];
+        for (row, w) in rows.iter().zip(&weights) {
+            row.iter().for_each(|(p, share)| lit[p as usize] += w * share);
+        }
+        // A probe that lights no candidate keeps what it saw, whatever that weighs.
+        let held = lit.into_iter().map(|lit| if lit > 0.0 { hold * lit } else { 1.0 }).collect();
+        Ok(Self { rows, weights, held })
+    }
+
+    /// Σ wₛ aₛ rₛ: what candidates ask of probes.
+    fn gathered(&self, rest: &[Vec<DVec3>], count: usize) -> Vec<Vec<DVec3>> {
+        let mut sums = vec![vec![DVec3::ZERO; count]; self.held.len()];
+        for ((row, w), rest) in self.rows.iter().zip(&self.weights).zip(rest) {
+            for (p, share) in row.iter() {
+                add(&mut sums[p as usize], rest, w * share);
+            }
+        }
+        sums
+    }
+
+    /// The matrix times coefficients of each probe.
+    fn times(&self, x: &[Vec<DVec3>], count: usize) -> Vec<Vec<DVec3>> {
+        let lit: Vec<Vec<DVec3>> = parallel::map(self.rows.len(), |s| {
+            let mut sum = vec![DVec3::ZERO; count];
+            self.rows[s].iter().for_each(|(p, share)| add(&mut sum, &x[p as usize], share));
+            sum
+        });
+        let mut product = self.gathered(&lit, count);
+        product.iter_mut().zip(x).zip(&self.held).for_each(|((sum, x), held)| add(sum, x, *held));
+        product
+    }
+}
+
+/// Conjugate gradients from 0, all coefficients at once: they share a matrix.
+fn solve(equations: &Equations, mut rest: Vec<Vec<DVec3>>, count: usize) -> Vec<Vec<DVec3>> {
+    let mut x = vec![vec![DVec3::ZERO; count]; rest.len()];
+    let mut direction = rest.clone();
+    let mut square = dot(&rest, &rest);
+    let enough = square * ENOUGH * ENOUGH;
+    for _ in 0..MOST_STEPS {
+        if square <= enough {
+            break;
+        }
+        let product = equations.times(&direction, count);
+        let step = square / dot(&direction, &product);
+        for i in 0..x.len() {
+            add(&mut x[i], &direction[i], step);
+            add(&mut rest[i], &product[i], -step);
+        }
+        let next = dot(&rest, &rest);
+        let turn = next / square;
+        for (d, r) in direction.iter_mut().flatten().zip(rest.iter().flatten()) {
+            *d = *r + *d * turn;
+        }
+        square = next;
+    }
+    x
+}
+
+fn add(sum: &mut [DVec3], x: &[DVec3], factor: f64) {
+    sum.iter_mut().zip(x).for_each(|(s, x)| *s += *x * factor);
+}
+
+fn dot(a: &[Vec<DVec3>], b: &[Vec<DVec3>]) -> f64 {
+    a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a.dot(*b)).sum()
+}
