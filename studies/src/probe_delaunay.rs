@@ -160,7 +160,21 @@ pub(crate) fn build_table(quick: bool) -> Result<[String; 2], ProbeError> {
             }
         }
     }
+    text += &other_crate();
     Ok([text, goals])
+}
+
+/// What the crate `delaunay` takes for as many points as the smallest sets have: larger ones take it minutes.
+fn other_crate() -> String {
+    let Some(peer) = Peer::named("POINTILLIST_DELAUNAY") else {
+        return "\nThe crate `delaunay` was skipped: `POINTILLIST_DELAUNAY` names no program; `studies/peers/delaunay` is one.\n".to_owned();
+    };
+    let sets = [("random 432", random(432)), ("grid 12×6×6", grid([12, 6, 6]))];
+    let found = sets.map(|(name, points)| match peer.run(&points, &[]) {
+        Some(took) => format!("{name}: {:.0} ms, {} tetrahedra", 1e3 * took.cpu, took.cells),
+        None => format!("{name}: it fails"),
+    });
+    format!("\nThe crate `delaunay`, CPU on all threads: {}.\n", found.join("; "))
 }
 
 /// What the peer follows: a closed curve through the cube.

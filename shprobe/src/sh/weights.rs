@@ -20,7 +20,7 @@ const GREGORY: [f64; 5] = [741.0 / 640.0, 3547.0 / 5760.0, 527.0 / 384.0, 1571.0
 ///
 /// | rule | cube | panorama |
 /// |---|---|---|
-/// | `Gregory` | GREG, sixth order | 5e-9, rounding of the pixels |
+/// | `Gregory` | 3e-10, rounding of the texels; 1e-7 with 32², sixth order | 5e-9, rounding of the pixels |
 /// | `Exact` | 4e-6, second order | 5e-5, second order |
 /// | `Paper` | 2e-6, second order | the same |
 ///
