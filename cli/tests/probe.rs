@@ -4,6 +4,7 @@ mod common;
 
 use common::Folder;
 use pointillist_cli::image_io::read_exr_picture;
+use pointillist_shprobe::sh::Sh;
 use serde_json::Value;
 use std::f64::consts::PI;
 
@@ -280,6 +281,11 @@ fn fitted_probes_light_what_lies_between_them_better() {
     };
     let truth = light("f.json");
     let error = |file: &str| -> f64 { light(file).iter().zip(&truth).map(|(a, b)| (a - b).powi(2)).sum() };
+    let shares = folder.prints(&["probe", "query", "fit.json", "q.txt", "--shares"]);
+    let sum = |line: &str| -> f64 {
+        line.split(' ').skip(3).map(|s| s.split_once(':').unwrap().1.parse::<f64>().unwrap()).sum()
+    };
+    assert!(shares.lines().all(|line| (sum(line) - 1.0).abs() < 1e-3), "{shares}");
     let (with, without) = (error("fit.json"), error("plain.json"));
     assert!(with < 0.7 * without, "{with} against {without}");
     folder.fails(
@@ -287,4 +293,30 @@ fn fitted_probes_light_what_lies_between_them_better() {
         2,
         &["--part and --fit"],
     );
+}
+
+#[test]
+fn deringed_probes_light_nothing_negatively() {
+    let folder = folder();
+    // A small bright panel far away: nine coefficients ring.
+    folder.write("panel.obj", "mtllib box.mtl\nusemtl glow\nv -0.3 -0.3 -3\nv 0.3 -0.3 -3\nv 0.3 0.3 -3\nv -0.3 0.3 -3\nf 1 2 3 4\n");
+    folder.write("panel.toml", BOX_SCENE.replace("box.obj", "panel.obj"));
+    folder.write("one.json", r#"{"probes":[{"position":[0,0,0]}]}"#);
+    let sh = |option: &[&str]| -> Sh {
+        let line =
+            ["probe", "bake", "panel.toml", "one.json", "--what", "total", "--bounces", "0", "-o", "b.json"];
+        folder.prints(&[&line[..], option].concat());
+        let of = |c: &Value| glam::DVec3::splat(c[0].as_f64().unwrap());
+        Sh::new(json(&folder, "b.json")["probes"][0]["sh"].as_array().unwrap().iter().map(of).collect())
+            .unwrap()
+    };
+    let least = |sh: &Sh| {
+        (0..60)
+            .map(|i| (f64::from(i) * PI / 60.0).sin_cos())
+            .map(|(s, c)| sh.irradiance(glam::dvec3(s, 0.0, c)).x)
+            .fold(f64::INFINITY, f64::min)
+    };
+    let (plain, damped) = (sh(&[]), sh(&["--dering"]));
+    assert!(least(&plain) < -1e-3 * plain.irradiance(-glam::DVec3::Z).x, "{}", least(&plain));
+    assert!(least(&damped) > -1e-9, "{}", least(&damped));
 }

@@ -103,6 +103,11 @@ impl Field {
         self
     }
 
+    /// How far positions on a surface are lifted off it.
+    pub const fn bias(&self) -> f64 {
+        self.bias
+    }
+
     /// The cells.
     pub const fn partition(&self) -> &Partition {
         &self.partition

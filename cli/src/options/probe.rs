@@ -141,6 +141,9 @@ pub struct BakeOptions {
     /// Texels on a side of the map of how far each probe sees, against light through walls; 0 for none
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub distances: u32,
+    /// Damp the harmonics of a probe where irradiance would be negative
+    #[arg(long)]
+    pub dering: bool,
     /// Compute every shadow and texel within a pixel, not just enough of them for the sum
     #[arg(long)]
     pub thorough: bool,
@@ -260,6 +263,9 @@ pub struct QueryOptions {
     /// Text with `x y z nx ny nz` a line; `-` is standard input
     #[arg(default_value = "-")]
     pub points: PathBuf,
+    /// After each irradiance, which probes it comes from: `number:share`, the largest share first
+    #[arg(long)]
+    pub shares: bool,
     /// Where results go.
     #[command(flatten)]
     pub output: TextOutput,

@@ -59,6 +59,11 @@ impl ProbeFile {
         self.probes.iter().map(|p| DVec3::from_array(p.position)).collect()
     }
 
+    /// The numbers of the probes that light something: those of a field are counted among these.
+    pub fn lit_numbers(&self) -> Vec<usize> {
+        self.lit().map(|(i, _)| i).collect()
+    }
+
     /// The probes that light something, with their numbers: all that do not lie inside of walls.
     fn lit(&self) -> impl Iterator<Item = (usize, &ProbeEntry)> {
         self.probes.iter().enumerate().filter(|(_, p)| p.buried != Some(true))

@@ -137,7 +137,7 @@ fn fingerprint(scene: &Scene, options: &BakeOptions) -> u64 {
         [options.resolution, options.bounces, options.fit, options.distances, u32::from(options.order)];
     numbers.iter().for_each(|n| hash.write(&n.to_le_bytes()));
     hash.write(&options.until.to_le_bytes());
-    hash.write(&[u8::from(options.thorough)]);
+    hash.write(&[u8::from(options.thorough), u8::from(options.dering)]);
     hash.write(options.what.name().as_bytes());
     hash.write(env!("CARGO_PKG_VERSION").as_bytes());
     hash.finish()
@@ -195,7 +195,8 @@ impl Bake<'_> {
         let numbers =
             fingerprints(self.prepared, positions, emission, ambient, &self.report.stats).map_err(failed)?;
         // With settings that change what is made of the same sight.
-        let settings = [self.options.distances, u32::from(self.options.thorough)];
+        let settings =
+            [self.options.distances, u32::from(self.options.thorough) + 2 * u32::from(self.options.dering)];
         Ok(numbers.into_iter().map(|n| format!("{n:016x}{:02x}{}", settings[0], settings[1])).collect())
     }
 

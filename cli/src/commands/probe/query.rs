@@ -6,11 +6,13 @@ use crate::error::CliError;
 use crate::options::QueryOptions;
 use crate::probe_io::{read_probes, read_rows};
 use glam::{DVec3, Vec3};
+use pointillist_shprobe::{Field, Hint, ProbeError};
 
 pub(super) fn run(options: &QueryOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
     let name = options.probes.display().to_string();
-    let field = report.stats.stage("load", || read_probes(&options.probes)?.field(&name))?;
+    let file = report.stats.stage("load", || read_probes(&options.probes))?;
+    let field = report.stats.stage("load", || file.field(&name))?;
     let rows = report.stats.stage("load", || read_rows::<6>(&options.points, "x y z nx ny nz"))?;
     let query = |&[x, y, z, nx, ny, nz]: &[f64; 6]| -> (DVec3, Vec3) {
         (DVec3::new(x, y, z), DVec3::new(nx, ny, nz).normalize_or_zero().as_vec3())
@@ -21,10 +23,30 @@ pub(super) fn run(options: &QueryOptions) -> Result<(), CliError> {
         return Err(CliError::Failed(format!("the point {x} {y} {z} has no normal: nx, ny and nz are 0")));
     }
     let light = report.stats.stage("query", || field.irradiance_all(&queries));
-    let light = light.map_err(|error| CliError::Failed(error.to_string()))?;
+    let light = light.map_err(broken)?;
+    let shares =
+        if options.shares { shares(&field, &queries, &file.lit_numbers()).map_err(broken)? } else { vec![] };
     report.stats.count("queries", light.len() as u64);
     write_text(&options.output.path, |output| {
-        light.iter().try_for_each(|c| writeln!(output, "{} {} {}", c.x, c.y, c.z))
+        light.iter().enumerate().try_for_each(|(i, c)| {
+            let shares = shares.get(i).map_or("", String::as_str);
+            writeln!(output, "{} {} {}{shares}", c.x, c.y, c.z)
+        })
     })?;
     report.finish()
+}
+
+fn broken(error: ProbeError) -> CliError {
+    CliError::Failed(error.to_string())
+}
+
+/// For each query ` number:share` of the probes that light it, the largest first.
+fn shares(field: &Field, queries: &[(DVec3, Vec3)], numbers: &[usize]) -> Result<Vec<String>, ProbeError> {
+    let mut hint = Hint::default();
+    let mut one = |&(position, normal): &(DVec3, Vec3)| {
+        let mut shares = field.shares(position + normal.as_dvec3() * field.bias(), &mut hint)?;
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        Ok(shares.iter().map(|(probe, share)| format!(" {}:{share:.4}", numbers[*probe as usize])).collect())
+    };
+    queries.iter().map(&mut one).collect()
 }

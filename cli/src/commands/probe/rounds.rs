@@ -124,6 +124,9 @@ impl<'a> Rounds<'a> {
             if let Some(radiance) = if buried { None } else { held.next() } {
                 seen.radiance = radiance;
             }
+            if self.options.dering {
+                seen.radiance = seen.radiance.deringed();
+            }
             Lit { seen, buried }
         };
         Ok(seen.into_iter().zip(buried).take(self.probes).map(one).collect())
