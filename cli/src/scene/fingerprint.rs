@@ -102,9 +102,9 @@ impl Fingerprint {
     }
 
     fn material(&mut self, material: &Material) {
-        let Surface { model, diffuse, specular, shininess, emission, opacity } = material.surface;
+        let Surface { model, diffuse, specular, shininess, roughness, emission, opacity } = material.surface;
         self.text(&format!("{model:?} {:?}", material.wrap));
-        [diffuse, specular, emission, Vec3::new(shininess, opacity, 0.0)]
+        [diffuse, specular, emission, Vec3::new(shininess, opacity, roughness)]
             .into_iter()
             .for_each(|c| self.color(c));
         self.option(material.diffuse_map);

@@ -205,6 +205,7 @@ fn surface(material: &MtlMaterial) -> shade::Material {
         diffuse: material.diffuse.unwrap_or(Vec3::splat(default_albedo)),
         specular,
         shininess,
+        roughness: 1.0,
         emission: material.emission.unwrap_or(Vec3::ZERO),
         opacity: material.opacity.unwrap_or(1.0),
     }

@@ -85,6 +85,7 @@ fn read(mut table: Table<'_>) -> Result<MaterialDescription, InputError> {
         diffuse: table.color("diffuse")?.unwrap_or(Vec3::splat(default_albedo)),
         specular: table.color("specular")?.unwrap_or(Vec3::ZERO),
         shininess: table.number_where("shininess", "0 or more", |n| n >= 0.0)?.unwrap_or(0.0) as f32,
+        roughness: 1.0,
         emission: table.color("emission")?.unwrap_or(Vec3::ZERO),
         opacity: table.number_where("opacity", "from 0 to 1", |n| (0.0..=1.0).contains(&n))?.unwrap_or(1.0)
             as f32,
