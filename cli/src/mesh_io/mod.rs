@@ -8,7 +8,7 @@ mod obj_lines;
 mod ply;
 mod triangulate;
 
-pub use mtl::{MtlMaterial, read_mtl};
+pub use mtl::{MtlMap, MtlMaterial, read_mtl};
 pub use obj::read_obj;
 pub use ply::read_ply;
 pub use triangulate::triangulate;

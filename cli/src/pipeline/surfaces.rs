@@ -1,11 +1,12 @@
 //! A scene's materials as the renderer sees them: opacity, and textures summed up for exact means.
 
-use crate::scene::{Material, NONE, Scene, Texture};
+use super::detail_maps::{DetailMaps, DetailTable, texel_wrap};
+use crate::scene::{Details, Material, NONE, Scene, Texture};
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_micropoint::{
-    Geometry, MicropointError, Surface, SurfacePoint, TexelCorner, TexelSums, TexelWrap, TexturedOpacity,
+    Geometry, MicropointError, Surface, SurfacePoint, TexelCorner, TexelSums, TexturedOpacity,
 };
-use pointillist_shade::Wrap;
+use pointillist_shade::Model;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -26,6 +27,8 @@ pub(crate) struct Surfaces {
     surface_of: Vec<u32>,
     surfaces: Vec<Surface>,
     material_of: Vec<u32>,
+    /// For each material; `None` for one of colour and opacity alone.
+    details: Vec<Option<DetailMaps>>,
 }
 
 /// What textures say of a visible piece.
@@ -48,13 +51,47 @@ impl Surfaces {
             textures.push(texture.clone());
         }
         let (surfaces, surface_of) = surfaces_by_material(scene, &textures);
-        let any_texture = textures.iter().any(|t| !matches!(**t, Textured::Nothing));
+        let details = details_by_material(scene)?;
+        let any_detail = details.iter().flatten().any(DetailMaps::any);
+        let any_texture = any_detail || textures.iter().any(|t| !matches!(**t, Textured::Nothing));
         let uv_of = if any_texture { corner_uvs(scene) } else { Vec::new() };
-        Ok(Self { textures, uv_of, surface_of, surfaces, material_of: scene.mesh.material_of.clone() })
+        let material_of = scene.mesh.material_of.clone();
+        Ok(Self { textures, uv_of, surface_of, surfaces, material_of, details })
     }
 
     pub(crate) fn geometry(&self, scene: &Scene) -> Result<Geometry, MicropointError> {
         Geometry::new(&scene.mesh.positions, &scene.mesh.triangles, &self.surface_of, &self.surfaces)
+    }
+
+    /// Everything but one object. Triangles keep their numbers.
+    pub(crate) fn geometry_without(&self, scene: &Scene, object: u32) -> Result<Geometry, MicropointError> {
+        let mesh = &scene.mesh;
+        // A triangle without area is never seen.
+        let hidden = |(t, &[a, b, c]): (usize, &[u32; 3])| {
+            if mesh.object_of[t] == object { [a; 3] } else { [a, b, c] }
+        };
+        let triangles: Vec<[u32; 3]> = mesh.triangles.iter().enumerate().map(hidden).collect();
+        Geometry::new(&mesh.positions, &triangles, &self.surface_of, &self.surfaces)
+    }
+
+    /// The maps of a triangle's material beyond colour and opacity; `None` if it has nothing beyond them.
+    pub(super) fn details(&self, triangle: u32) -> Option<&DetailMaps> {
+        self.details[self.material_of[triangle as usize] as usize].as_ref()
+    }
+
+    /// Texture coordinates of a triangle's corners.
+    pub(super) fn uv(&self, triangle: u32) -> [DVec2; 3] {
+        self.uv_of.get(triangle as usize).copied().unwrap_or_default()
+    }
+
+    /// Mean of a map over a polygon of a triangle.
+    pub(super) fn mean<const N: usize>(
+        &self,
+        triangle: u32,
+        polygon: &[SurfacePoint],
+        map: &TexelSums<N>,
+    ) -> [f64; N] {
+        map.mean(self.corners(triangle, polygon, map).as_slice())
     }
 
     fn textured(&self, triangle: u32) -> &Textured {
@@ -148,6 +185,15 @@ fn surfaces_by_material(scene: &Scene, textures: &[std::sync::Arc<Textured>]) ->
     (surfaces, mesh.material_of.iter().enumerate().map(surface).collect())
 }
 
+fn details_by_material(scene: &Scene) -> Result<Vec<Option<DetailMaps>>, MicropointError> {
+    let mut table = DetailTable::default();
+    let mut maps = |m: &Material| {
+        let beyond = m.details != Details::default() || m.surface.model == Model::Ggx;
+        beyond.then(|| table.maps(&m.details, scene)).transpose()
+    };
+    scene.materials.iter().map(&mut maps).collect()
+}
+
 /// Texture coordinates of each triangle's corners; zero where it has none.
 fn corner_uvs(scene: &Scene) -> Vec<[DVec2; 3]> {
     let uv = |i: u32| if i == NONE { DVec2::ZERO } else { scene.mesh.uvs[i as usize] };
@@ -158,11 +204,7 @@ fn corner_uvs(scene: &Scene) -> Vec<[DVec2; 3]> {
 }
 
 fn sum_up(material: &Material, textures: &[Texture]) -> Result<Textured, MicropointError> {
-    let wrap = match material.wrap {
-        Wrap::Clamp => TexelWrap::Clamp,
-        Wrap::Mirror => TexelWrap::Mirror,
-        _ => TexelWrap::Repeat,
-    };
+    let wrap = texel_wrap(material.wrap);
     let color = material.diffuse_map.map(|i| &textures[i]);
     let opacity = material.opacity_map.map(|i| &textures[i]);
     Ok(match (color, opacity) {

@@ -1,6 +1,6 @@
 //! One number for everything that a picture depends on.
 
-use super::{AmbientLight, Material, Mesh, Projection, Resolution, Scene, Texels, Texture};
+use super::{AmbientLight, Details, Material, Mesh, Projection, Resolution, Scene, Texels, Texture};
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade::{Falloff, Light, Material as Surface};
 use std::hash::Hasher as _;
@@ -39,6 +39,7 @@ pub fn of_light(scene: &Scene) -> u64 {
     match &scene.ambient {
         AmbientLight::Color(color) => hash.color(*color),
         AmbientLight::Probes { fingerprint, .. } => hash.int(*fingerprint),
+        AmbientLight::Environment => hash.text("environment"),
     }
     hash.0.finish()
 }
@@ -109,6 +110,9 @@ impl Fingerprint {
             .for_each(|c| self.color(c));
         self.option(material.diffuse_map);
         self.option(material.opacity_map);
+        if material.details != Details::default() {
+            self.text(&format!("{:?}", material.details));
+        }
     }
 
     fn texture(&mut self, texture: &Texture) {

@@ -2,12 +2,12 @@
 
 use super::builtin::Generated;
 use super::description::{
-    AmbientDescription, Description, FileReference, ObjectDescription, TextureReference,
+    AmbientDescription, Description, FileReference, ObjectDescription, RenderDescription, TextureReference,
 };
 use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene};
-use super::{fingerprint, framing, load, smooth};
+use super::{auto_uv, fingerprint, framing, load, smooth};
 use crate::input_error::InputError;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::probe_io::read_probes;
@@ -43,7 +43,7 @@ pub(super) fn resolve(
     let [width, height] = description.size;
     let aspect = f64::from(width) / f64::from(height);
     let camera = framing::place(description, &builder.mesh, aspect)?;
-    let shading = description.shading.unwrap_or(if builder.mesh.normals.is_empty() {
+    let shading = description.render.shading.unwrap_or(if builder.mesh.normals.is_empty() {
         Interpolation::Flat
     } else {
         Interpolation::Phong
@@ -52,8 +52,8 @@ pub(super) fn resolve(
         camera,
         image: ImageSettings { width, height, background: description.background, environment },
         render: RenderSettings {
-            cells_per_pixel: description.subpixel,
-            occlusion: description.occlusion,
+            cells_per_pixel: description.render.subpixel,
+            occlusion: description.render.occlusion,
             shading,
         },
         mesh: builder.mesh,
@@ -74,6 +74,14 @@ pub(super) fn resolve(
 fn ambient(description: &Description, folder: &Path) -> Result<AmbientLight, InputError> {
     match &description.ambient {
         AmbientDescription::Color(color) => Ok(AmbientLight::Color(*color)),
+        AmbientDescription::Environment => match description.environment {
+            Some(_) => Ok(AmbientLight::Environment),
+            None => {
+                let message = "`ambient.environment` needs `image.environment`, and there is none";
+                Err(InputError::of_file(description.document.name(), message)
+                    .with_help("name a map: [image] environment = \"sky.hdr\""))
+            }
+        },
         AmbientDescription::Probes(file) => {
             let path = folder.join(&file.path);
             if !path.is_file() {
@@ -203,7 +211,7 @@ impl<'a> Builder<'a> {
         append_indices(&mut mesh.triangles, &file.triangles, first_position, order);
         append_indices(&mut mesh.uv_of, &file.uv_of, mesh.uvs.len(), order);
         mesh.uvs.extend_from_slice(&file.uvs);
-        let shading = self.description.shading;
+        let RenderDescription { shading, normals, crease_rad, .. } = self.description.render;
         if shading == Some(Interpolation::Flat) {
             mesh.normal_of.resize(mesh.triangles.len(), [NONE; 3]);
         } else {
@@ -211,12 +219,20 @@ impl<'a> Builder<'a> {
             let to_world = normal_matrix(world.matrix3);
             mesh.normals.extend(file.unit_normals().map(|n| turned(to_world, n)));
             if shading.is_some() {
-                smooth::fill(mesh, first_triangle, first_position);
+                smooth::fill(mesh, first_triangle, first_position, normals, crease_rad);
             }
         }
         let index = mesh.objects.len() as u32;
         mesh.object_of.resize(mesh.triangles.len(), index);
         mesh.material_of.extend(file.material_of.iter().map(|&m| materials[m as usize]));
+        let warnings = &mut self.warnings;
+        auto_uv::fill(mesh, file, first_triangle, self.materials.list(), |material| {
+            warnings.push(format!(
+                "{}: material `{material}` has maps, but the mesh has no texture coordinates; those of a box are used \
+                 (uv = \"box\" in the material says so without this warning)",
+                object.mesh.path
+            ));
+        });
         let name = object.name.clone().unwrap_or_else(|| object.mesh.path.clone());
         mesh.objects.push(Object { name, two_sided: object.two_sided });
         Ok(())
