@@ -81,16 +81,9 @@ fn broken_toml_shows_the_place() {
 fn what_is_not_there_yet_is_said() {
     scene_error(
         "[[light]]",
-        "[ambient]\nprobes = \"x.json\"\n[[light]]",
-        &["`ambient.probes` is not in this version yet"],
+        "[ambient]\nradiosity = \"x.json\"\n[[light]]",
+        &["`ambient.radiosity` is not in this version yet"],
     );
-    scene_error(
-        "[[light]]",
-        "[material.a]\nmodel = \"ggx\"\n[[light]]",
-        &["`material.a.model`", "not in this version yet"],
-    );
-    let folder = Folder::new();
-    folder.fails(&["check", "model.glb"], 3, &["glTF is not in this version yet"]);
 }
 
 #[test]

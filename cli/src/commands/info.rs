@@ -6,6 +6,7 @@ use crate::cloud_io::{self, CloudOptions, CloudSummary, Pose};
 use crate::error::CliError;
 use crate::image_io::{ExrFile, read_picture};
 use crate::input_error::InputError;
+use crate::mesh_io::gltf::read_gltf;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::options::InfoOptions;
 use crate::scene::{self, Overrides, Projection, Scene};
@@ -32,6 +33,7 @@ fn describe(path: &Path) -> Result<Value, InputError> {
         "toml" | "json" => Ok(of_scene(&scene::load(path, &Overrides::default())?)),
         "obj" => Ok(of_mesh("obj", &read_obj(&name, &bytes()?)?)),
         "ply" => of_ply(path, &name),
+        "gltf" | "glb" => of_gltf(&extension, &name, path, &bytes()?),
         "conf" => of_conf(path),
         "gz" | "xyz" | "txt" | "asc" | "pts" | "csv" | "las" | "laz" | "e57" => Ok(of_cloud(&summary(path)?)),
         "exr" => of_exr(&name, &bytes()?),
@@ -41,7 +43,7 @@ fn describe(path: &Path) -> Result<Value, InputError> {
         }
         _ => Err(InputError::of_file(&name, "the name does not say what kind of file this is")
             .with_help(
-                "known are .toml, .json, .obj, .ply, .exr, .png, .jpg and .hdr, and of clouds .ply.gz, .xyz, .txt, \
+                "known are .toml, .json, .obj, .ply, .gltf, .glb, .exr, .png, .jpg and .hdr, and of clouds .ply.gz, .xyz, .txt, \
                  .asc, .pts, .csv, .las, .laz, .e57 and .conf",
             )),
     }
@@ -88,6 +90,21 @@ fn of_mesh(format: &str, mesh: &FileMesh) -> Value {
         "material_files": mesh.material_files,
         "bounds": bounds(&mesh.positions),
     })
+}
+
+fn of_gltf(format: &str, name: &str, path: &Path, bytes: &[u8]) -> Result<Value, InputError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let open =
+        |file: &str| std::fs::read(folder.join(file)).map_err(|error| format!("cannot be read: {error}"));
+    let mesh = read_gltf(name, bytes, &open)?;
+    let mut value = of_mesh(format, &mesh);
+    if let Some(model) = &mesh.gltf {
+        value["images"] = json!(model.images.len());
+        value["cameras"] = json!(model.cameras.len());
+        value["lights"] = json!(model.lights.len());
+        value["warnings"] = json!(model.warnings);
+    }
+    Ok(value)
 }
 
 /// A mesh if it has faces, a cloud otherwise.

@@ -1,7 +1,8 @@
-//! Meshes from files: OBJ with MTL, and PLY.
+//! Meshes from files: OBJ with MTL, PLY, and glTF.
 //!
 //! Readers take bytes and give a [`FileMesh`] or an error with its line; they open no files.
 
+pub mod gltf;
 mod mtl;
 mod obj;
 mod obj_lines;
@@ -36,4 +37,8 @@ pub struct FileMesh {
     pub material_names: Vec<String>,
     /// Files that should define them.
     pub material_files: Vec<String>,
+    /// Linear colours that multiply the diffuse albedo: none, or one for each position.
+    pub colors: Vec<Vec3>,
+    /// What a glTF holds besides.
+    pub gltf: Option<std::sync::Arc<gltf::GltfModel>>,
 }

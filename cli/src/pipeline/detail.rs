@@ -36,7 +36,8 @@ impl Shader<'_> {
             m.diffuse *= 1.0 - metallic;
         }
         self.tilt(details, &means, surface);
-        means.occlusion
+        let share = details.occlusion.map_or(1.0, |(_, strength)| strength);
+        1.0 + share * (means.occlusion - 1.0)
     }
 
     fn tilt(&self, details: &Details, means: &DetailMeans, s: &mut Surface) {

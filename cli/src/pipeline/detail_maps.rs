@@ -64,7 +64,7 @@ impl DetailTable {
             shininess: self.number(details.shininess_map, scene)?,
             roughness: self.number(details.roughness_map, scene)?,
             metallic: self.number(details.metallic_map, scene)?,
-            occlusion: self.number(details.occlusion_map, scene)?,
+            occlusion: self.number(details.occlusion.map(|(map, _)| map), scene)?,
             slope: match details.bump {
                 Some(bump) => self.slope(bump.map, scene)?,
                 None => None,

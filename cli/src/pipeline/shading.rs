@@ -13,7 +13,7 @@ use crate::job::{Stats, ThreadClock};
 use crate::scene::{NONE, Scene};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Face, Fragment, LensKind, Micropoint, SurfacePoint, Tile, View};
-use pointillist_shade::{Interpolation, Material, face_normal, interpolate_normal};
+use pointillist_shade::{Interpolation, Material, face_normal, interpolate_color, interpolate_normal};
 use pointillist_shadow::ShadowCounts;
 use pointillist_shprobe::Hint;
 
@@ -157,6 +157,9 @@ impl<'a> Shader<'a> {
         let (barycentric, to_eye) = (at.barycentric.as_vec3(), to_eye.as_vec3());
         let described = &self.scene.materials[self.scene.mesh.material_of[face.id as usize] as usize];
         let mut material = self.textured(tile, m, face, described.surface, polygon);
+        if !self.scene.mesh.colors.is_empty() {
+            material.diffuse *= self.vertex_color(face.id, barycentric);
+        }
         if !self.emission {
             material.emission = Vec3::ZERO;
         }
@@ -242,6 +245,11 @@ impl<'a> Shader<'a> {
             polygon.extend(tile.outline(fragment).iter().map(|&v| face.point(tile.lens(), v)));
             each(polygon, fragment.weight as f32);
         }
+    }
+
+    fn vertex_color(&self, triangle: u32, barycentric: Vec3) -> Vec3 {
+        let mesh = &self.scene.mesh;
+        interpolate_color(mesh.triangles[triangle as usize].map(|v| mesh.colors[v as usize]), barycentric)
     }
 
     /// Corners of a triangle.

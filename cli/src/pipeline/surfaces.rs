@@ -180,8 +180,11 @@ fn surfaces_by_material(scene: &Scene, textures: &[std::sync::Arc<Textured>]) ->
         surfaces.push(Surface { opacity, textured_opacity, two_sided: false });
     }
     let mesh = &scene.mesh;
-    let two_sided = |t: usize| mesh.objects.get(mesh.object_of[t] as usize).is_none_or(|o| o.two_sided);
-    let surface = |(t, &m): (usize, &u32)| 2 * m + u32::from(!two_sided(t));
+    let two_sided = |t: usize, m: u32| {
+        let object = mesh.objects.get(mesh.object_of[t] as usize);
+        object.is_none_or(|o| o.two_sided) && !scene.materials[m as usize].details.one_sided
+    };
+    let surface = |(t, &m): (usize, &u32)| 2 * m + u32::from(!two_sided(t, m));
     (surfaces, mesh.material_of.iter().enumerate().map(surface).collect())
 }
 

@@ -17,8 +17,8 @@ pub struct Details {
     pub metallic_map: Option<Map>,
     /// Multiplies the emission.
     pub emission_map: Option<Map>,
-    /// The share of ambient and mirrored light that arrives.
-    pub occlusion_map: Option<Map>,
+    /// The share of ambient and mirrored light that arrives, and how much of the map counts.
+    pub occlusion: Option<(Map, f32)>,
     /// Heights.
     pub bump: Option<Bump>,
     /// Normals in the texture's own frame, and the factor on their x and y.
@@ -35,6 +35,8 @@ pub struct Details {
     pub surroundings: Surroundings,
     /// Texture coordinates made from positions instead of those of the mesh.
     pub uv: Option<AutoUv>,
+    /// Whether the back is not drawn.
+    pub one_sided: bool,
 }
 
 /// One number or colour per texel.
@@ -114,7 +116,7 @@ impl Details {
             self.roughness_map,
             self.metallic_map,
             self.emission_map,
-            self.occlusion_map,
+            self.occlusion.map(|(map, _)| map),
         ]
         .into_iter()
     }

@@ -95,7 +95,7 @@ impl Fingerprint {
     fn mesh(&mut self, mesh: &Mesh) {
         self.int(mesh.positions.len() as u64);
         mesh.positions.iter().for_each(|&p| self.vector(p));
-        mesh.normals.iter().for_each(|&n| self.color(n));
+        mesh.normals.iter().chain(&mesh.colors).for_each(|&n| self.color(n));
         mesh.uvs.iter().for_each(|&DVec2 { x, y }| [x, y].into_iter().for_each(|n| self.float(n)));
         [&mesh.triangles, &mesh.normal_of, &mesh.uv_of].into_iter().for_each(|list| self.triples(list));
         mesh.material_of.iter().chain(&mesh.object_of).for_each(|n| self.0.write(&n.to_le_bytes()));

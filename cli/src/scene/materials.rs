@@ -8,9 +8,11 @@ use super::measured::MeasuredTable;
 use super::resolve::{load_texture, read_file};
 use super::textures::{Purpose, TextureTable};
 use super::{
-    Bump, BumpHeight, Channel, Details, Map, Material, MeasuredBrdf, NONE, Surroundings, mtl_materials,
+    Bump, BumpHeight, Channel, Details, Map, Material, MeasuredBrdf, NONE, Surroundings, gltf_materials,
+    mtl_materials,
 };
 use crate::input_error::InputError;
+use crate::mesh_io::gltf::GltfModel;
 use crate::mesh_io::{FileMesh, MtlMaterial, read_mtl};
 use pointillist_shade as shade;
 use std::collections::{BTreeMap, HashMap};
@@ -87,6 +89,11 @@ impl<'a> MaterialTable<'a> {
             if number.is_none() {
                 number = self.of_libraries(name, &libraries, textures, warnings)?;
             }
+            if number.is_none()
+                && let Some(model) = &file.gltf
+            {
+                number = self.of_gltf(name, model, path, textures)?;
+            }
             if number.is_none() && !name.is_empty() {
                 warnings.push(format!(
                     "{}: material `{name}` is not defined; a grey one is used",
@@ -96,6 +103,25 @@ impl<'a> MaterialTable<'a> {
             numbers.push(number.unwrap_or_else(|| self.default()));
         }
         Ok(numbers)
+    }
+
+    /// Materials of a glTF are its own, told apart by its path.
+    fn of_gltf(
+        &mut self,
+        name: &str,
+        model: &GltfModel,
+        path: &Path,
+        textures: &mut TextureTable,
+    ) -> Result<Option<u32>, InputError> {
+        let key = (path.to_path_buf(), name.to_owned());
+        if let Some(&number) = self.of_mtl.get(&key) {
+            return Ok(Some(number));
+        }
+        let Some(found) = model.materials.iter().find(|m| m.name == name) else { return Ok(None) };
+        let material = gltf_materials::build(found, model, path, textures)?;
+        let number = self.add(material);
+        self.of_mtl.insert(key, number);
+        Ok(Some(number))
     }
 
     fn undefined(&self, name: &str, span: super::text::Span) -> InputError {
@@ -167,7 +193,8 @@ impl<'a> MaterialTable<'a> {
             bump: plain(&found.bump_map)?
                 .map(|map| Bump { map, height: BumpHeight::World(found.bump_scale) }),
             normal: plain(&found.normal_map)?.map(|map| (map, 1.0)),
-            occlusion_map: None,
+            occlusion: None,
+            one_sided: false,
             metallic: found.metallic,
             measured: found.merl.as_ref().map(|file| self.measured_of(file)).transpose()?,
             reflection: found.reflection,

@@ -9,6 +9,8 @@ pub mod description;
 mod details;
 mod fingerprint;
 mod framing;
+mod gltf_materials;
+mod gltf_scene;
 mod load;
 mod materials;
 mod measured;
@@ -156,6 +158,8 @@ pub enum Occlusion {
 pub struct Mesh {
     /// World positions, all finite.
     pub positions: Vec<DVec3>,
+    /// Linear factors on the diffuse albedo: none, or one for each position.
+    pub colors: Vec<Vec3>,
     /// Corners, counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
     /// Unit normals; empty with flat shading.

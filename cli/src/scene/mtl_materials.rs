@@ -82,7 +82,8 @@ fn surface(material: &MtlMaterial, details: &mut Details) -> shade::Material {
         diffuse: material.diffuse.unwrap_or(Vec3::splat(default_albedo)),
         specular,
         shininess,
-        roughness: 1.0,
+        // Of what it mirrors, if it does.
+        roughness: 0.0,
         emission: or_map(material.emission, details.emission_map.is_some()),
         opacity: material.opacity.unwrap_or(1.0),
     };
@@ -100,7 +101,6 @@ fn surface(material: &MtlMaterial, details: &mut Details) -> shade::Material {
     }
     if illumination >= 3 {
         details.reflection = Some(specular).filter(|&s| s != Vec3::ZERO);
-        surface.roughness = 0.0;
     }
     if let (4 | 6 | 7 | 9, Some(color)) = (illumination, material.transmission) {
         let index = material.refraction_index.filter(|&n| n > 0.0).unwrap_or(GLASS);

@@ -7,7 +7,7 @@ use super::description::{
 use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene};
-use super::{auto_uv, fingerprint, framing, load, smooth};
+use super::{auto_uv, fingerprint, framing, gltf_scene, load, smooth};
 use crate::input_error::InputError;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::probe_io::read_probes;
@@ -42,7 +42,10 @@ pub(super) fn resolve(
     let ambient = ambient(description, folder)?;
     let [width, height] = description.size;
     let aspect = f64::from(width) / f64::from(height);
-    let camera = framing::place(description, &builder.mesh, aspect)?;
+    // A glTF that is the scene brings its camera and its lights.
+    let model = add_light.then(|| builder.meshes.values().find_map(|mesh| mesh.gltf.clone())).flatten();
+    let given = gltf_scene::camera(&description.camera, model.as_deref());
+    let camera = framing::place(description, &given, &builder.mesh, aspect)?;
     let shading = description.render.shading.unwrap_or(if builder.mesh.normals.is_empty() {
         Interpolation::Flat
     } else {
@@ -64,6 +67,9 @@ pub(super) fn resolve(
         warnings: builder.warnings,
         fingerprint: 0,
     };
+    if add_light && scene.lights.is_empty() {
+        scene.lights = model.map(|model| gltf_scene::lights(&model)).unwrap_or_default();
+    }
     if add_light && scene.lights.is_empty() {
         framing::add_light(&mut scene);
     }
@@ -163,19 +169,23 @@ impl<'a> Builder<'a> {
         let document = &self.description.document;
         let name = path.display().to_string();
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        let read: fn(&str, &[u8]) -> Result<FileMesh, InputError> = match extension.as_str() {
-            "obj" => read_obj,
-            "ply" => read_ply,
-            _ => {
-                let message = format!("`{}` is not a kind of mesh that can be read", reference.path);
-                return Err(document.error(reference.span, message).with_help("meshes end in .obj or .ply"));
-            }
-        };
+        if !["obj", "ply", "gltf", "glb"].contains(&extension.as_str()) {
+            let message = format!("`{}` is not a kind of mesh that can be read", reference.path);
+            let error = document.error(reference.span, message);
+            return Err(error.with_help("meshes end in .obj, .ply, .gltf or .glb"));
+        }
         let bytes = std::fs::read(path).map_err(|error| {
             let message = format!("mesh `{name}` cannot be read: {error}");
             document.error(reference.span, message).with_help("paths are relative to the scene file")
         })?;
-        let mesh = read(&name, &bytes)?;
+        let mesh = match extension.as_str() {
+            "obj" => read_obj(&name, &bytes)?,
+            "ply" => read_ply(&name, &bytes)?,
+            _ => gltf_scene::read(path, &bytes)?,
+        };
+        if let Some(model) = &mesh.gltf {
+            self.warnings.extend_from_slice(&model.warnings);
+        }
         if mesh.triangles.is_empty() {
             return Err(InputError::of_file(name, "the mesh has no faces")
                 .with_help("a mesh needs at least one triangle"));
@@ -201,6 +211,11 @@ impl<'a> Builder<'a> {
         let world = object.world_from_mesh;
         let first_position = mesh.positions.len();
         mesh.positions.extend(file.positions.iter().map(|&p| world.transform_point3(p)));
+        if !(file.colors.is_empty() && mesh.colors.is_empty()) {
+            mesh.colors.resize(first_position, Vec3::ONE);
+            mesh.colors.extend_from_slice(&file.colors);
+            mesh.colors.resize(mesh.positions.len(), Vec3::ONE);
+        }
         if let Some(index) = mesh.positions[first_position..].iter().position(|p| !p.is_finite()) {
             let message = format!("the object's transform takes vertex {index} out of the range of numbers");
             return Err(self.description.document.error(object.mesh.span, message));
