@@ -290,8 +290,8 @@ fn mtl_keys_change_the_picture() {
     all(&draw(HEAD_LIGHT, "Kd 0.8 0.8 0.8\nPr 1\nPm 1\n"), [0.4 / PI; 3], 1e-4);
     picture(&folder, "ramp.png", 256, 4, |x, _| [x as u8; 3]);
     let bump = |m: &str| draw(HEAD_LIGHT, &format!("Kd 1 1 1\nmap_bump {m} ramp.png\n"))[27][0];
-    // -bm 100: white is as high as the texture is long, a slope of 1.
-    assert!((bump("-bm 100") - 2.0 / PI / 2f32.sqrt()).abs() < 5e-3, "{}", bump("-bm 100"));
+    // -bm 33.333: white is as high as the texture is long, a slope of 1.
+    assert!((bump("-bm 33.33333") - 2.0 / PI / 2f32.sqrt()).abs() < 5e-3, "{}", bump("-bm 33.33333"));
     assert!((bump("-bm 0") - 2.0 / PI).abs() < 1e-5);
     let output = folder.command(&["check", "o.toml"]).output().unwrap();
     assert!(!String::from_utf8_lossy(&output.stderr).contains("ignored"));
@@ -356,4 +356,7 @@ fn pictures_with_everything_do_not_depend_on_tiles_or_threads() {
     assert!(bytes("whole.exr") == bytes("two.exr") && bytes("whole.exr") == bytes("merged.exr"));
     let info: serde_json::Value = serde_json::from_str(&folder.prints(&["info", "all.toml"])).unwrap();
     assert_eq!(info["textures"].as_array().map(Vec::len), Some(3), "{info}");
+    assert_eq!(info["surfaces"][0]["model"], "Ggx");
+    assert_eq!(info["surfaces"][0]["maps"], serde_json::json!(["diffuse", "bump"]));
+    assert_eq!(info["surfaces"][1]["mirrors"], true);
 }

@@ -9,8 +9,9 @@ use crate::input_error::InputError;
 use crate::mesh_io::gltf::read_gltf;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::options::InfoOptions;
-use crate::scene::{self, Overrides, Projection, Scene};
+use crate::scene::{self, Material, Overrides, Projection, Scene};
 use glam::DVec3;
+use pointillist_shade::Model;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -69,12 +70,39 @@ fn of_scene(scene: &Scene) -> Value {
         "vertices": scene.mesh.positions.len(),
         "bounds": bounds(&scene.mesh.positions),
         "materials": scene.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
+        "surfaces": scene.materials.iter().map(of_material).collect::<Vec<_>>(),
         "textures": scene.textures.iter()
             .map(|t| json!({ "path": t.path.display().to_string(), "size": [t.width, t.height] }))
             .collect::<Vec<_>>(),
         "lights": scene.lights.iter().map(|light| &light.name).collect::<Vec<_>>(),
         "fingerprint": format!("{:016x}", scene.fingerprint),
         "warnings": scene.warnings,
+    })
+}
+
+/// What a material reflects by, and which maps it has.
+fn of_material(material: &Material) -> Value {
+    let d = &material.details;
+    let maps = [
+        ("diffuse", material.diffuse_map.is_some()),
+        ("opacity", material.opacity_map.is_some()),
+        ("specular", d.specular_map.is_some()),
+        ("shininess", d.shininess_map.is_some()),
+        ("roughness", d.roughness_map.is_some()),
+        ("metallic", d.metallic_map.is_some()),
+        ("emission", d.emission_map.is_some()),
+        ("occlusion", d.occlusion.is_some()),
+        ("bump", d.bump.is_some()),
+        ("normal", d.normal.is_some()),
+    ];
+    let model =
+        if d.measured.is_some() { "Merl".to_owned() } else { format!("{:?}", material.surface.model) };
+    json!({
+        "name": material.name,
+        "model": model,
+        "maps": maps.iter().filter(|(_, there)| *there).map(|(name, _)| name).collect::<Vec<_>>(),
+        "mirrors": d.reflection.is_some() || material.surface.model == Model::Ggx,
+        "transmits": d.transmission.is_some(),
     })
 }
 
