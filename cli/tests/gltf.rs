@@ -241,6 +241,14 @@ fn broken_files_name_the_element() {
     refused(|d| d["accessors"][1]["count"] = json!(3), &["mesh 0, primitive 0", "vertices"]);
     refused(|d| d["nodes"][0]["children"] = json!([0]), &["node 0", "its own ancestor"]);
     refused(|d| d["nodes"][0]["mesh"] = json!(7), &["not a glTF"]);
+    // The schema's own check panicked here.
+    refused(|d| d["accessors"] = json!([]), &["mesh 0, primitive 0 names accessor", "there are 0"]);
+    // As did these.
+    refused(|d| d["images"] = json!([{ "bufferView": 3 }]), &["image 0", "mimeType"]);
+    refused(|d| d["images"] = json!([{}]), &["image 0", "neither"]);
+    refused(|d| d["cameras"][0]["type"] = json!("perspective"), &["camera 0"]);
+    refused(|d| d["extensions"] = json!({}), &["node 2 names light 0, but there are 0"]);
+    refused(|d| d["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = json!("spot"), &["light 0"]);
     refused(|d| d["bufferViews"][3]["byteLength"] = json!(20), &["image 0", "cannot be decoded"]);
     refused(|d| d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]), &["not a glTF"]);
     let folder = Folder::new();

@@ -8,7 +8,7 @@ use pointillist_cli::scene::{
     AmbientLight, Camera, ImageSettings, LightSource, Material, Mesh, NONE, Object, Projection,
     RenderSettings, Resolution, Scene, Texels, Texture,
 };
-use pointillist_shade::{self as shade, Falloff, Light, Wrap, face_normal, sees_light};
+use pointillist_shade::{self as shade, Falloff, Light, face_normal, sees_light};
 
 /// A scene in the making.
 pub(crate) struct Sketch {

@@ -14,6 +14,9 @@ const ANGLES: [f32; 6] = [0.0, 30.0, 60.0, 75.0, 85.0, 88.0];
 /// Cells along each axis of the quadrature: its own error is then below 1e-3 but for the smoothest lobes at 88°.
 const STEPS: usize = 500;
 
+/// Energy that a model may seem to make: what the coat's table is off at grazing angles, and the quadrature's own error.
+const TOLERANCE: f32 = 5e-3;
+
 /// Pairs of directions for reciprocity and for time.
 const PAIRS: u32 = 20_000;
 
@@ -34,16 +37,20 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
          evaluation, called through a pointer.\n\n| BRDF |",
         machine()
     );
-    ANGLES.iter().for_each(|a| drop(write!(text, " {a}° |")));
+    for angle in ANGLES {
+        write!(text, " {angle}° |")?;
+    }
     text += " exchanged | ns |\n| --- |";
     text += &" ---: |".repeat(ANGLES.len() + 2);
     text += "\n";
     let mut kept = true;
     for subject in subjects() {
         let shares = ANGLES.map(|a| directional_albedo(tilted(a), STEPS, &subject.brdf).x);
-        kept &= !subject.promises || shares.iter().all(|&s| s <= 1.0 + 3e-3);
+        kept &= !subject.promises || shares.iter().all(|&s| s <= 1.0 + TOLERANCE);
         write!(text, "| {} |", subject.name)?;
-        shares.iter().for_each(|s| drop(write!(text, " {s:.4} |")));
+        for share in shares {
+            write!(text, " {share:.4} |")?;
+        }
         writeln!(text, " {:.1e} | {:.0} |", exchanged(&subject), nanoseconds(&subject))?;
     }
     text += "\nThe plain Phong models promise nothing, and at the angles where they return more than 1 they make light. What GGX alone lacks at \

@@ -5,6 +5,7 @@
 
 mod accessor;
 mod bytes;
+mod check;
 mod material;
 mod primitive;
 mod walk;
@@ -15,6 +16,8 @@ pub use walk::{GltfCamera, GltfLight};
 
 use super::FileMesh;
 use crate::input_error::InputError;
+use ::gltf::json::Root;
+use ::gltf::{Document, Gltf};
 use bytes::Buffers;
 
 /// What a glTF file holds beside its triangles.
@@ -49,7 +52,7 @@ pub fn read_gltf(
 ) -> Result<FileMesh, InputError> {
     let fault = |message: String| InputError::of_file(name, message);
     check_header(bytes).map_err(fault)?;
-    let gltf = ::gltf::Gltf::from_slice(bytes).map_err(|error| fault(format!("not a glTF: {error}")))?;
+    let gltf = parse(bytes).map_err(fault)?;
     let buffers = Buffers::read(&gltf, open).map_err(fault)?;
     let mut model = GltfModel::default();
     for extension in gltf.extensions_used().filter(|used| !KNOWN.contains(used)) {
@@ -77,4 +80,19 @@ fn check_header(bytes: &[u8]) -> Result<(), String> {
         (Some(whole), Some(json)) if whole <= bytes.len() && whole >= 20 && json <= whole - 20 => Ok(()),
         _ => Err("not a glTF: the file is cut off, or its header is wrong".to_owned()),
     }
+}
+
+/// Reads the document and checks it, first for what the schema's own check takes for granted.
+fn parse(bytes: &[u8]) -> Result<Gltf, String> {
+    let wrong = |error: &dyn std::fmt::Display| format!("not a glTF: {error}");
+    let (json, blob) = if bytes.starts_with(b"glTF") {
+        let glb = ::gltf::Glb::from_slice(bytes).map_err(|e| wrong(&e))?;
+        (glb.json, glb.bin.map(std::borrow::Cow::into_owned))
+    } else {
+        (bytes.into(), None)
+    };
+    let root: Root = ::gltf::json::deserialize::from_slice(&json).map_err(|e| wrong(&e))?;
+    check::check(&root)?;
+    let document = Document::from_json(root).map_err(|e| wrong(&e))?;
+    Ok(Gltf { document, blob })
 }
