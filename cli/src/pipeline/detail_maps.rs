@@ -9,7 +9,8 @@ use crate::scene::{Channel, Details, Map, Scene, Texture};
 use glam::{Vec2, Vec3, Vec4, vec3};
 use pointillist_micropoint::{MicropointError, SurfacePoint, TexelSums, TexelWrap};
 use pointillist_shade::{Wrap, slope_of_heights};
-use std::collections::HashMap;
+use rayon::prelude::*;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// A map of numbers.
@@ -48,84 +49,77 @@ pub(super) struct DetailMeans {
 }
 
 /// Maps that materials share, each summed up once.
-#[derive(Default)]
 pub(super) struct DetailTable {
     numbers: HashMap<Map, Arc<TexelSums<1>>>,
     colors: HashMap<Map, Arc<TexelSums<3>>>,
-    slopes: HashMap<Map, Option<Arc<TexelSums<4>>>>,
+    slopes: HashMap<Map, Arc<TexelSums<4>>>,
     normals: HashMap<Map, Arc<TexelSums<5>>>,
 }
 
 impl DetailTable {
-    pub(super) fn maps(&mut self, details: &Details, scene: &Scene) -> Result<DetailMaps, MicropointError> {
-        Ok(DetailMaps {
-            specular: self.color(details.specular_map, scene)?,
-            emission: self.color(details.emission_map, scene)?,
-            shininess: self.number(details.shininess_map, scene)?,
-            roughness: self.number(details.roughness_map, scene)?,
-            metallic: self.number(details.metallic_map, scene)?,
-            occlusion: self.number(details.occlusion.map(|(map, _)| map), scene)?,
-            slope: match details.bump {
-                Some(bump) => self.slope(bump.map, scene)?,
-                None => None,
-            },
-            normal: details.normal.map(|(map, _)| self.normal(map, scene)).transpose()?,
-        })
-    }
-
-    fn number(&mut self, map: Option<Map>, scene: &Scene) -> Result<Numbers, MicropointError> {
-        let Some(map) = map else { return Ok(None) };
-        shared(&mut self.numbers, map, || sums(map, scene, |t, x, y| [number(map.channel, t.texel(x, y))]))
-            .map(Some)
-    }
-
-    fn color(&mut self, map: Option<Map>, scene: &Scene) -> Result<Colors, MicropointError> {
-        let Some(map) = map else { return Ok(None) };
-        shared(&mut self.colors, map, || sums(map, scene, |t, x, y| t.texel(x, y).truncate().to_array()))
-            .map(Some)
-    }
-
-    /// `None` for heights that are all the same.
-    fn slope(&mut self, map: Map, scene: &Scene) -> Result<Option<Arc<TexelSums<4>>>, MicropointError> {
-        if let Some(known) = self.slopes.get(&map) {
-            return Ok(known.clone());
-        }
-        let found = if scene.textures[map.texture].is_constant() {
-            None
-        } else {
-            Some(Arc::new(sums(map, scene, |t, x, y| {
-                let height = |x: i64, y: i64| {
-                    number(map.channel, t.texel(map.wrap.texel(x, t.width), map.wrap.texel(y, t.height)))
-                };
-                let slope = slope_of_heights([t.width, t.height], x, y, height);
-                [slope.x.max(0.0), (-slope.x).max(0.0), slope.y.max(0.0), (-slope.y).max(0.0)]
-            })?))
+    /// Sums up the maps of all materials, on all cores.
+    pub(super) fn new(scene: &Scene) -> Result<Self, MicropointError> {
+        let maps = |of: fn(&Details) -> [Option<Map>; 4]| -> HashSet<Map> {
+            scene.materials.iter().flat_map(|m| of(&m.details)).flatten().collect()
         };
-        self.slopes.insert(map, found.clone());
-        Ok(found)
+        let numbers =
+            maps(|d| [d.shininess_map, d.roughness_map, d.metallic_map, d.occlusion.map(|(map, _)| map)]);
+        let colors = maps(|d| [d.specular_map, d.emission_map, None, None]);
+        // Heights that are all the same have no slope.
+        let mut slopes = maps(|d| [d.bump.map(|bump| bump.map), None, None, None]);
+        slopes.retain(|map| !scene.textures[map.texture].is_constant());
+        let normals = maps(|d| [d.normal.map(|(map, _)| map), None, None, None]);
+        let (numbers, (colors, (slopes, normals))) = rayon::join(
+            || all(&numbers, |map| sums(map, scene, |t, x, y| [number(map.channel, t.texel(x, y))])),
+            || {
+                rayon::join(
+                    || all(&colors, |map| sums(map, scene, |t, x, y| t.texel(x, y).truncate().to_array())),
+                    || {
+                        rayon::join(
+                            || all(&slopes, |map| sums(map, scene, |t, x, y| slope(map, t, x, y))),
+                            || all(&normals, |map| sums(map, scene, normal)),
+                        )
+                    },
+                )
+            },
+        );
+        Ok(Self { numbers: numbers?, colors: colors?, slopes: slopes?, normals: normals? })
     }
 
-    fn normal(&mut self, map: Map, scene: &Scene) -> Result<Arc<TexelSums<5>>, MicropointError> {
-        shared(&mut self.normals, map, || {
-            sums(map, scene, |t, x, y| {
-                let n = normal_of_texel(t.texel(x, y));
-                [n.x.max(0.0), (-n.x).max(0.0), n.y.max(0.0), (-n.y).max(0.0), n.z.max(0.0)]
-            })
-        })
+    pub(super) fn maps(&self, details: &Details) -> DetailMaps {
+        let number = |map: Option<Map>| map.and_then(|map| self.numbers.get(&map).cloned());
+        let color = |map: Option<Map>| map.and_then(|map| self.colors.get(&map).cloned());
+        DetailMaps {
+            specular: color(details.specular_map),
+            emission: color(details.emission_map),
+            shininess: number(details.shininess_map),
+            roughness: number(details.roughness_map),
+            metallic: number(details.metallic_map),
+            occlusion: number(details.occlusion.map(|(map, _)| map)),
+            slope: details.bump.and_then(|bump| self.slopes.get(&bump.map).cloned()),
+            normal: details.normal.and_then(|(map, _)| self.normals.get(&map).cloned()),
+        }
     }
 }
 
-fn shared<const N: usize>(
-    known: &mut HashMap<Map, Arc<TexelSums<N>>>,
-    map: Map,
-    make: impl FnOnce() -> Result<TexelSums<N>, MicropointError>,
-) -> Result<Arc<TexelSums<N>>, MicropointError> {
-    if let Some(sums) = known.get(&map) {
-        return Ok(sums.clone());
-    }
-    let sums = Arc::new(make()?);
-    known.insert(map, sums.clone());
-    Ok(sums)
+fn all<const N: usize>(
+    maps: &HashSet<Map>,
+    make: impl Fn(Map) -> Result<TexelSums<N>, MicropointError> + Sync,
+) -> Result<HashMap<Map, Arc<TexelSums<N>>>, MicropointError> {
+    maps.par_iter().map(|&map| Ok((map, Arc::new(make(map)?)))).collect()
+}
+
+fn slope(map: Map, t: &Texture, x: u32, y: u32) -> [f32; 4] {
+    let height = |x: i64, y: i64| {
+        number(map.channel, t.texel(map.wrap.texel(x, t.width), map.wrap.texel(y, t.height)))
+    };
+    let slope = slope_of_heights([t.width, t.height], x, y, height);
+    [slope.x.max(0.0), (-slope.x).max(0.0), slope.y.max(0.0), (-slope.y).max(0.0)]
+}
+
+fn normal(t: &Texture, x: u32, y: u32) -> [f32; 5] {
+    let n = normal_of_texel(t.texel(x, y));
+    [n.x.max(0.0), (-n.x).max(0.0), n.y.max(0.0), (-n.y).max(0.0), n.z.max(0.0)]
 }
 
 fn sums<const N: usize>(

@@ -9,6 +9,7 @@ use pointillist_micropoint::{
 use pointillist_shade::Model;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::sync::Arc;
 
 /// What a material looks up in textures. Colour is summed up as colour × opacity, so that the empty
 /// part of a leaf's texture does not bleed into its rim.
@@ -22,7 +23,7 @@ enum Textured {
 
 /// Materials ready to be looked up, and where their textures lie on the triangles.
 pub(crate) struct Surfaces {
-    textures: Vec<std::sync::Arc<Textured>>,
+    textures: Vec<Arc<Textured>>,
     uv_of: Vec<[DVec2; 3]>,
     surface_of: Vec<u32>,
     surfaces: Vec<Surface>,
@@ -40,18 +41,9 @@ pub(crate) struct Texel {
 
 impl Surfaces {
     pub(crate) fn new(scene: &Scene) -> Result<Self, MicropointError> {
-        let mut known = HashMap::new();
-        let mut textures = Vec::with_capacity(scene.materials.len());
-        for m in &scene.materials {
-            let key = (m.diffuse_map, m.opacity_map, m.wrap);
-            let texture: &std::sync::Arc<Textured> = match known.entry(key) {
-                Entry::Occupied(e) => e.into_mut(),
-                Entry::Vacant(e) => e.insert(std::sync::Arc::new(sum_up(m, &scene.textures)?)),
-            };
-            textures.push(texture.clone());
-        }
+        let (textures, details) = rayon::join(|| textured_by_material(scene), || details_by_material(scene));
+        let (textures, details) = (textures?, details?);
         let (surfaces, surface_of) = surfaces_by_material(scene, &textures);
-        let details = details_by_material(scene)?;
         let any_detail = details.iter().flatten().any(DetailMaps::any);
         let any_texture = any_detail || textures.iter().any(|t| !matches!(**t, Textured::Nothing));
         let uv_of = if any_texture { corner_uvs(scene) } else { Vec::new() };
@@ -171,7 +163,7 @@ fn weighted(corners: &[DVec2; 3], b: DVec3) -> DVec2 {
 }
 
 /// A surface for each material and each kind of object.
-fn surfaces_by_material(scene: &Scene, textures: &[std::sync::Arc<Textured>]) -> (Vec<Surface>, Vec<u32>) {
+fn surfaces_by_material(scene: &Scene, textures: &[Arc<Textured>]) -> (Vec<Surface>, Vec<u32>) {
     let mut surfaces = Vec::with_capacity(2 * scene.materials.len());
     for (m, t) in scene.materials.iter().zip(textures) {
         let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::ColorAndOpacity(..));
@@ -188,13 +180,27 @@ fn surfaces_by_material(scene: &Scene, textures: &[std::sync::Arc<Textured>]) ->
     (surfaces, mesh.material_of.iter().enumerate().map(surface).collect())
 }
 
+fn textured_by_material(scene: &Scene) -> Result<Vec<Arc<Textured>>, MicropointError> {
+    let mut known = HashMap::new();
+    let mut textures = Vec::with_capacity(scene.materials.len());
+    for m in &scene.materials {
+        let key = (m.diffuse_map, m.opacity_map, m.wrap);
+        let texture: &Arc<Textured> = match known.entry(key) {
+            Entry::Occupied(e) => e.into_mut(),
+            Entry::Vacant(e) => e.insert(Arc::new(sum_up(m, &scene.textures)?)),
+        };
+        textures.push(texture.clone());
+    }
+    Ok(textures)
+}
+
 fn details_by_material(scene: &Scene) -> Result<Vec<Option<DetailMaps>>, MicropointError> {
-    let mut table = DetailTable::default();
-    let mut maps = |m: &Material| {
+    let table = DetailTable::new(scene)?;
+    let maps = |m: &Material| {
         let beyond = m.details != Details::default() || m.surface.model == Model::Ggx;
-        beyond.then(|| table.maps(&m.details, scene)).transpose()
+        beyond.then(|| table.maps(&m.details))
     };
-    scene.materials.iter().map(&mut maps).collect()
+    Ok(scene.materials.iter().map(maps).collect())
 }
 
 /// Texture coordinates of each triangle's corners; zero where it has none.
