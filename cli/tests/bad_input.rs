@@ -84,13 +84,6 @@ fn what_is_not_there_yet_is_said() {
         "[ambient]\nradiosity = \"x.json\"\n[[light]]",
         &["`ambient.radiosity` is not in this version yet"],
     );
-    scene_error(
-        "[[light]]",
-        "[material.a]\nmodel = \"ggx\"\n[[light]]",
-        &["`material.a.model`", "not in this version yet"],
-    );
-    let folder = Folder::new();
-    folder.fails(&["check", "model.glb"], 3, &["glTF is not in this version yet"]);
 }
 
 #[test]

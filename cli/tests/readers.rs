@@ -53,14 +53,18 @@ fn concave_polygons_keep_their_area() {
 
 #[test]
 fn mtl_keys_are_understood() {
-    let text = b"newmtl a b\r\nKd 0.5\r\nKs 1 1 1 # bright\r\nNs 10\r\nTr 0.25\r\nKe 2 0 0\r\nillum 2\r\nmap_Kd -s 2 2 2 -clamp on dir/my tex.png\r\nmap_bump b.png\r\n";
+    let text = b"newmtl a b\r\nKd 0.5\r\nKs 1 1 1 # bright\r\nNs 10\r\nTr 0.25\r\nKe 2 0 0\r\nillum 2\r\nmap_Kd -s 2 2 2 -clamp on dir/my tex.png\r\nmap_bump -bm 0.5 b.png\r\ndecal c.png\r\nNi 1.5\r\nTf 1 0 0\r\nPr 0.25\r\n";
     let material = &read_mtl("a", text).unwrap()[0];
     assert_eq!(material.name, "a b");
     assert_eq!(material.diffuse, Some(glam::Vec3::splat(0.5)));
     assert_eq!(material.opacity, Some(0.75));
-    assert_eq!(material.diffuse_map, Some(("dir/my tex.png".to_owned(), 8)));
-    assert!(material.clamp);
-    assert_eq!(material.ignored, ["map_bump"]);
+    let map = material.map("map_Kd").unwrap();
+    assert_eq!((map.file.as_str(), map.line, map.clamp), ("dir/my tex.png", 8, true));
+    let bump = material.map("map_bump").unwrap();
+    assert_eq!((bump.file.as_str(), bump.bump_multiplier), ("b.png", Some(0.5)));
+    assert_eq!((material.refraction_index, material.roughness), (Some(1.5), Some(0.25)));
+    assert_eq!(material.transmission, Some(glam::Vec3::X));
+    assert_eq!(material.ignored, ["decal"]);
 }
 
 #[test]

@@ -1,8 +1,10 @@
-//! How long for how much error: a rectangular light by its number of samples, and each BRDF.
+//! How long for how much error: a rectangular light by its number of samples, each BRDF, mirrored surroundings, and albedos.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{DVec3, Vec3, dvec3, vec3};
-use pointillist_shade::{Falloff, Light, Material, Model};
+use pointillist_shade::{
+    CubeMap, Environment, Falloff, Light, Material, MerlTable, Model, coat_albedo, directional_albedo,
+};
 use std::hint::black_box;
 
 /// Irradiance of the ground below the corner of a unit square one above it, in units of its radiance.
@@ -38,14 +40,50 @@ fn rectangles(c: &mut Criterion) {
 fn brdfs(c: &mut Criterion) {
     let mut group = c.benchmark_group("brdf");
     let (l, v) = (vec3(0.6, 0.8, 0.0), vec3(0.0, 0.8, 0.6));
-    for model in [Model::Lambert, Model::NormalizedPhong, Model::NormalizedBlinnPhong] {
+    for model in [Model::Lambert, Model::NormalizedPhong, Model::NormalizedBlinnPhong, Model::Ggx] {
         let material = Material::lambert(Vec3::splat(0.5)).with_specular(model, Vec3::splat(0.2), 50.0);
         group.bench_function(format!("{model:?}"), |b| {
             b.iter(|| black_box(&material).brdf(Vec3::Y, black_box(l), black_box(v)))
         });
     }
+    let table = MerlTable::tabulate(|l, v| Material::default().brdf(Vec3::Z, l, v));
+    let error = (table.brdf(Vec3::Y, l, v) - Material::default().brdf(Vec3::Y, l, v)).abs().max_element();
+    group.bench_function(BenchmarkId::new("Merl", format!("{error:.2e}")), |b| {
+        b.iter(|| table.brdf(Vec3::Y, black_box(l), black_box(v)))
+    });
     group.finish();
 }
 
-criterion_group!(benches, rectangles, brdfs);
+/// Half a sky, mirrored at its rim: half of it should be seen, whatever the roughness.
+fn environments(c: &mut Criterion) {
+    let sky = |d: DVec3| if d.x > 0.0 { Vec3::ONE } else { Vec3::ZERO };
+    let map = Environment::sharp(CubeMap::from_function(256, sky)).with_rough_levels();
+    let mut group = c.benchmark_group("environment");
+    for roughness in [0.0, 0.15, 0.5, 1.0] {
+        let error = (map.radiance(Vec3::Z, roughness).x - 0.5).abs();
+        let id = BenchmarkId::new(format!("roughness {roughness}"), format!("{error:.2e}"));
+        group.bench_function(id, |b| b.iter(|| map.radiance(black_box(Vec3::Z), roughness)));
+    }
+    group.finish();
+}
+
+/// The share of light that a GGX coat returns, by quadrature; the error is that against many steps.
+fn albedos(c: &mut Criterion) {
+    let coat = Material { roughness: 0.3, ..Material::lambert(Vec3::ZERO) };
+    let coat = coat.with_specular(Model::Ggx, Vec3::splat(0.5), 0.0);
+    let albedo = |steps| directional_albedo(vec3(0.6, 0.0, 0.8), steps, |l, v| coat.brdf(Vec3::Z, l, v)).x;
+    let exact = albedo(1000);
+    let mut group = c.benchmark_group("albedo");
+    for steps in [16, 64, 256] {
+        let id = BenchmarkId::new(format!("{steps} steps"), format!("{:.2e}", (albedo(steps) - exact).abs()));
+        group.bench_function(id, |b| b.iter(|| albedo(black_box(steps))));
+    }
+    let error = (coat_albedo(coat.specular, 0.3, 0.8).x - exact).abs();
+    group.bench_function(BenchmarkId::new("table", format!("{error:.2e}")), |b| {
+        b.iter(|| coat_albedo(coat.specular, black_box(0.3), black_box(0.8)))
+    });
+    group.finish();
+}
+
+criterion_group!(benches, rectangles, brdfs, environments, albedos);
 criterion_main!(benches);

@@ -28,4 +28,24 @@ pub enum ShadeError {
         /// Rows.
         height: u32,
     },
+    /// A MERL table with other than 90 × 90 × 180 bins.
+    #[error("a MERL table has 90 × 90 × 180 bins, not {} × {} × {}", found[0], found[1], found[2])]
+    MerlDimensions {
+        /// What the header says.
+        found: [i32; 3],
+    },
+    /// A MERL table that is cut off, or goes on.
+    #[error("a MERL table has {wanted} bytes, not {len}")]
+    MerlSize {
+        /// Bytes there are.
+        len: usize,
+        /// Bytes there should be.
+        wanted: usize,
+    },
+    /// A value of a MERL table that is NaN or infinite.
+    #[error("value {index} of the MERL table is not finite")]
+    MerlValue {
+        /// Position among all values, red first.
+        index: usize,
+    },
 }

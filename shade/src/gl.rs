@@ -61,6 +61,9 @@ pub struct Material {
 ///
 /// `a` is attenuation, `s` the spot factor, and in the last term `s` the half vector. `normal` and `to_eye` are unit
 /// vectors. Not clamped: [`display`] does that, once, for the sum.
+///
+/// With OpenGL's local viewer, `to_eye` points from the surface to the eye; without (its default), it is the
+/// view's backward axis, the same for all points.
 pub fn contribution(light: &Light, material: &Material, point: DVec3, normal: Vec3, to_eye: Vec3) -> Vec3 {
     let (to_light, strength) = arrival(light, point);
     let cos_light = normal.dot(to_light).max(0.0);
@@ -108,6 +111,10 @@ fn arrival(light: &Light, point: DVec3) -> (Vec3, f32) {
 }
 
 fn spot_factor(spot: Spot, travel: DVec3) -> f32 {
+    // A cutoff of 180° is OpenGL's way to say that there is no cone.
+    if spot.cutoff_rad >= std::f64::consts::PI {
+        return 1.0;
+    }
     let cosine = travel.dot(spot.direction.normalize_or_zero());
     if cosine < spot.cutoff_rad.cos() { 0.0 } else { power(cosine as f32, spot.exponent) }
 }

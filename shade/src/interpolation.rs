@@ -1,6 +1,6 @@
 //! Flat, Gouraud and Phong shading: what is interpolated across a triangle.
 
-use crate::turn_to;
+use crate::{keep_visible, turn_to};
 use glam::Vec3;
 
 /// What is interpolated between the corners of a triangle.
@@ -32,10 +32,5 @@ pub fn interpolate_normal(corners: [Vec3; 3], weights: Vec3, face: Vec3, to_eye:
         return face;
     }
     let normal = turn_to(mixed, face);
-    let towards = normal.dot(to_eye);
-    if towards >= 0.0 {
-        return normal;
-    }
-    let tilted = (normal - to_eye * towards).normalize_or_zero();
-    if tilted == Vec3::ZERO { face } else { tilted }
+    keep_visible(normal, to_eye, face)
 }

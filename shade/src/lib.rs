@@ -23,17 +23,22 @@
 //!
 //! * [`Light`], [`Incident`]: directional, point, spot and rectangular lights in physical units, with inverse-square
 //!   or constant/linear/quadratic attenuation.
-//! * [`Material`], [`Model`]: Lambert, Phong and Blinn-Phong, the last two plain and energy-conserving.
+//! * [`Material`], [`Model`]: Lambert, Phong and Blinn-Phong (plain and energy-conserving), and GGX; [`MerlTable`]:
+//!   measured BRDFs; [`directional_albedo`]: how much any of them returns.
 //! * [`gl`]: the fixed-function OpenGL formula with its own light and material.
-//! * [`vertex_normals`], [`interpolate_normal`], [`interpolate_color`], [`Interpolation`]: flat, Gouraud and Phong
-//!   shading, and [`turn_to`] and [`sees_light`]: the two-sided rule.
-//! * [`Wrap`], [`nearest`]: texture wrap modes and nearest lookup on slices.
+//! * [`vertex_normals`], [`corner_normals`], [`interpolate_normal`], [`interpolate_color`], [`Interpolation`]: flat, Gouraud and
+//!   Phong shading, smooth and with creases, and [`turn_to`], [`sees_light`], [`keep_visible`]: the two-sided rule.
+//! * [`Wrap`], [`nearest`]: texture wrap modes and nearest lookup on slices; [`AutoUv`]: coordinates for meshes without.
+//! * [`UvFrame`]: bump maps and normal maps.
+//! * [`Environment`], [`CubeMap`], [`Equirectangular`]: light from far away, mirrored by surfaces of any roughness, and
+//!   [`mirror`], [`refract`] for where to look.
 //!
 //! # Accuracy and cost
 //!
 //! Positions are `f64` and are subtracted before anything is rounded to `f32`, so a scene far from its origin shades
 //! as it does at the origin. Directions and colours are `f32`; an evaluation costs a few tens of nanoseconds and
-//! does not allocate. Finite input gives finite output: irradiance beyond [`LARGEST_IRRADIANCE`] (a point on top of
+//! does not allocate. Tables are made when they are first asked for: the GGX coat's albedo (0.04 s, once), a MERL table
+//! (17 MB), the blurred levels of an environment (0.5 s). Finite input gives finite output: irradiance beyond [`LARGEST_IRRADIANCE`] (a point on top of
 //! a lamp) is cut there.
 //!
 //! # References
@@ -43,20 +48,55 @@
 //! 3. E. P. Lafortune, Y. D. Willems, *Using the modified Phong reflectance model for physically based rendering*, 1994.
 //! 4. F. Giesen, *Phong and Blinn-Phong normalization factors*, 2009.
 //! 5. M. Segal, K. Akeley, *The OpenGL graphics system* (2.1), section 2.14.
+//! 6. B. Walter et al., *Microfacet models for refraction through rough surfaces*, EGSR 2007.
+//! 7. B. Karis, *Real shading in Unreal Engine 4*, SIGGRAPH 2013 course; S. Lagarde, C. de Rousiers, *Moving Frostbite to
+//!    PBR*, 2014 (perceptual roughness, grazing reflectance).
+//! 8. E. Heitz, *Understanding the masking-shadowing function in microfacet-based BRDFs*, JCGT 2014.
+//! 9. C. Schlick, *An inexpensive BRDF model for physically-based rendering*, 1994.
+//! 10. C. Kelemen, L. Szirmay-Kalos, *A microfacet based coupled specular-matte BRDF model*, 2001.
+//! 11. E. Heitz, *Sampling the GGX distribution of visible normals*, JCGT 2018.
+//! 12. W. Matusik et al., *A data-driven reflectance model*, SIGGRAPH 2003, and the reader of the MERL BRDF database.
+//! 13. S. Rusinkiewicz, *A new change of variables for efficient BRDF representation*, 1998.
+//! 14. J. F. Blinn, *Simulation of wrinkled surfaces*, SIGGRAPH 1978.
+//! 15. M. Mikkelsen, *Bump mapping unparametrized surfaces on the GPU*, 2010 (surface gradients).
+//! 16. J. Křivánek, M. Colbert, *Real-time shading with filtered importance sampling*, EGSR 2008.
+//! 17. G. Thürmer, C. A. Wüthrich, *Computing vertex normals from polygonal facets*, 1998.
 #![forbid(unsafe_code)]
 
+mod auto_uv;
 mod brdf;
+mod bump;
+mod creases;
+mod environment;
 mod error;
+mod ggx;
+mod ggx_table;
 pub mod gl;
 mod interpolation;
+#[cfg(feature = "invariants")]
+pub mod invariants;
 mod light;
 mod material;
+mod merl;
 mod normals;
+mod quadrature;
+mod refraction;
 mod texture;
 
+pub use auto_uv::AutoUv;
+pub use bump::{UvFrame, keep_visible, slope_of_heights};
+pub use creases::{CornerNormals, corner_normals};
+pub use environment::{
+    CubeMap, Environment, Equirectangular, cube_direction, equirectangular_direction, equirectangular_uv,
+};
 pub use error::ShadeError;
+pub use ggx::SMALLEST_ROUGHNESS;
+pub use ggx_table::coat_albedo;
 pub use interpolation::{Interpolation, interpolate_color, interpolate_normal};
 pub use light::{Falloff, Incident, LARGEST_IRRADIANCE, Light, Source};
-pub use material::{Material, Model};
+pub use material::{DIELECTRIC_REFLECTANCE, Material, Model};
+pub use merl::{MERL_DIMENSIONS, MerlTable};
 pub use normals::{Weighting, face_normal, sees_light, turn_to, vertex_normals};
+pub use quadrature::directional_albedo;
+pub use refraction::{Refraction, mirror, refract};
 pub use texture::{Wrap, nearest};

@@ -1,11 +1,14 @@
 //! A surface's own constants, and the light it sends to the eye.
 
-use crate::{Incident, LARGEST_IRRADIANCE, brdf};
+use crate::{Incident, LARGEST_IRRADIANCE, brdf, ggx};
 use glam::Vec3;
+
+/// Reflectance of clear lacquer, plastic or glass (index 1.5) at normal incidence: ((1.5 − 1)/(1.5 + 1))².
+pub const DIELECTRIC_REFLECTANCE: f32 = 0.04;
 
 /// Which formula a [`Material`] reflects by.
 ///
-/// The normalised models conserve energy when `diffuse + specular ≤ 1`; the plain ones do not promise to.
+/// The normalised Phong models conserve energy when `diffuse + specular ≤ 1`; the plain ones do not promise to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Model {
@@ -21,6 +24,10 @@ pub enum Model {
     /// Lambert plus `specular · c(m) · (h·n)^m`, with `c` so that a mirror-like surface returns all light at normal
     /// incidence \[4\].
     NormalizedBlinnPhong,
+    /// A rough coat of reflectance `specular` at normal incidence (1 at grazing angles) and perceptual `roughness` over
+    /// a Lambert base that gets the light which the coat lets through. Conserves energy for `diffuse ≤ 1` and
+    /// `specular ≤ 1`. Light that would bounce more than once between the facets is lost: up to half at roughness 1.
+    Ggx,
 }
 
 /// What a surface is made of, at one point (textures are looked up before).
@@ -30,10 +37,12 @@ pub struct Material {
     pub model: Model,
     /// Diffuse albedo.
     pub diffuse: Vec3,
-    /// Specular albedo; not used by [`Model::Lambert`].
+    /// Specular albedo; for [`Model::Ggx`] the reflectance at normal incidence. Not used by [`Model::Lambert`].
     pub specular: Vec3,
-    /// The exponent `m`; negative counts as 0.
+    /// The exponent `m` of the Phong models; negative counts as 0.
     pub shininess: f32,
+    /// Perceptual roughness of [`Model::Ggx`], whose α is its square; cut to [[`crate::SMALLEST_ROUGHNESS`], 1].
+    pub roughness: f32,
     /// Radiance that the surface sends out by itself.
     pub emission: Vec3,
     /// 1 hides what is behind, 0 is not there.
@@ -55,6 +64,7 @@ impl Material {
             diffuse,
             specular: Vec3::ZERO,
             shininess: 0.0,
+            roughness: 1.0,
             emission: Vec3::ZERO,
             opacity: 1.0,
         }
@@ -76,6 +86,17 @@ impl Material {
         self
     }
 
+    /// A GGX surface as glTF describes it: `metallic` 0 has `base` as its diffuse albedo under a clear coat of
+    /// reflectance [`DIELECTRIC_REFLECTANCE`], 1 mirrors `base` and has no diffuse part.
+    pub fn metallic_roughness(base: Vec3, metallic: f32, roughness: f32) -> Self {
+        Self {
+            model: Model::Ggx,
+            specular: Vec3::splat(DIELECTRIC_REFLECTANCE).lerp(base, metallic),
+            roughness,
+            ..Self::lambert(base * (1.0 - metallic))
+        }
+    }
+
     /// The BRDF: radiance towards `to_eye` per irradiance from `to_light`; 0 where either is below the surface.
     ///
     /// All three are unit vectors away from the surface. Reciprocal: exchanging light and eye gives the same.
@@ -86,6 +107,9 @@ impl Material {
         let m = self.shininess;
         let lobe = match self.model {
             Model::Lambert => return brdf::lambert(self.diffuse),
+            Model::Ggx => {
+                return ggx::brdf(self.diffuse, self.specular, self.roughness, normal, to_light, to_eye);
+            }
             Model::Phong => brdf::phong_lobe(normal, to_light, to_eye, m),
             Model::NormalizedPhong => brdf::phong_norm(m) * brdf::phong_lobe(normal, to_light, to_eye, m),
             Model::BlinnPhong => brdf::blinn_lobe(normal, to_light, to_eye, m),
@@ -117,6 +141,6 @@ impl Material {
     }
 }
 
-fn finite(color: Vec3) -> Vec3 {
+pub(crate) fn finite(color: Vec3) -> Vec3 {
     color.clamp(Vec3::splat(-LARGEST_IRRADIANCE), Vec3::splat(LARGEST_IRRADIANCE))
 }

@@ -9,6 +9,8 @@ pub enum Weighting {
     /// By its area, so that slivers do not tilt the surface.
     #[default]
     Area,
+    /// By its angle at the vertex: how the surface around is cut into triangles does not matter \[17\].
+    Angle,
     /// All the same.
     Plain,
 }
@@ -43,16 +45,26 @@ pub fn vertex_normals(
     let extent = extent(positions);
     let mut sums = vec![DVec3::ZERO; positions.len()];
     for (triangle, corners) in triangles.iter().enumerate() {
-        let [a, b, c] = corners_of(positions, triangle, *corners)?;
-        let face = match weighting {
-            Weighting::Area => (half_side(a, b) / extent).cross(half_side(a, c) / extent),
-            Weighting::Plain => face_normal(a, b, c),
-        };
-        for &vertex in corners {
-            sums[vertex as usize] += face;
+        let points = corners_of(positions, triangle, *corners)?;
+        for (&vertex, share) in corners.iter().zip(shares(points, weighting, extent)) {
+            sums[vertex as usize] += share;
         }
     }
     Ok(sums.iter().map(|&sum| unit(sum).as_vec3()).collect())
+}
+
+/// What a triangle adds to the normals at its three corners. `extent` scales areas.
+pub(crate) fn shares([a, b, c]: [DVec3; 3], weighting: Weighting, extent: f64) -> [DVec3; 3] {
+    match weighting {
+        Weighting::Area => [(half_side(a, b) / extent).cross(half_side(a, c) / extent); 3],
+        Weighting::Plain => [face_normal(a, b, c); 3],
+        Weighting::Angle => {
+            let normal = face_normal(a, b, c);
+            let angle = |at, to, and| unit(half_side(at, to)).angle_between(unit(half_side(at, and)));
+            [angle(a, b, c), angle(b, c, a), angle(c, a, b)]
+                .map(|w| if w.is_finite() { normal * w } else { DVec3::ZERO })
+        }
+    }
 }
 
 /// `normal`, or its opposite if that is the one on the side of `towards`.
@@ -67,7 +79,11 @@ pub fn sees_light(face: Vec3, to_light: Vec3) -> bool {
     face.dot(to_light) > 0.0
 }
 
-fn corners_of(positions: &[DVec3], triangle: usize, corners: [u32; 3]) -> Result<[DVec3; 3], ShadeError> {
+pub(crate) fn corners_of(
+    positions: &[DVec3],
+    triangle: usize,
+    corners: [u32; 3],
+) -> Result<[DVec3; 3], ShadeError> {
     let mut points = [DVec3::ZERO; 3];
     for (point, vertex) in points.iter_mut().zip(corners) {
         *point = *positions.get(vertex as usize).ok_or(ShadeError::IndexOutOfRange {
@@ -79,7 +95,7 @@ fn corners_of(positions: &[DVec3], triangle: usize, corners: [u32; 3]) -> Result
     Ok(points)
 }
 
-fn extent(positions: &[DVec3]) -> f64 {
+pub(crate) fn extent(positions: &[DVec3]) -> f64 {
     let (low, high) = positions
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));

@@ -125,6 +125,53 @@ fn opengl_spot_is_a_power_of_the_cosine() {
 }
 
 #[test]
+fn opengl_attenuates_with_all_three_terms() {
+    // At distance 2: 1 / (0.5 + 0.25·2 + 0.75·4) = 1/4, on ambient, diffuse and specular alike.
+    let light = gl::Light { attenuation: [0.5, 0.25, 0.75], ..LAMP };
+    let got = gl::contribution(&light, &WHITE, DVec3::ZERO, Vec3::Y, Vec3::Y);
+    assert!(close(got, Vec3::splat(0.25 * (0.1 + 0.5 + 0.25))), "{got}");
+}
+
+#[test]
+fn opengl_light_at_infinity_is_not_attenuated() {
+    // From 60° off the normal: diffuse 0.5 · 0.5; half vector between 60° and 0° is 30° off: cos² = 0.75.
+    let towards = dvec3(3.0 * 0.75f64.sqrt(), 1.5, 0.0);
+    let light = gl::Light { placement: gl::Placement::Towards(towards), ..LAMP };
+    let got = gl::contribution(&light, &WHITE, dvec3(7.0, -3.0, 1.0), Vec3::Y, Vec3::Y);
+    assert!(close(got, Vec3::splat(0.1 + 0.25 + 0.25 * 0.75)), "{got}");
+}
+
+#[test]
+fn opengl_global_ambient_and_emission_come_once() {
+    let material = gl::Material { emission: vec3(0.3, 0.0, 0.1), ..WHITE };
+    let got = gl::shade(&[], vec3(0.5, 1.0, 0.0), &material, DVec3::ZERO, Vec3::Y, Vec3::Y);
+    assert!(close(got, vec3(0.3 + 0.1, 0.2, 0.1)), "{got}");
+}
+
+#[test]
+fn opengl_local_viewer_moves_the_highlight() {
+    // Above a point one to the right, the eye two above the origin: towards it is (−1, 2)/√5; with a viewer at infinity (0, 1).
+    let at = dvec3(1.0, 0.0, 0.0);
+    let shiny = gl::Material { ambient: Vec3::ZERO, diffuse: Vec3::ZERO, ..WHITE };
+    let light = gl::Light { placement: gl::Placement::Towards(DVec3::Y), ..LAMP };
+    let local = (dvec3(0.0, 2.0, 0.0) - at).normalize().as_vec3();
+    // Half way between the normal and a direction at angle a with cos a = 2/√5: cos² (a/2) = (1 + cos a)/2.
+    let wanted = 0.25 * 0.5 * (1.0 + 2.0 / 5f32.sqrt());
+    let got = gl::contribution(&light, &shiny, at, Vec3::Y, local);
+    assert!(close(got, Vec3::splat(wanted)), "{got}");
+    let infinite = gl::contribution(&light, &shiny, at, Vec3::Y, Vec3::Y);
+    assert!(close(infinite, Vec3::splat(0.25)), "{infinite}");
+}
+
+#[test]
+fn opengl_cutoff_of_180_degrees_is_no_cone() {
+    let spot = gl::Spot { direction: DVec3::Y, cutoff_rad: PI, exponent: 8.0 };
+    let light = gl::Light { spot: Some(spot), ..LAMP };
+    let plain = gl::contribution(&LAMP, &WHITE, DVec3::ZERO, Vec3::Y, Vec3::Y);
+    assert_eq!(gl::contribution(&light, &WHITE, DVec3::ZERO, Vec3::Y, Vec3::Y), plain);
+}
+
+#[test]
 fn opengl_sum_is_clamped_only_for_display() {
     let material = gl::Material { emission: Vec3::splat(3.0), ..WHITE };
     let sum = gl::shade(&[LAMP, LAMP], Vec3::ONE, &material, DVec3::ZERO, Vec3::Y, Vec3::Y);
@@ -146,6 +193,9 @@ fn area_weights_keep_slivers_quiet() {
     let area = vertex_normals(&positions, &triangles, Weighting::Area).unwrap()[0];
     let plain = vertex_normals(&positions, &triangles, Weighting::Plain).unwrap()[0];
     assert!(area.y > 0.9999, "{area}");
+    // Both have a right angle there.
+    let angle = vertex_normals(&positions, &triangles, Weighting::Angle).unwrap()[0];
+    assert!(close(angle, plain), "{angle}");
     assert!(close(plain, vec3(0.5f32.sqrt(), 0.5f32.sqrt(), 0.0)), "{plain}");
 }
 

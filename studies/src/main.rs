@@ -43,6 +43,7 @@ mod ray_reference;
 mod report;
 mod scans;
 mod scenes;
+mod shade;
 mod shadow;
 mod shadow_map;
 mod shadow_scenes;
@@ -63,10 +64,11 @@ use report::Outcome;
 /// Name, what it measures, and the study itself.
 type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
 
-const STUDIES: [Study; 8] = [
+const STUDIES: [Study; 9] = [
     ("dice", "areas of a triangle in the cells of a grid", run_dice),
     ("micropoint", "pictures against point sampling", micropoint::run),
     ("shadow", "shadows against a shadow map", shadow::run),
+    ("shade", "energy, reciprocity and time of every reflection model; fails if one makes light", shade::run),
     ("ibpr", "raw range scans against the surface that they measured", ibpr::run),
     ("surfel", "point clouds against rays through a lens; fails if order or threads show", surfel::run),
     (

@@ -8,7 +8,7 @@ use pointillist_cli::scene::{
     AmbientLight, Camera, ImageSettings, LightSource, Material, Mesh, NONE, Object, Projection,
     RenderSettings, Resolution, Scene, Texels, Texture,
 };
-use pointillist_shade::{self as shade, Falloff, Light, Wrap, face_normal, sees_light};
+use pointillist_shade::{self as shade, Falloff, Light, face_normal, sees_light};
 
 /// A scene in the making.
 pub(crate) struct Sketch {
@@ -49,7 +49,7 @@ impl Sketch {
 
     pub(crate) fn material(&mut self, surface: shade::Material, diffuse_map: Option<usize>) -> u32 {
         let name = format!("m{}", self.scene.materials.len());
-        let material = Material { name, surface, diffuse_map, opacity_map: None, wrap: Wrap::Repeat };
+        let material = Material { diffuse_map, ..Material::plain(name, surface) };
         self.scene.materials.push(material);
         self.scene.materials.len() as u32 - 1
     }
@@ -178,7 +178,7 @@ pub(crate) type Visibility<'a> = dyn Fn(&SurfaceSample, usize, u32) -> f64 + Syn
 fn ambient_color(scene: &Scene) -> Vec3 {
     match scene.ambient {
         AmbientLight::Color(color) => color,
-        AmbientLight::Probes { .. } => Vec3::ZERO,
+        AmbientLight::Probes { .. } | AmbientLight::Environment => Vec3::ZERO,
     }
 }
 

@@ -6,11 +6,13 @@ use crate::cloud_io::{self, CloudOptions, CloudSummary, Pose};
 use crate::error::CliError;
 use crate::image_io::{ExrFile, read_picture};
 use crate::input_error::InputError;
+use crate::mesh_io::gltf::read_gltf;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::options::InfoOptions;
 use crate::probe_io::{ProbeEntry, ProbeFile, read_probes};
-use crate::scene::{self, Overrides, Projection, Scene};
+use crate::scene::{self, Material, Overrides, Projection, Scene};
 use glam::DVec3;
+use pointillist_shade::Model;
 use serde::de::IgnoredAny;
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -37,6 +39,7 @@ fn describe(path: &Path) -> Result<Value, InputError> {
         "toml" | "json" => Ok(of_scene(&scene::load(path, &Overrides::default())?)),
         "obj" => Ok(of_mesh("obj", &read_obj(&name, &bytes()?)?)),
         "ply" => of_ply(path, &name),
+        "gltf" | "glb" => of_gltf(&extension, &name, path, &bytes()?),
         "conf" => of_conf(path),
         "gz" | "xyz" | "txt" | "asc" | "pts" | "csv" | "las" | "laz" | "e57" => Ok(of_cloud(&summary(path)?)),
         "exr" => of_exr(&name, &bytes()?),
@@ -46,7 +49,7 @@ fn describe(path: &Path) -> Result<Value, InputError> {
         }
         _ => Err(InputError::of_file(&name, "the name does not say what kind of file this is")
             .with_help(
-                "known are .toml, .json, .probes, .obj, .ply, .exr, .png, .jpg and .hdr, and of clouds .ply.gz, .xyz, .txt, \
+                "known are .toml, .json, .probes, .obj, .ply, .gltf, .glb, .exr, .png, .jpg and .hdr, and of clouds .ply.gz, .xyz, .txt, \
                  .asc, .pts, .csv, .las, .laz, .e57 and .conf",
             )),
     }
@@ -72,6 +75,7 @@ fn of_scene(scene: &Scene) -> Value {
         "vertices": scene.mesh.positions.len(),
         "bounds": bounds(&scene.mesh.positions),
         "materials": scene.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
+        "surfaces": scene.materials.iter().map(of_material).collect::<Vec<_>>(),
         "textures": scene.textures.iter()
             .map(|t| json!({ "path": t.path.display().to_string(), "size": [t.width, t.height] }))
             .collect::<Vec<_>>(),
@@ -106,6 +110,32 @@ fn of_probes(file: &ProbeFile) -> Value {
     })
 }
 
+/// What a material reflects by, and which maps it has.
+fn of_material(material: &Material) -> Value {
+    let d = &material.details;
+    let maps = [
+        ("diffuse", material.diffuse_map.is_some()),
+        ("opacity", material.opacity_map.is_some()),
+        ("specular", d.specular_map.is_some()),
+        ("shininess", d.shininess_map.is_some()),
+        ("roughness", d.roughness_map.is_some()),
+        ("metallic", d.metallic_map.is_some()),
+        ("emission", d.emission_map.is_some()),
+        ("occlusion", d.occlusion.is_some()),
+        ("bump", d.bump.is_some()),
+        ("normal", d.normal.is_some()),
+    ];
+    let model =
+        if d.measured.is_some() { "Merl".to_owned() } else { format!("{:?}", material.surface.model) };
+    json!({
+        "name": material.name,
+        "model": model,
+        "maps": maps.iter().filter(|(_, there)| *there).map(|(name, _)| name).collect::<Vec<_>>(),
+        "mirrors": d.reflection.is_some() || material.surface.model == Model::Ggx,
+        "transmits": d.transmission.is_some(),
+    })
+}
+
 fn of_mesh(format: &str, mesh: &FileMesh) -> Value {
     json!({
         "kind": "mesh",
@@ -118,6 +148,21 @@ fn of_mesh(format: &str, mesh: &FileMesh) -> Value {
         "material_files": mesh.material_files,
         "bounds": bounds(&mesh.positions),
     })
+}
+
+fn of_gltf(format: &str, name: &str, path: &Path, bytes: &[u8]) -> Result<Value, InputError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let open =
+        |file: &str| std::fs::read(folder.join(file)).map_err(|error| format!("cannot be read: {error}"));
+    let mesh = read_gltf(name, bytes, &open)?;
+    let mut value = of_mesh(format, &mesh);
+    if let Some(model) = &mesh.gltf {
+        value["images"] = json!(model.images.len());
+        value["cameras"] = json!(model.cameras.len());
+        value["lights"] = json!(model.lights.len());
+        value["warnings"] = json!(model.warnings);
+    }
+    Ok(value)
 }
 
 /// A mesh if it has faces, a cloud otherwise.

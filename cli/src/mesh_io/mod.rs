@@ -1,14 +1,15 @@
-//! Meshes from files: OBJ with MTL, and PLY.
+//! Meshes from files: OBJ with MTL, PLY, and glTF.
 //!
 //! Readers take bytes and give a [`FileMesh`] or an error with its line; they open no files.
 
+pub mod gltf;
 mod mtl;
 mod obj;
 mod obj_lines;
 mod ply;
 mod triangulate;
 
-pub use mtl::{MtlMaterial, read_mtl};
+pub use mtl::{MtlMap, MtlMaterial, read_mtl};
 pub use obj::read_obj;
 pub use ply::read_ply;
 pub use triangulate::triangulate;
@@ -36,4 +37,8 @@ pub struct FileMesh {
     pub material_names: Vec<String>,
     /// Files that should define them.
     pub material_files: Vec<String>,
+    /// Linear colours that multiply the diffuse albedo: none, or one for each position.
+    pub colors: Vec<Vec3>,
+    /// What a glTF holds besides.
+    pub gltf: Option<std::sync::Arc<gltf::GltfModel>>,
 }

@@ -45,7 +45,7 @@ pub struct Cli {
 pub enum Command {
     /// Draw a scene
     ///
-    /// SCENE is a .toml or .json scene file, or an .obj or .ply mesh, which is then framed and lit. Without SCENE the
+    /// SCENE is a .toml or .json scene file, or an .obj, .ply, .gltf or .glb model, which is then framed and lit. Without SCENE the
     /// built-in scene is drawn to pointillist.png.
     #[command(after_help = "Examples:\n  \
         pointillist render\n  \

@@ -5,7 +5,7 @@ use super::shading::{Point, Shader, ShaderScratch};
 use crate::job::{Stats, ThreadClock};
 use glam::{DVec2, Vec3};
 use pointillist_micropoint::{Face, Fragment, Micropoint, Tile};
-use pointillist_shade::{Interpolation, interpolate_color, sees_light, turn_to};
+use pointillist_shade::{Incident, Interpolation, interpolate_color, sees_light, turn_to};
 use pointillist_shadow::{Receivers, ShadowScratch, Viewer};
 use std::ops::Range;
 
@@ -90,16 +90,24 @@ impl Shader<'_> {
         if self.scene.render.shading == Interpolation::Gouraud
             && let Some(normals) = self.corner_normals(face.id)
         {
-            let mesh = &self.scene.mesh;
-            let corners = mesh.triangles[face.id as usize].map(|v| mesh.positions[v as usize]);
+            let corners = self.corners(face.id);
             let at = |k: usize| {
                 let to_eye = (self.eye - corners[k]).normalize_or_zero().as_vec3();
                 let incident = source.illuminate(light.sample, corners[k]);
-                p.material.reflect(&incident, turn_to(normals[k], p.face_normal), to_eye)
+                self.reflect(p, face.id, &incident, turn_to(normals[k], p.face_normal), to_eye)
             };
             return interpolate_color([at(0), at(1), at(2)], p.barycentric);
         }
-        p.material.reflect(&incident, p.normal, p.to_eye)
+        self.reflect(p, face.id, &incident, p.normal, p.to_eye)
+    }
+
+    /// By the material's formula, or as measured.
+    fn reflect(&self, p: &Point, triangle: u32, incident: &Incident, normal: Vec3, to_eye: Vec3) -> Vec3 {
+        let material = self.scene.mesh.material_of[triangle as usize] as usize;
+        match &self.scene.materials[material].details.measured {
+            Some(measured) => measured.table.reflect(incident, normal, to_eye),
+            None => p.material.reflect(incident, normal, to_eye),
+        }
     }
 }
 

@@ -8,11 +8,15 @@ mod ambient;
 mod background;
 mod canvas;
 mod capture;
+mod detail;
+mod detail_maps;
 mod direct;
 mod gather;
 mod lights;
 mod look;
+mod mirrors;
 mod prepared;
+mod reflections;
 mod shading;
 mod surfaces;
 

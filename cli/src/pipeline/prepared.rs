@@ -4,6 +4,7 @@ use super::ambient::Ambient;
 use super::background::{Background, sum_up_environment};
 use super::canvas::Canvas;
 use super::lights::light_samples;
+use super::reflections::Reflections;
 use super::shading::{Shader, ShaderScratch, Style};
 use super::surfaces::Surfaces;
 use super::{PipelineError, TILE_SIZE};
@@ -13,14 +14,15 @@ use crate::scene::{AmbientLight, Occlusion, Scene};
 use pointillist_micropoint as micropoint;
 use pointillist_micropoint::{Geometry, MicropointOptions, PixelRect, Renderer, TexelSums, TileCounts, View};
 use pointillist_shadow::ShadowCounts;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 /// What all views of a scene share: textures summed up, geometry sorted into clusters.
 pub struct Prepared<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) surfaces: Surfaces,
+    pub(super) surfaces: Arc<Surfaces>,
     pub(super) geometry: Geometry,
-    environment: Option<TexelSums<3>>,
+    environment: Arc<Option<TexelSums<3>>>,
+    pub(super) reflections: Arc<Reflections>,
 }
 
 impl<'a> Prepared<'a> {
@@ -34,7 +36,26 @@ impl<'a> Prepared<'a> {
         let environment = stats.stage("textures", || sum_up_environment(scene))?;
         stats.count("triangles", geometry.triangle_count() as u64);
         stats.count("triangles_of_solids", geometry.solid_triangle_count() as u64);
-        Ok(Self { scene, surfaces, geometry, environment })
+        let mut prepared = Self {
+            scene,
+            surfaces: Arc::new(surfaces),
+            geometry,
+            environment: Arc::new(environment),
+            reflections: Arc::new(Reflections::new(scene, stats)),
+        };
+        prepared.capture_mirrors(stats)?;
+        Ok(prepared)
+    }
+
+    /// The same scene with other triangles in view.
+    pub(super) fn with_geometry(&self, geometry: Geometry) -> Self {
+        Self {
+            scene: self.scene,
+            surfaces: self.surfaces.clone(),
+            geometry,
+            environment: self.environment.clone(),
+            reflections: self.reflections.clone(),
+        }
     }
 
     /// The triangles.
@@ -47,6 +68,10 @@ impl<'a> Prepared<'a> {
         match &self.scene.ambient {
             AmbientLight::Color(color) => Ambient::Color(*color),
             AmbientLight::Probes { field, .. } => Ambient::Probes(field),
+            AmbientLight::Environment => match self.reflections.of_scene() {
+                Some(map) => Ambient::Environment(map),
+                None => Ambient::Color(self.scene.image.background),
+            },
         }
     }
 
@@ -66,12 +91,12 @@ impl<'a> Prepared<'a> {
         progress: &Progress,
         stats: &Stats,
     ) -> Result<Frame, PipelineError> {
-        let renderer = Renderer::new(&self.geometry, &self.surfaces, view, options(self.scene))?;
+        let renderer = Renderer::new(&self.geometry, &*self.surfaces, view, options(self.scene))?;
         let mut clock = ThreadClock::start();
         let lights = light_samples(self.scene, &self.geometry, &self.surfaces, renderer.lens())?;
         clock.book(stats, "lights");
-        let background = Background::new(self.scene, self.environment.as_ref(), &view);
-        let shader = Shader::new(self.scene, &self.surfaces, &lights, &view, style);
+        let background = Background::new(self.scene, (*self.environment).as_ref(), &view);
+        let shader = Shader::new(self, &lights, &view, style);
         let canvas = Mutex::new(Canvas::new(self.scene, [view.width(), view.height()], job));
         let totals = Mutex::new((TileCounts::default(), ShadowCounts::default()));
         renderer.for_each_tile(pixel_rect(job.window), TILE_SIZE, |scratch: &mut Scratch, tile| {

@@ -5,13 +5,15 @@ use super::background::Background;
 use super::canvas::Pixels;
 use super::direct::DirectScratch;
 use super::lights::LightSample;
+use super::prepared::Prepared;
+use super::reflections::Reflections;
 use super::surfaces::Surfaces;
 use crate::image_io::LayerKind;
 use crate::job::{Stats, ThreadClock};
 use crate::scene::{NONE, Scene};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Face, Fragment, LensKind, Micropoint, SurfacePoint, Tile, View};
-use pointillist_shade::{Interpolation, Material, face_normal, interpolate_normal};
+use pointillist_shade::{Interpolation, Material, face_normal, interpolate_color, interpolate_normal};
 use pointillist_shadow::ShadowCounts;
 use pointillist_shprobe::Hint;
 
@@ -38,10 +40,11 @@ pub(super) struct Economy {
 /// What all tiles share.
 pub(super) struct Shader<'a> {
     pub(super) scene: &'a Scene,
-    surfaces: &'a Surfaces,
+    pub(super) surfaces: &'a Surfaces,
+    pub(super) reflections: &'a Reflections,
     lights: &'a [LightSample<'a>],
     pub(super) economy: Option<Economy>,
-    ambient: Ambient<'a>,
+    pub(super) ambient: Ambient<'a>,
     emission: bool,
     pub(super) eye: DVec3,
     pub(super) forward: DVec3,
@@ -80,16 +83,38 @@ pub(super) struct Point {
     pub(super) indirect: Vec3,
 }
 
+/// A point of a surface before light is added.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface {
+    pub(super) triangle: u32,
+    /// Whether its front is seen.
+    pub(super) front: bool,
+    pub(super) position: DVec3,
+    pub(super) to_eye: Vec3,
+    pub(super) face_normal: Vec3,
+    pub(super) normal: Vec3,
+    pub(super) material: Material,
+}
+
 impl<'a> Shader<'a> {
     pub(super) fn new(
-        scene: &'a Scene,
-        surfaces: &'a Surfaces,
+        prepared: &'a Prepared<'_>,
         lights: &'a [LightSample<'a>],
         view: &View,
         style: &Style<'a>,
     ) -> Self {
         let Style { ambient, emission, economy } = *style;
-        Self { scene, surfaces, lights, economy, ambient, emission, eye: view.eye(), forward: view.forward() }
+        Self {
+            scene: prepared.scene,
+            surfaces: &prepared.surfaces,
+            reflections: &prepared.reflections,
+            lights,
+            economy,
+            ambient,
+            emission,
+            eye: view.eye(),
+            forward: view.forward(),
+        }
     }
 
     /// Shades a tile.
@@ -126,18 +151,39 @@ impl<'a> Shader<'a> {
             LensKind::Perspective => -relative.normalize_or_zero(),
             LensKind::Orthographic => -self.forward,
         };
-        let mesh = &self.scene.mesh;
-        let corners = mesh.triangles[face.id as usize].map(|v| mesh.positions[v as usize]);
+        let corners = self.corners(face.id);
         let normal = face_normal(corners[0], corners[1], corners[2]);
         let face_normal = if face.front { normal } else { -normal }.as_vec3();
         let (barycentric, to_eye) = (at.barycentric.as_vec3(), to_eye.as_vec3());
-        let material = &self.scene.materials[mesh.material_of[face.id as usize] as usize];
-        let mut material = self.textured(tile, m, face, material.surface, polygon);
+        let described = &self.scene.materials[self.scene.mesh.material_of[face.id as usize] as usize];
+        let mut material = self.textured(tile, m, face, described.surface, polygon);
+        if !self.scene.mesh.colors.is_empty() {
+            material.diffuse *= self.vertex_color(face.id, barycentric);
+        }
         if !self.emission {
             material.emission = Vec3::ZERO;
         }
         let position = self.eye + relative;
         let normal = self.shading_normal(face, barycentric, face_normal, to_eye);
+        if let Some(maps) = self.surfaces.details(face.id) {
+            let (triangle, front) = (face.id, face.front);
+            let mut s = Surface { triangle, front, position, to_eye, face_normal, normal, material };
+            let occlusion = self.apply_maps(&described.details, maps, &mut s, |each| {
+                self.for_outlines(tile, m, face, polygon, each);
+            });
+            let indirect = self.surrounding_light(&described.details, &s, occlusion, hint);
+            let Surface { normal, material, .. } = s;
+            return Point {
+                position,
+                barycentric,
+                to_eye,
+                face_normal,
+                normal,
+                material,
+                direct: Vec3::ZERO,
+                indirect,
+            };
+        }
         // What reflects nothing needs no light.
         let indirect = if material.diffuse == Vec3::ZERO {
             Vec3::ZERO
@@ -175,17 +221,41 @@ impl<'a> Shader<'a> {
             return material;
         }
         let (mut sum, mut total) = (Vec3::ZERO, 0.0);
+        self.for_outlines(tile, m, face, polygon, &mut |polygon, weight| {
+            sum += self.surfaces.color(face.id, polygon).color * weight;
+            total += weight;
+        });
+        if total > 0.0 { material.with_diffuse(material.diffuse * (sum / total)) } else { material }
+    }
+
+    /// What is seen of a micropoint, piece by piece, with the weight of each.
+    fn for_outlines(
+        &self,
+        tile: &Tile,
+        m: &Micropoint,
+        face: &Face,
+        polygon: &mut Vec<SurfacePoint>,
+        each: &mut dyn FnMut(&[SurfacePoint], f32),
+    ) {
         let fragments = tile.fragments(m);
         let limit = self.economy.map_or(usize::MAX, |e| e.textures_per_micropoint);
         let lightest = heaviest_weights(fragments, limit);
         for fragment in fragments.iter().filter(|f| f.weight >= lightest).take(limit) {
             polygon.clear();
             polygon.extend(tile.outline(fragment).iter().map(|&v| face.point(tile.lens(), v)));
-            let weight = fragment.weight as f32;
-            sum += self.surfaces.color(face.id, polygon).color * weight;
-            total += weight;
+            each(polygon, fragment.weight as f32);
         }
-        if total > 0.0 { material.with_diffuse(material.diffuse * (sum / total)) } else { material }
+    }
+
+    fn vertex_color(&self, triangle: u32, barycentric: Vec3) -> Vec3 {
+        let mesh = &self.scene.mesh;
+        interpolate_color(mesh.triangles[triangle as usize].map(|v| mesh.colors[v as usize]), barycentric)
+    }
+
+    /// Corners of a triangle.
+    pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        let mesh = &self.scene.mesh;
+        mesh.triangles[triangle as usize].map(|v| mesh.positions[v as usize])
     }
 }
 

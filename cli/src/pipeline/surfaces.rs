@@ -1,13 +1,15 @@
 //! A scene's materials as the renderer sees them: opacity, and textures summed up for exact means.
 
-use crate::scene::{Material, NONE, Scene, Texture};
+use super::detail_maps::{DetailMaps, DetailTable, texel_wrap};
+use crate::scene::{Details, Material, NONE, Scene, Texture};
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_micropoint::{
-    Geometry, MicropointError, Surface, SurfacePoint, TexelCorner, TexelSums, TexelWrap, TexturedOpacity,
+    Geometry, MicropointError, Surface, SurfacePoint, TexelCorner, TexelSums, TexturedOpacity,
 };
-use pointillist_shade::Wrap;
+use pointillist_shade::Model;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::sync::Arc;
 
 /// What a material looks up in textures. Colour is summed up as colour × opacity, so that the empty
 /// part of a leaf's texture does not bleed into its rim.
@@ -21,11 +23,13 @@ enum Textured {
 
 /// Materials ready to be looked up, and where their textures lie on the triangles.
 pub(crate) struct Surfaces {
-    textures: Vec<std::sync::Arc<Textured>>,
+    textures: Vec<Arc<Textured>>,
     uv_of: Vec<[DVec2; 3]>,
     surface_of: Vec<u32>,
     surfaces: Vec<Surface>,
     material_of: Vec<u32>,
+    /// For each material; `None` for one of colour and opacity alone.
+    details: Vec<Option<DetailMaps>>,
 }
 
 /// What textures say of a visible piece.
@@ -37,24 +41,49 @@ pub(crate) struct Texel {
 
 impl Surfaces {
     pub(crate) fn new(scene: &Scene) -> Result<Self, MicropointError> {
-        let mut known = HashMap::new();
-        let mut textures = Vec::with_capacity(scene.materials.len());
-        for m in &scene.materials {
-            let key = (m.diffuse_map, m.opacity_map, m.wrap);
-            let texture: &std::sync::Arc<Textured> = match known.entry(key) {
-                Entry::Occupied(e) => e.into_mut(),
-                Entry::Vacant(e) => e.insert(std::sync::Arc::new(sum_up(m, &scene.textures)?)),
-            };
-            textures.push(texture.clone());
-        }
+        let (textures, details) = rayon::join(|| textured_by_material(scene), || details_by_material(scene));
+        let (textures, details) = (textures?, details?);
         let (surfaces, surface_of) = surfaces_by_material(scene, &textures);
-        let any_texture = textures.iter().any(|t| !matches!(**t, Textured::Nothing));
+        let any_detail = details.iter().flatten().any(DetailMaps::any);
+        let any_texture = any_detail || textures.iter().any(|t| !matches!(**t, Textured::Nothing));
         let uv_of = if any_texture { corner_uvs(scene) } else { Vec::new() };
-        Ok(Self { textures, uv_of, surface_of, surfaces, material_of: scene.mesh.material_of.clone() })
+        let material_of = scene.mesh.material_of.clone();
+        Ok(Self { textures, uv_of, surface_of, surfaces, material_of, details })
     }
 
     pub(crate) fn geometry(&self, scene: &Scene) -> Result<Geometry, MicropointError> {
         Geometry::new(&scene.mesh.positions, &scene.mesh.triangles, &self.surface_of, &self.surfaces)
+    }
+
+    /// Everything but one object. Triangles keep their numbers.
+    pub(crate) fn geometry_without(&self, scene: &Scene, object: u32) -> Result<Geometry, MicropointError> {
+        let mesh = &scene.mesh;
+        // A triangle without area is never seen.
+        let hidden = |(t, &[a, b, c]): (usize, &[u32; 3])| {
+            if mesh.object_of[t] == object { [a; 3] } else { [a, b, c] }
+        };
+        let triangles: Vec<[u32; 3]> = mesh.triangles.iter().enumerate().map(hidden).collect();
+        Geometry::new(&mesh.positions, &triangles, &self.surface_of, &self.surfaces)
+    }
+
+    /// The maps of a triangle's material beyond colour and opacity; `None` if it has nothing beyond them.
+    pub(super) fn details(&self, triangle: u32) -> Option<&DetailMaps> {
+        self.details[self.material_of[triangle as usize] as usize].as_ref()
+    }
+
+    /// Texture coordinates of a triangle's corners.
+    pub(super) fn uv(&self, triangle: u32) -> [DVec2; 3] {
+        self.uv_of.get(triangle as usize).copied().unwrap_or_default()
+    }
+
+    /// Mean of a map over a polygon of a triangle.
+    pub(super) fn mean<const N: usize>(
+        &self,
+        triangle: u32,
+        polygon: &[SurfacePoint],
+        map: &TexelSums<N>,
+    ) -> [f64; N] {
+        map.mean(self.corners(triangle, polygon, map).as_slice())
     }
 
     fn textured(&self, triangle: u32) -> &Textured {
@@ -134,7 +163,7 @@ fn weighted(corners: &[DVec2; 3], b: DVec3) -> DVec2 {
 }
 
 /// A surface for each material and each kind of object.
-fn surfaces_by_material(scene: &Scene, textures: &[std::sync::Arc<Textured>]) -> (Vec<Surface>, Vec<u32>) {
+fn surfaces_by_material(scene: &Scene, textures: &[Arc<Textured>]) -> (Vec<Surface>, Vec<u32>) {
     let mut surfaces = Vec::with_capacity(2 * scene.materials.len());
     for (m, t) in scene.materials.iter().zip(textures) {
         let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::ColorAndOpacity(..));
@@ -143,9 +172,35 @@ fn surfaces_by_material(scene: &Scene, textures: &[std::sync::Arc<Textured>]) ->
         surfaces.push(Surface { opacity, textured_opacity, two_sided: false });
     }
     let mesh = &scene.mesh;
-    let two_sided = |t: usize| mesh.objects.get(mesh.object_of[t] as usize).is_none_or(|o| o.two_sided);
-    let surface = |(t, &m): (usize, &u32)| 2 * m + u32::from(!two_sided(t));
+    let two_sided = |t: usize, m: u32| {
+        let object = mesh.objects.get(mesh.object_of[t] as usize);
+        object.is_none_or(|o| o.two_sided) && !scene.materials[m as usize].details.one_sided
+    };
+    let surface = |(t, &m): (usize, &u32)| 2 * m + u32::from(!two_sided(t, m));
     (surfaces, mesh.material_of.iter().enumerate().map(surface).collect())
+}
+
+fn textured_by_material(scene: &Scene) -> Result<Vec<Arc<Textured>>, MicropointError> {
+    let mut known = HashMap::new();
+    let mut textures = Vec::with_capacity(scene.materials.len());
+    for m in &scene.materials {
+        let key = (m.diffuse_map, m.opacity_map, m.wrap);
+        let texture: &Arc<Textured> = match known.entry(key) {
+            Entry::Occupied(e) => e.into_mut(),
+            Entry::Vacant(e) => e.insert(Arc::new(sum_up(m, &scene.textures)?)),
+        };
+        textures.push(texture.clone());
+    }
+    Ok(textures)
+}
+
+fn details_by_material(scene: &Scene) -> Result<Vec<Option<DetailMaps>>, MicropointError> {
+    let table = DetailTable::new(scene)?;
+    let maps = |m: &Material| {
+        let beyond = m.details != Details::default() || m.surface.model == Model::Ggx;
+        beyond.then(|| table.maps(&m.details))
+    };
+    Ok(scene.materials.iter().map(maps).collect())
 }
 
 /// Texture coordinates of each triangle's corners; zero where it has none.
@@ -158,11 +213,7 @@ fn corner_uvs(scene: &Scene) -> Vec<[DVec2; 3]> {
 }
 
 fn sum_up(material: &Material, textures: &[Texture]) -> Result<Textured, MicropointError> {
-    let wrap = match material.wrap {
-        Wrap::Clamp => TexelWrap::Clamp,
-        Wrap::Mirror => TexelWrap::Mirror,
-        _ => TexelWrap::Repeat,
-    };
+    let wrap = texel_wrap(material.wrap);
     let color = material.diffuse_map.map(|i| &textures[i]);
     let opacity = material.opacity_map.map(|i| &textures[i]);
     Ok(match (color, opacity) {

@@ -1,6 +1,6 @@
 //! One number for everything that a picture depends on.
 
-use super::{AmbientLight, Material, Mesh, Projection, Resolution, Scene, Texels, Texture};
+use super::{AmbientLight, Details, Material, Mesh, Projection, Resolution, Scene, Texels, Texture};
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade::{Falloff, Light, Material as Surface};
 use std::hash::Hasher as _;
@@ -39,6 +39,7 @@ pub fn of_light(scene: &Scene) -> u64 {
     match &scene.ambient {
         AmbientLight::Color(color) => hash.color(*color),
         AmbientLight::Probes { fingerprint, .. } => hash.int(*fingerprint),
+        AmbientLight::Environment => hash.text("environment"),
     }
     hash.0.finish()
 }
@@ -94,7 +95,7 @@ impl Fingerprint {
     fn mesh(&mut self, mesh: &Mesh) {
         self.int(mesh.positions.len() as u64);
         mesh.positions.iter().for_each(|&p| self.vector(p));
-        mesh.normals.iter().for_each(|&n| self.color(n));
+        mesh.normals.iter().chain(&mesh.colors).for_each(|&n| self.color(n));
         mesh.uvs.iter().for_each(|&DVec2 { x, y }| [x, y].into_iter().for_each(|n| self.float(n)));
         [&mesh.triangles, &mesh.normal_of, &mesh.uv_of].into_iter().for_each(|list| self.triples(list));
         mesh.material_of.iter().chain(&mesh.object_of).for_each(|n| self.0.write(&n.to_le_bytes()));
@@ -102,13 +103,16 @@ impl Fingerprint {
     }
 
     fn material(&mut self, material: &Material) {
-        let Surface { model, diffuse, specular, shininess, emission, opacity } = material.surface;
+        let Surface { model, diffuse, specular, shininess, roughness, emission, opacity } = material.surface;
         self.text(&format!("{model:?} {:?}", material.wrap));
-        [diffuse, specular, emission, Vec3::new(shininess, opacity, 0.0)]
+        [diffuse, specular, emission, Vec3::new(shininess, opacity, roughness)]
             .into_iter()
             .for_each(|c| self.color(c));
         self.option(material.diffuse_map);
         self.option(material.opacity_map);
+        if material.details != Details::default() {
+            self.text(&format!("{:?}", material.details));
+        }
     }
 
     fn texture(&mut self, texture: &Texture) {

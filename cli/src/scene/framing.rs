@@ -12,9 +12,14 @@ const TOWARDS_EYE: DVec3 = DVec3::new(0.45, 0.35, 1.0);
 /// Room around a framed scene.
 const MARGIN: f64 = 1.05;
 
-/// The description's camera, with what it leaves open chosen so that the mesh fills the view.
-pub(super) fn place(description: &Description, mesh: &Mesh, aspect: f64) -> Result<Camera, InputError> {
-    around(&description.camera, || corners(mesh), aspect).map_err(|fault| {
+/// The camera that is given for a description, with what it leaves open chosen so that the mesh fills the view.
+pub(super) fn place(
+    description: &Description,
+    given: &CameraDescription,
+    mesh: &Mesh,
+    aspect: f64,
+) -> Result<Camera, InputError> {
+    around(given, || corners(mesh), aspect).map_err(|fault| {
         let error = InputError::of_file(description.document.name(), format!("camera: {fault}"));
         error.with_help("give camera.eye and camera.target")
     })

@@ -22,7 +22,8 @@ enum Kind {
 
 /// Reads a scene file or a mesh and everything it refers to; `-` is standard input.
 ///
-/// A mesh alone is framed, and gets a light and some ambient light unless the overrides bring lights.
+/// A mesh alone is framed, and gets a light and some ambient light unless the overrides bring lights. A glTF alone is seen by
+/// its first camera and in its own lights, if it has any.
 ///
 /// # Errors
 ///
@@ -83,16 +84,12 @@ fn kind_of(path: &Path) -> Result<Kind, InputError> {
     match extension.as_str() {
         "toml" => Ok(Kind::Text(Format::Toml)),
         "json" => Ok(Kind::Text(Format::Json)),
-        "obj" | "ply" => Ok(Kind::Mesh),
-        "glb" | "gltf" => {
-            let name = path.display().to_string();
-            Err(InputError::of_file(name, "glTF is not in this version yet")
-                .with_help("convert the model to OBJ"))
-        }
+        "obj" | "ply" | "glb" | "gltf" => Ok(Kind::Mesh),
         _ => {
             let name = path.display().to_string();
             let message = "the name does not say what kind of scene this is";
-            Err(InputError::of_file(name, message).with_help("scenes end in .toml, .json, .obj or .ply"))
+            Err(InputError::of_file(name, message)
+                .with_help("scenes end in .toml, .json, .obj, .ply, .gltf or .glb"))
         }
     }
 }

@@ -1,13 +1,20 @@
 //! Which material each name in a mesh stands for.
 
-use super::description::{Description, MaterialDescription, ObjectDescription};
+use super::description::{
+    Description, FileReference, MaterialDescription, ObjectDescription, SurroundingsDescription,
+    TextureReference,
+};
+use super::measured::MeasuredTable;
 use super::resolve::{load_texture, read_file};
 use super::textures::{Purpose, TextureTable};
-use super::{Material, NONE};
+use super::{
+    Bump, BumpHeight, Channel, Details, Map, Material, MeasuredBrdf, NONE, Surroundings, gltf_materials,
+    mtl_materials,
+};
 use crate::input_error::InputError;
+use crate::mesh_io::gltf::GltfModel;
 use crate::mesh_io::{FileMesh, MtlMaterial, read_mtl};
-use glam::Vec3;
-use pointillist_shade::{self as shade, Model, Wrap};
+use pointillist_shade as shade;
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
@@ -19,13 +26,14 @@ pub(super) struct MaterialTable<'a> {
     of_scene: HashMap<&'a str, u32>,
     of_mtl: HashMap<(PathBuf, String), u32>,
     default: Option<u32>,
+    measured: MeasuredTable,
 }
 
 /// An MTL, read.
-struct Library {
-    path: PathBuf,
-    bytes: Vec<u8>,
-    materials: Vec<MtlMaterial>,
+pub(super) struct Library {
+    pub(super) path: PathBuf,
+    pub(super) bytes: Vec<u8>,
+    pub(super) materials: Vec<MtlMaterial>,
 }
 
 impl<'a> MaterialTable<'a> {
@@ -37,7 +45,13 @@ impl<'a> MaterialTable<'a> {
             of_scene: HashMap::new(),
             of_mtl: HashMap::new(),
             default: None,
+            measured: MeasuredTable::default(),
         }
+    }
+
+    /// The materials so far.
+    pub(super) fn list(&self) -> &[Material] {
+        &self.list
     }
 
     pub(super) fn into_materials(self) -> Vec<Material> {
@@ -75,6 +89,11 @@ impl<'a> MaterialTable<'a> {
             if number.is_none() {
                 number = self.of_libraries(name, &libraries, textures, warnings)?;
             }
+            if number.is_none()
+                && let Some(model) = &file.gltf
+            {
+                number = self.of_gltf(name, model, path, textures)?;
+            }
             if number.is_none() && !name.is_empty() {
                 warnings.push(format!(
                     "{}: material `{name}` is not defined; a grey one is used",
@@ -84,6 +103,25 @@ impl<'a> MaterialTable<'a> {
             numbers.push(number.unwrap_or_else(|| self.default()));
         }
         Ok(numbers)
+    }
+
+    /// Materials of a glTF are its own, told apart by its path.
+    fn of_gltf(
+        &mut self,
+        name: &str,
+        model: &GltfModel,
+        path: &Path,
+        textures: &mut TextureTable,
+    ) -> Result<Option<u32>, InputError> {
+        let key = (path.to_path_buf(), name.to_owned());
+        if let Some(&number) = self.of_mtl.get(&key) {
+            return Ok(Some(number));
+        }
+        let Some(found) = model.materials.iter().find(|m| m.name == name) else { return Ok(None) };
+        let material = gltf_materials::build(found, model, path, textures)?;
+        let number = self.add(material);
+        self.of_mtl.insert(key, number);
+        Ok(Some(number))
     }
 
     fn undefined(&self, name: &str, span: super::text::Span) -> InputError {
@@ -105,13 +143,7 @@ impl<'a> MaterialTable<'a> {
         if let Some(number) = self.default {
             return number;
         }
-        let number = self.add(Material {
-            name: "default".to_owned(),
-            surface: shade::Material::default(),
-            diffuse_map: None,
-            opacity_map: None,
-            wrap: Wrap::Repeat,
-        });
+        let number = self.add(Material::plain("default", shade::Material::default()));
         self.default = Some(number);
         number
     }
@@ -131,24 +163,66 @@ impl<'a> MaterialTable<'a> {
     }
 
     fn build(
-        &self,
+        &mut self,
         name: &str,
         found: &MaterialDescription,
         textures: &mut TextureTable,
     ) -> Result<Material, InputError> {
-        let mut texture = |reference: &Option<_>, opacity: bool| {
-            let Some(reference): &Option<super::description::TextureReference> = reference else {
-                return Ok(None);
-            };
-            let purpose = if opacity { Purpose::Opacity } else { Purpose::Color { srgb: reference.srgb } };
-            load_texture(textures, self.description, self.folder, reference, purpose).map(Some)
+        let mut load = |reference: &TextureReference, purpose: Purpose| {
+            load_texture(textures, self.description, self.folder, reference, purpose)
         };
-        Ok(Material {
-            name: name.to_owned(),
-            surface: found.surface,
-            diffuse_map: texture(&found.diffuse_map, false)?,
-            opacity_map: texture(&found.opacity_map, true)?,
-            wrap: found.wrap,
+        let mut colored = |reference: &Option<TextureReference>| {
+            let load = |r: &TextureReference| load(r, Purpose::Color { srgb: r.srgb });
+            reference.as_ref().map(load).transpose()
+        };
+        let diffuse_map = colored(&found.diffuse_map)?;
+        let map = |texture| Map { texture, wrap: found.wrap, channel: Channel::Mean };
+        let specular_map = colored(&found.specular_map)?.map(map);
+        let emission_map = colored(&found.emission_map)?.map(map);
+        // Numbers, not colours: never decoded.
+        let mut plain = |reference: &Option<TextureReference>| {
+            let load = |r: &TextureReference| load(r, Purpose::Color { srgb: false }).map(map);
+            reference.as_ref().map(load).transpose()
+        };
+        let details = Details {
+            specular_map,
+            emission_map,
+            shininess_map: plain(&found.shininess_map)?,
+            roughness_map: plain(&found.roughness_map)?,
+            metallic_map: plain(&found.metallic_map)?,
+            bump: plain(&found.bump_map)?
+                .map(|map| Bump { map, height: BumpHeight::World(found.bump_scale) }),
+            normal: plain(&found.normal_map)?.map(|map| (map, 1.0)),
+            occlusion: None,
+            one_sided: false,
+            metallic: found.metallic,
+            measured: found.merl.as_ref().map(|file| self.measured_of(file)).transpose()?,
+            reflection: found.reflection,
+            transmission: found.transmission,
+            surroundings: match &found.surroundings {
+                SurroundingsDescription::Scene => Surroundings::Scene,
+                SurroundingsDescription::Capture => Surroundings::Capture,
+                SurroundingsDescription::File(reference) => {
+                    Surroundings::Texture(load(reference, Purpose::Color { srgb: true })?)
+                }
+            },
+            uv: found.uv,
+        };
+        let opacity_map = found.opacity_map.as_ref().map(|r| load(r, Purpose::Opacity)).transpose()?;
+        let mut surface = found.surface;
+        if let Some(measured) = &details.measured {
+            // What stands for the table in ambient light.
+            surface.diffuse = measured.table.albedo();
+        }
+        Ok(Material { name: name.to_owned(), surface, diffuse_map, opacity_map, wrap: found.wrap, details })
+    }
+
+    fn measured_of(&mut self, file: &FileReference) -> Result<MeasuredBrdf, InputError> {
+        let path = self.folder.join(&file.path);
+        self.measured.load(&path).map_err(|fault| {
+            let message = format!("measured BRDF `{}` {fault}", path.display());
+            let error = self.description.document.error(file.span, message);
+            error.with_help("paths are relative to the scene file; MERL's binary format can be read")
         })
     }
 
@@ -171,64 +245,13 @@ impl<'a> MaterialTable<'a> {
         }
         for ignored in &material.ignored {
             let file = library.path.display();
-            warnings.push(format!(
-                "{file}: `{ignored}` of material `{name}` is not in this version yet; ignored"
-            ));
+            warnings.push(format!("{file}: `{ignored}` of material `{name}` is not understood; ignored"));
         }
-        let material = Material {
-            name: name.to_owned(),
-            surface: surface(material),
-            diffuse_map: mtl_texture(
-                library,
-                &material.diffuse_map,
-                Purpose::Color { srgb: true },
-                textures,
-            )?,
-            opacity_map: mtl_texture(library, &material.opacity_map, Purpose::Opacity, textures)?,
-            wrap: if material.clamp { Wrap::Clamp } else { Wrap::Repeat },
-        };
+        let material = mtl_materials::build(library, material, textures, warnings)?;
         let number = self.add(material);
         self.of_mtl.insert(key, number);
         Ok(Some(number))
     }
-}
-
-/// Lambert, and a highlight where the MTL asks for one: `illum` 2 or more (or none), with `Ks` and `Ns`.
-fn surface(material: &MtlMaterial) -> shade::Material {
-    let default_albedo =
-        if material.diffuse_map.is_some() { 1.0 } else { super::description::DEFAULT_ALBEDO };
-    let specular = material.specular.unwrap_or(Vec3::ZERO);
-    let shininess = material.shininess.unwrap_or(0.0);
-    let highlight = material.illumination.unwrap_or(2) >= 2 && specular != Vec3::ZERO && shininess > 0.0;
-    shade::Material {
-        model: if highlight { Model::NormalizedBlinnPhong } else { Model::Lambert },
-        diffuse: material.diffuse.unwrap_or(Vec3::splat(default_albedo)),
-        specular,
-        shininess,
-        emission: material.emission.unwrap_or(Vec3::ZERO),
-        opacity: material.opacity.unwrap_or(1.0),
-    }
-}
-
-fn mtl_texture(
-    library: &Library,
-    map: &Option<(String, usize)>,
-    purpose: Purpose,
-    textures: &mut TextureTable,
-) -> Result<Option<usize>, InputError> {
-    let Some((file, line)) = map else { return Ok(None) };
-    let folder = library.path.parent().unwrap_or(Path::new(""));
-    let mut path = folder.join(file);
-    if !path.exists() {
-        // Written on Windows, as many are.
-        path = folder.join(file.replace('\\', "/"));
-    }
-    textures.load(&path, purpose).map(Some).map_err(|fault| {
-        let name = library.path.display().to_string();
-        let message = format!("texture `{}` {fault}", path.display());
-        InputError::in_line(&name, &library.bytes, *line, message)
-            .with_help("paths are relative to the MTL; PNG, JPEG, HDR and EXR can be read")
-    })
 }
 
 /// The MTL files of a mesh; one that is not there is a warning.

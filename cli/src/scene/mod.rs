@@ -3,12 +3,18 @@
 //! A [`Scene`] holds every mesh in world space, every texture decoded and every default filled in, so that whoever
 //! draws it needs neither files nor rules.
 
+mod auto_uv;
 mod builtin;
 pub mod description;
+mod details;
 mod fingerprint;
 mod framing;
+mod gltf_materials;
+mod gltf_scene;
 mod load;
 mod materials;
+mod measured;
+mod mtl_materials;
 mod resolve;
 mod smooth;
 pub mod text;
@@ -17,10 +23,12 @@ mod textures;
 
 pub use builtin::builtin;
 pub use description::{Description, parse_str};
+pub use details::{Bump, BumpHeight, Channel, Details, Map, Surroundings, Transmission};
 pub use fingerprint::of_light as light_fingerprint;
 pub(crate) use framing::around as frame_around;
 pub(crate) use load::read_file;
 pub use load::{Overrides, load};
+pub use measured::MeasuredBrdf;
 pub use text::Format;
 pub use texture_lookup::{linear_from_srgb, srgb_from_linear};
 
@@ -68,6 +76,8 @@ pub enum AmbientLight {
         /// A hash of the file.
         fingerprint: u64,
     },
+    /// From [`ImageSettings::environment`] by the normal, reflected as albedo/π · irradiance.
+    Environment,
 }
 
 /// Where the eye is and what it takes in.
@@ -148,6 +158,8 @@ pub enum Occlusion {
 pub struct Mesh {
     /// World positions, all finite.
     pub positions: Vec<DVec3>,
+    /// Linear factors on the diffuse albedo: none, or one for each position.
+    pub colors: Vec<Vec3>,
     /// Corners, counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
     /// Unit normals; empty with flat shading.
@@ -186,8 +198,29 @@ pub struct Material {
     pub diffuse_map: Option<usize>,
     /// Texture whose alpha is the opacity.
     pub opacity_map: Option<usize>,
-    /// What the textures are outside the unit square.
+    /// What these two textures are outside the unit square.
     pub wrap: shade::Wrap,
+    /// Everything else.
+    pub details: Details,
+}
+
+impl Material {
+    /// A material of constants alone.
+    pub fn plain(name: impl Into<String>, surface: shade::Material) -> Self {
+        Self {
+            name: name.into(),
+            surface,
+            diffuse_map: None,
+            opacity_map: None,
+            wrap: shade::Wrap::Repeat,
+            details: Details::default(),
+        }
+    }
+
+    /// Whether any texture is looked up, so that texture coordinates matter.
+    pub fn has_maps(&self) -> bool {
+        self.diffuse_map.is_some() || self.opacity_map.is_some() || self.details.has_maps()
+    }
 }
 
 /// A decoded picture; row 0 is the top, that is v = 1.

@@ -2,12 +2,12 @@
 
 use super::builtin::Generated;
 use super::description::{
-    AmbientDescription, Description, FileReference, ObjectDescription, TextureReference,
+    AmbientDescription, Description, FileReference, ObjectDescription, RenderDescription, TextureReference,
 };
 use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene};
-use super::{fingerprint, framing, load, smooth};
+use super::{auto_uv, fingerprint, framing, gltf_scene, load, smooth};
 use crate::input_error::InputError;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::probe_io::read_probes;
@@ -42,8 +42,11 @@ pub(super) fn resolve(
     let ambient = ambient(description, folder)?;
     let [width, height] = description.size;
     let aspect = f64::from(width) / f64::from(height);
-    let camera = framing::place(description, &builder.mesh, aspect)?;
-    let shading = description.shading.unwrap_or(if builder.mesh.normals.is_empty() {
+    // A glTF that is the scene brings its camera and its lights.
+    let model = add_light.then(|| builder.meshes.values().find_map(|mesh| mesh.gltf.clone())).flatten();
+    let given = gltf_scene::camera(&description.camera, model.as_deref());
+    let camera = framing::place(description, &given, &builder.mesh, aspect)?;
+    let shading = description.render.shading.unwrap_or(if builder.mesh.normals.is_empty() {
         Interpolation::Flat
     } else {
         Interpolation::Phong
@@ -52,8 +55,8 @@ pub(super) fn resolve(
         camera,
         image: ImageSettings { width, height, background: description.background, environment },
         render: RenderSettings {
-            cells_per_pixel: description.subpixel,
-            occlusion: description.occlusion,
+            cells_per_pixel: description.render.subpixel,
+            occlusion: description.render.occlusion,
             shading,
         },
         mesh: builder.mesh,
@@ -65,6 +68,9 @@ pub(super) fn resolve(
         fingerprint: 0,
     };
     if add_light && scene.lights.is_empty() {
+        scene.lights = model.map(|model| gltf_scene::lights(&model)).unwrap_or_default();
+    }
+    if add_light && scene.lights.is_empty() {
         framing::add_light(&mut scene);
     }
     scene.fingerprint = fingerprint::of(&scene);
@@ -74,6 +80,14 @@ pub(super) fn resolve(
 fn ambient(description: &Description, folder: &Path) -> Result<AmbientLight, InputError> {
     match &description.ambient {
         AmbientDescription::Color(color) => Ok(AmbientLight::Color(*color)),
+        AmbientDescription::Environment => match description.environment {
+            Some(_) => Ok(AmbientLight::Environment),
+            None => {
+                let message = "`ambient.environment` needs `image.environment`, and there is none";
+                Err(InputError::of_file(description.document.name(), message)
+                    .with_help("name a map: [image] environment = \"sky.hdr\""))
+            }
+        },
         AmbientDescription::Probes(file) => {
             let path = folder.join(&file.path);
             if !path.is_file() {
@@ -155,19 +169,23 @@ impl<'a> Builder<'a> {
         let document = &self.description.document;
         let name = path.display().to_string();
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        let read: fn(&str, &[u8]) -> Result<FileMesh, InputError> = match extension.as_str() {
-            "obj" => read_obj,
-            "ply" => read_ply,
-            _ => {
-                let message = format!("`{}` is not a kind of mesh that can be read", reference.path);
-                return Err(document.error(reference.span, message).with_help("meshes end in .obj or .ply"));
-            }
-        };
+        if !["obj", "ply", "gltf", "glb"].contains(&extension.as_str()) {
+            let message = format!("`{}` is not a kind of mesh that can be read", reference.path);
+            let error = document.error(reference.span, message);
+            return Err(error.with_help("meshes end in .obj, .ply, .gltf or .glb"));
+        }
         let bytes = std::fs::read(path).map_err(|error| {
             let message = format!("mesh `{name}` cannot be read: {error}");
             document.error(reference.span, message).with_help("paths are relative to the scene file")
         })?;
-        let mesh = read(&name, &bytes)?;
+        let mesh = match extension.as_str() {
+            "obj" => read_obj(&name, &bytes)?,
+            "ply" => read_ply(&name, &bytes)?,
+            _ => gltf_scene::read(path, &bytes)?,
+        };
+        if let Some(model) = &mesh.gltf {
+            self.warnings.extend_from_slice(&model.warnings);
+        }
         if mesh.triangles.is_empty() {
             return Err(InputError::of_file(name, "the mesh has no faces")
                 .with_help("a mesh needs at least one triangle"));
@@ -193,6 +211,11 @@ impl<'a> Builder<'a> {
         let world = object.world_from_mesh;
         let first_position = mesh.positions.len();
         mesh.positions.extend(file.positions.iter().map(|&p| world.transform_point3(p)));
+        if !(file.colors.is_empty() && mesh.colors.is_empty()) {
+            mesh.colors.resize(first_position, Vec3::ONE);
+            mesh.colors.extend_from_slice(&file.colors);
+            mesh.colors.resize(mesh.positions.len(), Vec3::ONE);
+        }
         if let Some(index) = mesh.positions[first_position..].iter().position(|p| !p.is_finite()) {
             let message = format!("the object's transform takes vertex {index} out of the range of numbers");
             return Err(self.description.document.error(object.mesh.span, message));
@@ -203,7 +226,7 @@ impl<'a> Builder<'a> {
         append_indices(&mut mesh.triangles, &file.triangles, first_position, order);
         append_indices(&mut mesh.uv_of, &file.uv_of, mesh.uvs.len(), order);
         mesh.uvs.extend_from_slice(&file.uvs);
-        let shading = self.description.shading;
+        let RenderDescription { shading, normals, crease_rad, .. } = self.description.render;
         if shading == Some(Interpolation::Flat) {
             mesh.normal_of.resize(mesh.triangles.len(), [NONE; 3]);
         } else {
@@ -211,12 +234,20 @@ impl<'a> Builder<'a> {
             let to_world = normal_matrix(world.matrix3);
             mesh.normals.extend(file.unit_normals().map(|n| turned(to_world, n)));
             if shading.is_some() {
-                smooth::fill(mesh, first_triangle, first_position);
+                smooth::fill(mesh, first_triangle, first_position, normals, crease_rad);
             }
         }
         let index = mesh.objects.len() as u32;
         mesh.object_of.resize(mesh.triangles.len(), index);
         mesh.material_of.extend(file.material_of.iter().map(|&m| materials[m as usize]));
+        let warnings = &mut self.warnings;
+        auto_uv::fill(mesh, file, first_triangle, self.materials.list(), |material| {
+            warnings.push(format!(
+                "{}: material `{material}` has maps, but the mesh has no texture coordinates; those of a box are used \
+                 (uv = \"box\" in the material says so without this warning)",
+                object.mesh.path
+            ));
+        });
         let name = object.name.clone().unwrap_or_else(|| object.mesh.path.clone());
         mesh.objects.push(Object { name, two_sided: object.two_sided });
         Ok(())

@@ -1,14 +1,21 @@
 //! Vertex normals for triangles whose file has none.
 
 use super::{Mesh, NONE};
-use pointillist_shade::{Weighting, vertex_normals};
+use pointillist_shade::{CornerNormals, Weighting, corner_normals, vertex_normals};
 use std::collections::HashMap;
 
-/// Gives the triangles from `first_triangle` on that have no normals the area-weighted means at their corners.
+/// Gives the triangles from `first_triangle` on that have no normals the means of the faces at their corners, on this side
+/// of edges that are folded by more than `crease_rad`.
 ///
 /// Corners at the same position are one vertex: files repeat positions where the material changes, and there the
 /// surface goes on. (A file that repeats them to mark a crease has normals, or should.)
-pub(super) fn fill(mesh: &mut Mesh, first_triangle: usize, first_position: usize) {
+pub(super) fn fill(
+    mesh: &mut Mesh,
+    first_triangle: usize,
+    first_position: usize,
+    weighting: Weighting,
+    crease_rad: Option<f64>,
+) {
     if !mesh.normal_of[first_triangle..].contains(&[NONE; 3]) {
         return;
     }
@@ -30,11 +37,15 @@ pub(super) fn fill(mesh: &mut Mesh, first_triangle: usize, first_position: usize
     let bare: Vec<usize> =
         (first_triangle..mesh.triangles.len()).filter(|&t| mesh.normal_of[t] == [NONE; 3]).collect();
     let triangles: Vec<[u32; 3]> = bare.iter().map(|&t| mesh.triangles[t].map(vertex)).collect();
-    let normals = vertex_normals(&places, &triangles, Weighting::Area)
-        .expect("positions and indices were checked when the mesh was read");
+    let CornerNormals { normals, normal_of } = match crease_rad {
+        Some(crease) => corner_normals(&places, &triangles, weighting, crease),
+        None => vertex_normals(&places, &triangles, weighting)
+            .map(|normals| CornerNormals { normals, normal_of: triangles }),
+    }
+    .expect("positions and indices were checked when the mesh was read");
     let base = mesh.normals.len() as u32;
     mesh.normals.extend(normals);
-    for (&t, corners) in bare.iter().zip(&triangles) {
+    for (&t, corners) in bare.iter().zip(&normal_of) {
         mesh.normal_of[t] = corners.map(|corner| base + corner);
     }
 }

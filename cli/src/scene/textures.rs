@@ -17,6 +17,10 @@ pub(super) enum Purpose {
     },
     /// Opacity: the picture's alpha if it has one that says something, else its brightness.
     Opacity,
+    /// Opacity: the picture's alpha, nothing else.
+    Alpha,
+    /// Opacity: all from this alpha on (of 255), none below.
+    Mask(u16),
 }
 
 /// The textures of a scene.
@@ -37,10 +41,43 @@ impl TextureTable {
         if let Some(&number) = self.known.get(&key) {
             return Ok(number);
         }
-        let texture = read(path, purpose)?;
+        let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+        self.add(key, &bytes)
+    }
+
+    /// The same for a picture that is part of another file; `path` stands for it.
+    ///
+    /// # Errors
+    ///
+    /// As [`TextureTable::load`].
+    pub(super) fn load_embedded(
+        &mut self,
+        path: &Path,
+        bytes: &[u8],
+        purpose: Purpose,
+    ) -> Result<usize, String> {
+        let key = (path.to_path_buf(), purpose);
+        match self.known.get(&key) {
+            Some(&number) => Ok(number),
+            None => self.add(key, bytes),
+        }
+    }
+
+    fn add(&mut self, key: (PathBuf, Purpose), bytes: &[u8]) -> Result<usize, String> {
+        let texture = read(&key.0, bytes, key.1)?;
         self.list.push(texture);
         self.known.insert(key, self.list.len() - 1);
         Ok(self.list.len() - 1)
+    }
+
+    /// The alpha of a texture's first texel.
+    pub(super) fn first_alpha(&self, number: usize) -> f32 {
+        self.list[number].texel(0, 0).w
+    }
+
+    /// Whether all texels of a texture are equal.
+    pub(super) fn is_constant(&self, number: usize) -> bool {
+        self.list[number].is_constant()
     }
 
     /// Adds a texture that is not read from a file, under the path that stands for it.
@@ -54,11 +91,10 @@ impl TextureTable {
     }
 }
 
-fn read(path: &Path, purpose: Purpose) -> Result<Texture, String> {
-    let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+fn read(path: &Path, bytes: &[u8], purpose: Purpose) -> Result<Texture, String> {
     let image = if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
         let picture =
-            image_io::read_exr_picture(&bytes).map_err(|error| format!("cannot be decoded: {error}"))?;
+            image_io::read_exr_picture(bytes).map_err(|error| format!("cannot be decoded: {error}"))?;
         let [width, height] = picture.size;
         let flat = picture.color.into_iter().flatten().collect();
         let buffer = image::ImageBuffer::from_raw(width, height, flat);
@@ -80,6 +116,11 @@ fn texels(image: DynamicImage, purpose: Purpose) -> Texels {
     let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
     match purpose {
         Purpose::Opacity => opacity(&image),
+        Purpose::Alpha => Texels::Opacity8(alpha(&image)),
+        Purpose::Mask(from) => {
+            let mask = |a| if u16::from(a) >= from { u8::MAX } else { 0 };
+            Texels::Opacity8(alpha(&image).into_iter().map(mask).collect())
+        }
         Purpose::Color { srgb } if is_byte => {
             let texels = image.into_rgba8().pixels().map(|p| p.0).collect();
             if srgb { Texels::Srgb8(texels) } else { Texels::Linear8(texels) }
@@ -93,9 +134,13 @@ fn texels(image: DynamicImage, purpose: Purpose) -> Texels {
     }
 }
 
+fn alpha(image: &DynamicImage) -> Vec<u8> {
+    image.to_rgba8().pixels().map(|p| p.0[3]).collect()
+}
+
 fn opacity(image: &DynamicImage) -> Texels {
     if image.color().has_alpha() {
-        let alpha: Vec<u8> = image.to_rgba8().pixels().map(|p| p.0[3]).collect();
+        let alpha = alpha(image);
         if alpha.iter().any(|&a| a != u8::MAX) {
             return Texels::Opacity8(alpha);
         }

@@ -4,18 +4,18 @@ mod camera;
 mod lights;
 mod materials;
 mod objects;
+mod render;
 
 pub(super) use camera::view_fault;
 pub use camera::{CameraDescription, DEFAULT_FOV_DEG};
 pub use lights::LightDescription;
-pub use materials::{DEFAULT_ALBEDO, MaterialDescription, TextureReference};
+pub use materials::{DEFAULT_ALBEDO, MaterialDescription, SurroundingsDescription, TextureReference};
 pub use objects::ObjectDescription;
+pub use render::RenderDescription;
 
-use super::Occlusion;
 use super::text::{Document, Format, Span, Table};
 use crate::input_error::InputError;
 use glam::Vec3;
-use pointillist_shade::Interpolation;
 
 /// Width and height of a picture whose scene does not say.
 pub const DEFAULT_SIZE: [u32; 2] = [960, 540];
@@ -45,12 +45,8 @@ pub struct Description {
     pub background: Vec3,
     /// Picture behind everything.
     pub environment: Option<FileReference>,
-    /// Cells per pixel side.
-    pub subpixel: Option<u32>,
-    /// How pieces hide one another.
-    pub occlusion: Option<Occlusion>,
-    /// What is interpolated; `None`: the file's normals where there are any, else flat.
-    pub shading: Option<Interpolation>,
+    /// How to draw.
+    pub render: RenderDescription,
     /// The objects.
     pub objects: Vec<ObjectDescription>,
     /// The lights.
@@ -84,7 +80,7 @@ impl Description {
         let mut root = Table::new(&document, document.root(), "")?;
         let camera = CameraDescription::read(&mut root)?;
         let (size, background, environment) = read_image(&mut root)?;
-        let (subpixel, occlusion, shading) = read_render(&mut root)?;
+        let render = RenderDescription::read(&mut root)?;
         let objects = objects::read_all(&mut root)?;
         let lights = lights::read_all(&mut root)?;
         let materials = materials::read_all(&mut root)?;
@@ -95,9 +91,7 @@ impl Description {
             size,
             background,
             environment,
-            subpixel,
-            occlusion,
-            shading,
+            render,
             objects,
             lights,
             materials,
@@ -131,26 +125,6 @@ fn read_image(root: &mut Table<'_>) -> Result<Image, InputError> {
     Ok((size, background, environment))
 }
 
-type Render = (Option<u32>, Option<Occlusion>, Option<Interpolation>);
-
-fn read_render(root: &mut Table<'_>) -> Result<Render, InputError> {
-    let Some(mut table) = root.table("render")? else { return Ok((None, None, None)) };
-    let allowed = |n: f64| [1.0, 2.0, 4.0].contains(&n);
-    let subpixel = table.number_where("subpixel", "1, 2 or 4", allowed)?.map(|n| n as u32);
-    let occlusion =
-        table.choice("occlusion", &[("correlated", Occlusion::Correlated), ("paper", Occlusion::Paper)])?;
-    let shading = table.choice(
-        "shading",
-        &[
-            ("flat", Interpolation::Flat),
-            ("gouraud", Interpolation::Gouraud),
-            ("phong", Interpolation::Phong),
-        ],
-    )?;
-    table.finish()?;
-    Ok((subpixel, occlusion, shading))
-}
-
 /// Light that does not come straight from lights.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AmbientDescription {
@@ -158,6 +132,8 @@ pub enum AmbientDescription {
     Color(Vec3),
     /// A file of baked probes.
     Probes(FileReference),
+    /// The environment map.
+    Environment,
 }
 
 fn read_ambient(root: &mut Table<'_>) -> Result<AmbientDescription, InputError> {
@@ -170,7 +146,16 @@ fn read_ambient(root: &mut Table<'_>) -> Result<AmbientDescription, InputError> 
             .error("color", "`ambient.color` and `ambient.probes` are both given")
             .with_help("probes hold all ambient light: leave one of them out"));
     }
+    let environment = table.boolean("environment")?.unwrap_or(false);
+    if environment && (color.is_some() || probes.is_some()) {
+        return Err(table
+            .error("environment", "`ambient.environment` is given together with another ambient light")
+            .with_help("leave one of them out"));
+    }
     table.finish()?;
+    if environment {
+        return Ok(AmbientDescription::Environment);
+    }
     Ok(match probes {
         Some(file) => AmbientDescription::Probes(file),
         None => AmbientDescription::Color(color.unwrap_or(Vec3::ZERO)),

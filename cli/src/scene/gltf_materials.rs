@@ -1,0 +1,117 @@
+//! What a glTF material comes to.
+
+use super::textures::{Purpose, TextureTable};
+use super::{Channel, Details, Map, Material};
+use crate::input_error::InputError;
+use crate::mesh_io::gltf::{AlphaMode, GltfBytes, GltfMaterial, GltfModel, GltfTexture};
+use glam::Vec3;
+use pointillist_shade::{self as shade, Model, Wrap};
+use std::path::Path;
+
+/// Builds a material of the model in the file `path`.
+pub(super) fn build(
+    material: &GltfMaterial,
+    model: &GltfModel,
+    path: &Path,
+    textures: &mut TextureTable,
+) -> Result<Material, InputError> {
+    let mut pictures = Pictures { model, path, textures, material: &material.name };
+    let color = Purpose::Color { srgb: true };
+    let number = Purpose::Color { srgb: false };
+    let base = pictures.optional(material.base_texture, color)?;
+    let mut details = Details { one_sided: !material.double_sided, ..Details::default() };
+    let mut surface = shade::Material {
+        model: Model::Ggx,
+        specular: Vec3::splat(material.reflectance),
+        roughness: material.roughness,
+        opacity: if material.alpha_mode == AlphaMode::Blend { material.alpha } else { 1.0 },
+        emission: material.emissive,
+        ..shade::Material::lambert(material.base_color)
+    };
+    if material.unlit {
+        // Seen as it is: the base colour is what it sends out.
+        surface = shade::Material {
+            emission: material.base_color,
+            opacity: surface.opacity,
+            ..shade::Material::lambert(Vec3::ZERO)
+        };
+        details.emission_map = pictures.map(material.base_texture, color, Channel::Mean)?;
+    } else {
+        details.metallic = Some(material.metallic);
+        details.roughness_map = pictures.map(material.metallic_roughness_texture, number, Channel::Green)?;
+        details.metallic_map = pictures.map(material.metallic_roughness_texture, number, Channel::Blue)?;
+        details.emission_map = pictures.map(material.emissive_texture, color, Channel::Mean)?;
+        if let Some((texture, strength)) = material.occlusion_texture {
+            let map = pictures.map(Some(texture), number, Channel::Red)?;
+            details.occlusion = map.map(|map| (map, strength));
+        }
+        if let Some((texture, scale)) = material.normal_texture {
+            details.normal = pictures.map(Some(texture), number, Channel::Mean)?.map(|map| (map, scale));
+        }
+    }
+    let opacity_map = pictures.opacity(material)?;
+    let wrap = material.base_texture.map_or(Wrap::Repeat, |t| t.wrap);
+    let diffuse_map = base.filter(|_| !material.unlit);
+    Ok(Material { name: material.name.clone(), surface, diffuse_map, opacity_map, wrap, details })
+}
+
+/// The pictures of a model, decoded as they are needed.
+struct Pictures<'a> {
+    model: &'a GltfModel,
+    path: &'a Path,
+    textures: &'a mut TextureTable,
+    material: &'a str,
+}
+
+impl Pictures<'_> {
+    fn load(&mut self, image: usize, purpose: Purpose) -> Result<usize, InputError> {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let loaded = match &self.model.images[image] {
+            GltfBytes::File(name) => self.textures.load(&folder.join(name), purpose),
+            GltfBytes::Embedded(bytes) => {
+                let place = format!("{}#image{image}", self.path.display());
+                self.textures.load_embedded(Path::new(&place), bytes, purpose)
+            }
+        };
+        loaded.map_err(|fault| {
+            let name = self.path.display().to_string();
+            let message = format!("image {image}, used by material `{}`, {fault}", self.material);
+            InputError::of_file(name, message).with_help("PNG and JPEG pictures can be part of a glTF")
+        })
+    }
+
+    fn optional(
+        &mut self,
+        texture: Option<GltfTexture>,
+        purpose: Purpose,
+    ) -> Result<Option<usize>, InputError> {
+        texture.map(|t| self.load(t.image, purpose)).transpose()
+    }
+
+    fn map(
+        &mut self,
+        texture: Option<GltfTexture>,
+        purpose: Purpose,
+        channel: Channel,
+    ) -> Result<Option<Map>, InputError> {
+        let Some(found) = texture else { return Ok(None) };
+        let texture = self.load(found.image, purpose)?;
+        Ok(Some(Map { texture, wrap: found.wrap, channel }))
+    }
+
+    /// The alpha of the base colour, unless it hides nothing anywhere.
+    fn opacity(&mut self, material: &GltfMaterial) -> Result<Option<usize>, InputError> {
+        let purpose = match material.alpha_mode {
+            AlphaMode::Opaque => return Ok(None),
+            AlphaMode::Blend => Purpose::Alpha,
+            // alpha · factor ≥ cutoff, with alpha in 255ths; beyond 255 nothing is there.
+            AlphaMode::Mask(cutoff) => {
+                Purpose::Mask((255.0 * cutoff / material.alpha).ceil().clamp(0.0, 256.0) as u16)
+            }
+        };
+        let Some(texture) = material.base_texture else { return Ok(None) };
+        let number = self.load(texture.image, purpose)?;
+        let opaque = self.textures.is_constant(number) && self.textures.first_alpha(number) == 1.0;
+        Ok((!opaque).then_some(number))
+    }
+}

@@ -1,0 +1,54 @@
+//! Measured reflection from files, each read once.
+
+use pointillist_shade::MerlTable;
+use std::collections::HashMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A measured BRDF, shared by the materials that name its file.
+#[derive(Clone)]
+pub struct MeasuredBrdf {
+    /// The table.
+    pub table: Arc<MerlTable>,
+    /// A hash of the file.
+    pub fingerprint: u64,
+}
+
+impl PartialEq for MeasuredBrdf {
+    fn eq(&self, other: &Self) -> bool {
+        self.fingerprint == other.fingerprint
+    }
+}
+
+impl fmt::Debug for MeasuredBrdf {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Not the table, which has a million entries.
+        write!(f, "MeasuredBrdf({:016x})", self.fingerprint)
+    }
+}
+
+/// The measured BRDFs of a scene.
+#[derive(Default)]
+pub(super) struct MeasuredTable {
+    known: HashMap<PathBuf, MeasuredBrdf>,
+}
+
+impl MeasuredTable {
+    /// The table in this file, read if it is new.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, as the end of a sentence that begins with the path.
+    pub(super) fn load(&mut self, path: &Path) -> Result<MeasuredBrdf, String> {
+        if let Some(known) = self.known.get(path) {
+            return Ok(known.clone());
+        }
+        let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+        let table = MerlTable::from_bytes(&bytes).map_err(|error| format!("cannot be used: {error}"))?;
+        let fingerprint = twox_hash::XxHash3_64::oneshot(&bytes);
+        let measured = MeasuredBrdf { table: Arc::new(table), fingerprint };
+        self.known.insert(path.to_path_buf(), measured.clone());
+        Ok(measured)
+    }
+}
