@@ -47,6 +47,7 @@ impl<'a> Prepared<'a> {
         match &self.scene.ambient {
             AmbientLight::Color(color) => Ambient::Color(*color),
             AmbientLight::Probes { field, .. } => Ambient::Probes(field),
+            AmbientLight::Radiosity { light, .. } => Ambient::Radiosity(light),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Shades the micropoints of a tile: each once, and asks for light only where it can matter.
 
-use super::ambient::Ambient;
+use super::ambient::{Ambient, Spot};
 use super::background::Background;
 use super::canvas::Pixels;
 use super::direct::DirectScratch;
@@ -142,7 +142,8 @@ impl<'a> Shader<'a> {
         let indirect = if material.diffuse == Vec3::ZERO {
             Vec3::ZERO
         } else {
-            self.ambient.at(position, face_normal, normal, hint) * material.diffuse
+            let spot = Spot { position, triangle: face.id, front: face.front, face_normal, normal };
+            self.ambient.at(&spot, hint) * material.diffuse
         };
         Point { position, barycentric, to_eye, face_normal, normal, material, direct: Vec3::ZERO, indirect }
     }

@@ -17,10 +17,12 @@ mod textures;
 
 pub use builtin::builtin;
 pub use description::{Description, parse_str};
-pub use fingerprint::of_light as light_fingerprint;
+pub use fingerprint::{
+    of_geometry as geometry_fingerprint, of_light as light_fingerprint, of_sources as source_fingerprint,
+};
 pub(crate) use framing::around as frame_around;
 pub(crate) use load::read_file;
-pub use load::{Overrides, load};
+pub use load::{Overrides, load, load_to_bake};
 pub use text::Format;
 pub use texture_lookup::{linear_from_srgb, srgb_from_linear};
 
@@ -65,6 +67,13 @@ pub enum AmbientLight {
     Probes {
         /// The light.
         field: Box<pointillist_shprobe::Field>,
+        /// A hash of the file.
+        fingerprint: u64,
+    },
+    /// Baked on the scene's own triangles, reflected as albedo/π · irradiance.
+    Radiosity {
+        /// The light.
+        light: Box<crate::radiosity::Lightmap>,
         /// A hash of the file.
         fingerprint: u64,
     },
