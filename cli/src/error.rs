@@ -1,6 +1,7 @@
 //! Why a command ends early, and with which exit code.
 
 use crate::dice_command::DiceCommandError;
+use crate::factors_command::FactorsError;
 use crate::input_error::InputError;
 use std::io;
 use std::process::ExitCode;
@@ -18,6 +19,9 @@ pub enum CliError {
     /// `dice` stopped. Exit code 3 for its input, 1 otherwise.
     #[error("{0}")]
     Dice(DiceCommandError),
+    /// `radiosity factors` stopped. Exit code 3 for its input, 1 otherwise.
+    #[error("{0}")]
+    Factors(FactorsError),
     /// Parts that are missing or do not belong together. Exit code 4.
     #[error("{0}")]
     Parts(String),
@@ -39,10 +43,13 @@ impl CliError {
             Self::BrokenPipe => 0,
             Self::Failed(_) => 1,
             Self::Usage(_) => 2,
-            Self::Input(_) | Self::Dice(DiceCommandError::Input { .. }) => 3,
+            Self::Input(error) if error.mismatched => 4,
+            Self::Input(_)
+            | Self::Dice(DiceCommandError::Input { .. })
+            | Self::Factors(FactorsError::Input { .. }) => 3,
             Self::Parts(_) => 4,
             Self::Beyond(_) => 5,
-            Self::Dice(_) => 1,
+            Self::Dice(_) | Self::Factors(_) => 1,
         })
     }
 
@@ -61,6 +68,15 @@ impl From<DiceCommandError> for CliError {
         match error {
             DiceCommandError::Write(error) => Self::writing("the result", &error),
             other => Self::Dice(other),
+        }
+    }
+}
+
+impl From<FactorsError> for CliError {
+    fn from(error: FactorsError) -> Self {
+        match error {
+            FactorsError::Write(error) => Self::writing("the result", &error),
+            other => Self::Factors(other),
         }
     }
 }

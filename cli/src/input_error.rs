@@ -15,7 +15,9 @@ pub struct InputError {
     /// The line at fault, if it is text and known.
     pub place: Option<Place>,
     /// The way out.
-    pub help: Option<String>,
+    pub help: Option<Box<str>>,
+    /// Whether the file is sound but belongs to another scene.
+    pub mismatched: bool,
 }
 
 /// A place in a text.
@@ -34,7 +36,13 @@ pub struct Place {
 impl InputError {
     /// An error about the file as a whole.
     pub fn of_file(source_name: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { message: message.into(), source_name: source_name.into(), place: None, help: None }
+        Self {
+            message: message.into(),
+            source_name: source_name.into(),
+            place: None,
+            help: None,
+            mismatched: false,
+        }
     }
 
     /// An error about the bytes `start..end` of `text`.
@@ -61,7 +69,7 @@ impl InputError {
     /// The same with a way out.
     #[must_use]
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+        self.help = Some(help.into().into_boxed_str());
         self
     }
 }

@@ -8,6 +8,7 @@ mod commands;
 pub mod compare;
 pub mod dice_command;
 mod error;
+pub mod factors_command;
 pub mod image_io;
 mod input_error;
 pub mod job;
@@ -17,6 +18,7 @@ pub mod options;
 pub mod pipeline;
 pub mod points;
 pub mod probe_io;
+pub mod radiosity;
 pub mod scan;
 pub mod scene;
 

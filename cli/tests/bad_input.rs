@@ -78,15 +78,6 @@ fn broken_toml_shows_the_place() {
 }
 
 #[test]
-fn what_is_not_there_yet_is_said() {
-    scene_error(
-        "[[light]]",
-        "[ambient]\nradiosity = \"x.json\"\n[[light]]",
-        &["`ambient.radiosity` is not in this version yet"],
-    );
-}
-
-#[test]
 fn unknown_material_lists_the_known_ones() {
     let with_material = "mesh = \"triangle.obj\"\nmaterial = \"clay\"\n[material.stone]";
     scene_error("mesh = \"triangle.obj\"", with_material, &["no material `clay`", "stone"]);

@@ -8,6 +8,7 @@ mod info;
 mod merge;
 mod points;
 mod probe;
+mod radiosity;
 mod render;
 mod report;
 mod sample;
@@ -30,6 +31,7 @@ pub fn run(cli: &Cli) -> Result<(), CliError> {
         Command::Surfel(options) => surfel::run(options),
         Command::Sample(options) => sample::run(options),
         Command::Probe { command } => probe::run(command),
+        Command::Radiosity(options) => radiosity::run(options),
         Command::Dice(options) => dice::run(options),
         Command::Compare(options) => compare::run(options),
         Command::Info(options) => info::run(options),

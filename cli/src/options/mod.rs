@@ -3,6 +3,7 @@
 mod common;
 mod points;
 mod probe;
+mod radiosity;
 mod render;
 mod sample;
 mod scan;
@@ -14,6 +15,10 @@ pub use points::{PointLayerRequest, layer_list};
 pub use probe::{
     BakeOptions, Inside, PlaceOptions, ProbeCommand, ProjectOptions, QueryOptions, Strategy, TetraOptions,
     WeightRule, What,
+};
+pub use radiosity::{
+    FactorsOptions, FormFactorKind, LinkKind, RadiosityBakeOptions, RadiosityCommand, RadiosityOptions,
+    SolveMethod,
 };
 pub use render::{CameraOptions, LayerRequest, PictureOptions, RenderOptions};
 pub use sample::{SampleMethod, SampleOptions};
@@ -90,6 +95,19 @@ pub enum Command {
         #[command(subcommand)]
         command: ProbeCommand,
     },
+    /// Light between diffuse surfaces, baked for `render`
+    ///
+    /// Surfaces are divided into patches, what they exchange is computed with error bounds, and the light that arrives at every vertex
+    /// from other surfaces is written. The scene's lights light the patches directly, with shadows; emissive materials are light, too.
+    #[command(after_help = "Examples:\n  \
+        pointillist radiosity room.toml -o baked.json\n  \
+        pointillist radiosity room.toml --patch 0.1 --adaptive 0.02 -o baked.json\n  \
+        pointillist radiosity room.toml --patch 0.25 --links full --factors F.csv -o room.ply\n  \
+        pointillist radiosity factors pairs.jsonl\n\n\
+        Then add to the scene:\n  \
+        [ambient]\n  \
+        radiosity = \"baked.json\"")]
+    Radiosity(RadiosityOptions),
     /// Cut polygons by a grid: JSON lines in, JSON lines out
     #[command(after_help = "Example:\n  \
         echo '{\"polygon\":[[0.5,0.5],[1.5,0.5],[1.5,1.5],[0.5,1.5]]}' | pointillist dice --areas")]

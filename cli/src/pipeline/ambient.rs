@@ -1,5 +1,6 @@
-//! Light that does not come straight from lights: a constant, or what probes hold.
+//! Light that does not come straight from lights: a constant, or what probes or surfaces hold.
 
+use crate::radiosity::Lightmap;
 use glam::{DVec3, Vec3};
 use pointillist_shade::Environment;
 use pointillist_shprobe::{Field, Hint};
@@ -14,13 +15,30 @@ pub enum Ambient<'a> {
     Probes(&'a Field),
     /// From an environment, by the normal; reflected as albedo/π · E(n).
     Environment(&'a Environment),
+    /// On the surfaces themselves; reflected as albedo/π · irradiance.
+    Radiosity(&'a Lightmap),
+}
+
+/// Where on a surface light is asked for.
+pub(super) struct Spot {
+    /// In the world.
+    pub(super) position: DVec3,
+    /// The scene's triangle.
+    pub(super) triangle: u32,
+    /// Which side of it is seen.
+    pub(super) front: bool,
+    /// Away from the surface, on the side that is seen.
+    pub(super) face_normal: Vec3,
+    /// What it is shaded with.
+    pub(super) normal: Vec3,
 }
 
 impl Ambient<'_> {
-    /// What a surface reflects of it, over its albedo. `face_normal` points away from the surface, on the side that is
-    /// seen, and `normal` is what it is shaded with.
-    pub(super) fn at(&self, position: DVec3, face_normal: Vec3, normal: Vec3, hint: &mut Hint) -> Vec3 {
+    /// What a surface reflects of it, over its albedo.
+    pub(super) fn at(&self, spot: &Spot, hint: &mut Hint) -> Vec3 {
+        let Spot { position, triangle, front, face_normal, normal } = *spot;
         match self {
+            Self::Radiosity(light) => light.irradiance(triangle, front, position) * FRAC_1_PI,
             Self::Color(color) => *color,
             Self::Environment(map) => map.irradiance(normal) * FRAC_1_PI,
             // Only a position beyond all numbers is refused, and nothing of it is seen.

@@ -79,7 +79,7 @@ impl Shader<'_> {
         let mut light = if through == Vec3::ZERO {
             Vec3::ZERO
         } else {
-            self.ambient.at(s.position, s.face_normal, s.normal, hint) * through
+            self.ambient.at(&s.spot(s.normal), hint) * through
         };
         for (direction, weight) in looks(details, surface, coat) {
             if weight != Vec3::ZERO {
@@ -93,7 +93,7 @@ impl Shader<'_> {
     fn seen_towards(&self, details: &Details, s: &Surface, direction: Vec3, hint: &mut Hint) -> Vec3 {
         match self.reflections.of(self.scene, details, s.triangle) {
             Some(map) => map.radiance(direction, s.material.roughness),
-            None => self.ambient.at(s.position, s.face_normal, direction, hint),
+            None => self.ambient.at(&s.spot(direction), hint),
         }
     }
 }

@@ -72,6 +72,7 @@ impl<'a> Prepared<'a> {
                 Some(map) => Ambient::Environment(map),
                 None => Ambient::Color(self.scene.image.background),
             },
+            AmbientLight::Radiosity { light, .. } => Ambient::Radiosity(light),
         }
     }
 

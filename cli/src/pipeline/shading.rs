@@ -1,6 +1,6 @@
 //! Shades the micropoints of a tile: each once, and asks for light only where it can matter.
 
-use super::ambient::Ambient;
+use super::ambient::{Ambient, Spot};
 use super::background::Background;
 use super::canvas::Pixels;
 use super::direct::DirectScratch;
@@ -96,6 +96,14 @@ pub(super) struct Surface {
     pub(super) material: Material,
 }
 
+impl Surface {
+    /// Where ambient light is asked for, from around a direction.
+    pub(super) fn spot(&self, normal: Vec3) -> Spot {
+        let Self { position, triangle, front, face_normal, .. } = *self;
+        Spot { position, triangle, front, face_normal, normal }
+    }
+}
+
 impl<'a> Shader<'a> {
     pub(super) fn new(
         prepared: &'a Prepared<'_>,
@@ -188,7 +196,8 @@ impl<'a> Shader<'a> {
         let indirect = if material.diffuse == Vec3::ZERO {
             Vec3::ZERO
         } else {
-            self.ambient.at(position, face_normal, normal, hint) * material.diffuse
+            let spot = Spot { position, triangle: face.id, front: face.front, face_normal, normal };
+            self.ambient.at(&spot, hint) * material.diffuse
         };
         Point { position, barycentric, to_eye, face_normal, normal, material, direct: Vec3::ZERO, indirect }
     }

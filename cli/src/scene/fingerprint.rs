@@ -1,6 +1,8 @@
 //! One number for everything that a picture depends on.
 
-use super::{AmbientLight, Details, Material, Mesh, Projection, Resolution, Scene, Texels, Texture};
+use super::{
+    AmbientLight, Details, LightSource, Material, Mesh, Projection, Resolution, Scene, Texels, Texture,
+};
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade::{Falloff, Light, Material as Surface};
 use std::hash::Hasher as _;
@@ -38,8 +40,37 @@ pub fn of_light(scene: &Scene) -> u64 {
     }
     match &scene.ambient {
         AmbientLight::Color(color) => hash.color(*color),
-        AmbientLight::Probes { fingerprint, .. } => hash.int(*fingerprint),
         AmbientLight::Environment => hash.text("environment"),
+        AmbientLight::Probes { fingerprint, .. } | AmbientLight::Radiosity { fingerprint, .. } => {
+            hash.int(*fingerprint);
+        }
+    }
+    hash.0.finish()
+}
+
+/// The hash of the triangles alone: what must be the same for light that was baked triangle by triangle.
+pub fn of_geometry(mesh: &Mesh) -> u64 {
+    let mut hash = Fingerprint::default();
+    hash.int(mesh.positions.len() as u64);
+    mesh.positions.iter().for_each(|&p| hash.vector(p));
+    hash.triples(&mesh.triangles);
+    mesh.object_of.iter().for_each(|n| hash.0.write(&n.to_le_bytes()));
+    mesh.objects.iter().for_each(|object| hash.int(u64::from(object.two_sided)));
+    hash.0.finish()
+}
+
+/// The hash of what baked light depends on besides the triangles: materials, textures and lights.
+pub fn of_sources<'a>(
+    materials: &[Material],
+    textures: &[Texture],
+    lights: impl IntoIterator<Item = &'a LightSource>,
+) -> u64 {
+    let mut hash = Fingerprint::default();
+    materials.iter().for_each(|material| hash.material(material));
+    textures.iter().for_each(|texture| hash.texture(texture));
+    for light in lights {
+        hash.light(&light.light);
+        hash.int(u64::from(light.shadow));
     }
     hash.0.finish()
 }

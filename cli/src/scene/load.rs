@@ -35,6 +35,19 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Scene, InputError> {
     resolve::resolve(&description, &folder, kind == Kind::Mesh, None)
 }
 
+/// As [`load`], without the scene's baked radiosity: for baking it, when it is old or not yet there.
+///
+/// # Errors
+///
+/// As [`load`].
+pub fn load_to_bake(path: &Path, overrides: &Overrides) -> Result<Scene, InputError> {
+    let (mut document, kind, folder) = read_document(path)?;
+    apply(&mut document, overrides)?;
+    document.remove("ambient", "radiosity");
+    let description = Description::new(document)?;
+    resolve::resolve(&description, &folder, kind == Kind::Mesh, None)
+}
+
 /// Changes a document by the overrides. A field of view takes the place of a height, and the other way round.
 pub(super) fn apply(document: &mut Document, overrides: &Overrides) -> Result<(), InputError> {
     for (option, assignment) in &overrides.assignments {

@@ -24,10 +24,12 @@ mod textures;
 pub use builtin::builtin;
 pub use description::{Description, parse_str};
 pub use details::{Bump, BumpHeight, Channel, Details, Map, Surroundings, Transmission};
-pub use fingerprint::of_light as light_fingerprint;
+pub use fingerprint::{
+    of_geometry as geometry_fingerprint, of_light as light_fingerprint, of_sources as source_fingerprint,
+};
 pub(crate) use framing::around as frame_around;
 pub(crate) use load::read_file;
-pub use load::{Overrides, load};
+pub use load::{Overrides, load, load_to_bake};
 pub use measured::MeasuredBrdf;
 pub use text::Format;
 pub use texture_lookup::{linear_from_srgb, srgb_from_linear};
@@ -78,6 +80,13 @@ pub enum AmbientLight {
     },
     /// From [`ImageSettings::environment`] by the normal, reflected as albedo/π · irradiance.
     Environment,
+    /// Baked on the scene's own triangles, reflected as albedo/π · irradiance.
+    Radiosity {
+        /// The light.
+        light: Box<crate::radiosity::Lightmap>,
+        /// A hash of the file.
+        fingerprint: u64,
+    },
 }
 
 /// Where the eye is and what it takes in.

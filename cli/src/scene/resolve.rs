@@ -11,6 +11,7 @@ use super::{auto_uv, fingerprint, framing, gltf_scene, load, smooth};
 use crate::input_error::InputError;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::probe_io::read_probes;
+use crate::radiosity::{Lightmap, read_baked};
 use glam::{DMat3, Vec3};
 use pointillist_shade::Interpolation;
 use std::collections::HashMap;
@@ -39,7 +40,6 @@ pub(super) fn resolve(
         builder.add(object)?;
     }
     let environment = builder.environment()?;
-    let ambient = ambient(description, folder)?;
     let [width, height] = description.size;
     let aspect = f64::from(width) / f64::from(height);
     // A glTF that is the scene brings its camera and its lights.
@@ -51,6 +51,10 @@ pub(super) fn resolve(
     } else {
         Interpolation::Phong
     });
+    let mut lights = lights(description);
+    if add_light && lights.is_empty() {
+        lights = model.map(|model| gltf_scene::lights(&model)).unwrap_or_default();
+    }
     let mut scene = Scene {
         camera,
         image: ImageSettings { width, height, background: description.background, environment },
@@ -62,22 +66,36 @@ pub(super) fn resolve(
         mesh: builder.mesh,
         materials: builder.materials.into_materials(),
         textures: builder.textures.into_textures(),
-        lights: lights(description),
-        ambient,
+        lights,
+        ambient: AmbientLight::Color(Vec3::ZERO),
         warnings: builder.warnings,
         fingerprint: 0,
     };
     if add_light && scene.lights.is_empty() {
-        scene.lights = model.map(|model| gltf_scene::lights(&model)).unwrap_or_default();
-    }
-    if add_light && scene.lights.is_empty() {
         framing::add_light(&mut scene);
     }
+    scene.ambient = ambient(description, folder, &mut scene)?;
     scene.fingerprint = fingerprint::of(&scene);
     Ok(scene)
 }
 
-fn ambient(description: &Description, folder: &Path) -> Result<AmbientLight, InputError> {
+/// The file that a key of `[ambient]` names, and a hash of it.
+fn ambient_file(
+    description: &Description,
+    folder: &Path,
+    file: &FileReference,
+    help: &str,
+) -> Result<(PathBuf, u64), InputError> {
+    let path = folder.join(&file.path);
+    if !path.is_file() {
+        let message = format!("`{}` is not there", path.display());
+        return Err(description.document.error(file.span, message).with_help(help));
+    }
+    let fingerprint = twox_hash::XxHash3_64::oneshot(&super::read_file(&path)?);
+    Ok((path, fingerprint))
+}
+
+fn ambient(description: &Description, folder: &Path, scene: &mut Scene) -> Result<AmbientLight, InputError> {
     match &description.ambient {
         AmbientDescription::Color(color) => Ok(AmbientLight::Color(*color)),
         AmbientDescription::Environment => match description.environment {
@@ -88,15 +106,31 @@ fn ambient(description: &Description, folder: &Path) -> Result<AmbientLight, Inp
                     .with_help("name a map: [image] environment = \"sky.hdr\""))
             }
         },
-        AmbientDescription::Probes(file) => {
-            let path = folder.join(&file.path);
-            if !path.is_file() {
-                let message = format!("`{}` is not there", path.display());
-                let error = description.document.error(file.span, message);
-                return Err(error.with_help("bake it with `pointillist probe bake`"));
-            }
+        AmbientDescription::Radiosity(file) => {
+            let help = "bake it with `pointillist radiosity`";
+            let (path, fingerprint) = ambient_file(description, folder, file, help)?;
             let name = path.display().to_string();
-            let fingerprint = twox_hash::XxHash3_64::oneshot(&super::read_file(&path)?);
+            let baked = read_baked(&path)?;
+            if baked.geometry != format!("{:016x}", fingerprint::of_geometry(&scene.mesh)) {
+                let message = format!("`{name}` was baked for other triangles than this scene's");
+                let help =
+                    "objects were moved, added or taken out since: bake again with `pointillist radiosity`";
+                let error = description.document.error(file.span, message).with_help(help);
+                return Err(InputError { mismatched: true, ..error });
+            }
+            let sources = fingerprint::of_sources(&scene.materials, &scene.textures, &scene.lights);
+            if baked.light != format!("{sources:016x}") {
+                scene.warnings.push(format!(
+                    "`{name}` was baked with other lights or materials; bake again to see them"
+                ));
+            }
+            let light = Box::new(Lightmap::new(&baked, &name, scene.mesh.triangles.len())?);
+            Ok(AmbientLight::Radiosity { light, fingerprint })
+        }
+        AmbientDescription::Probes(file) => {
+            let help = "bake it with `pointillist probe bake`";
+            let (path, fingerprint) = ambient_file(description, folder, file, help)?;
+            let name = path.display().to_string();
             let field = Box::new(read_probes(&path)?.field(&name)?);
             Ok(AmbientLight::Probes { field, fingerprint })
         }

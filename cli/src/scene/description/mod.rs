@@ -134,31 +134,36 @@ pub enum AmbientDescription {
     Probes(FileReference),
     /// The environment map.
     Environment,
+    /// A file of baked radiosity.
+    Radiosity(FileReference),
 }
 
 fn read_ambient(root: &mut Table<'_>) -> Result<AmbientDescription, InputError> {
     let Some(mut table) = root.table("ambient")? else { return Ok(AmbientDescription::Color(Vec3::ZERO)) };
-    table.not_yet(&["radiosity"])?;
     let color = table.color("color")?;
     let probes = file(&mut table, "probes")?;
-    if color.is_some() && probes.is_some() {
-        return Err(table
-            .error("color", "`ambient.color` and `ambient.probes` are both given")
-            .with_help("probes hold all ambient light: leave one of them out"));
-    }
+    let radiosity = file(&mut table, "radiosity")?;
     let environment = table.boolean("environment")?.unwrap_or(false);
-    if environment && (color.is_some() || probes.is_some()) {
+    let given = [
+        ("color", color.is_some()),
+        ("probes", probes.is_some()),
+        ("radiosity", radiosity.is_some()),
+        ("environment", environment),
+    ];
+    let mut given = given.iter().filter(|(_, there)| *there);
+    if let (Some((first, _)), Some((second, _))) = (given.next(), given.next()) {
         return Err(table
-            .error("environment", "`ambient.environment` is given together with another ambient light")
-            .with_help("leave one of them out"));
+            .error(first, format!("`ambient.{first}` and `ambient.{second}` are both given"))
+            .with_help("each of them holds all ambient light: leave one of them out"));
     }
     table.finish()?;
     if environment {
         return Ok(AmbientDescription::Environment);
     }
-    Ok(match probes {
-        Some(file) => AmbientDescription::Probes(file),
-        None => AmbientDescription::Color(color.unwrap_or(Vec3::ZERO)),
+    Ok(match (probes, radiosity) {
+        (Some(file), _) => AmbientDescription::Probes(file),
+        (None, Some(file)) => AmbientDescription::Radiosity(file),
+        (None, None) => AmbientDescription::Color(color.unwrap_or(Vec3::ZERO)),
     })
 }
 

@@ -1,0 +1,242 @@
+//! `radiosity SCENE`.
+
+use crate::commands::Report;
+use crate::commands::report::write_text;
+use crate::error::CliError;
+use crate::job::Progress;
+use crate::options::{FormFactorKind, LinkKind, RadiosityBakeOptions, SolveMethod};
+use crate::radiosity::{BakedFile, Lamps, SceneSurfaces, scene_surfaces, with_lamps};
+use crate::scene::{self, Overrides, Scene};
+use glam::DVec3;
+use pointillist_radiosity as radiosity;
+use pointillist_radiosity::{
+    HemicubeKind, RadiosityError, Rgb, SceneOptions, Solution, SolveOptions, Transport,
+};
+use std::path::Path;
+
+/// Patches along the scene's longest side, unless said otherwise.
+const PATCHES_ACROSS: f64 = 32.0;
+/// Scenes with more patches are linked by groups, unless said otherwise.
+const MOST_FULL: usize = 1000;
+
+pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
+    let report = Report::new(&options.common)?;
+    check(options)?;
+    let Some(path) = &options.scene else {
+        return Err(CliError::Usage("SCENE is missing".to_owned()));
+    };
+    let assignments = options.set.iter().map(|a| ("--set".to_owned(), a.clone())).collect();
+    let overrides = Overrides { assignments };
+    let scene = report.stats.stage("load", || scene::load_to_bake(path, &overrides))?;
+    scene.warnings.iter().for_each(|warning| report.warn(warning));
+    let surfaces = report.stats.stage("load", || scene_surfaces(&scene, &path.display().to_string()))?;
+    if surfaces.translucent > 0 {
+        let count = surfaces.translucent;
+        report.warn(&format!("{count} triangles let most light through and are left out"));
+    }
+    let bake = Bake { options, report: &report, scene: &scene, surfaces: &surfaces };
+    let (transport, direct, solution) = bake.solve()?;
+    bake.write(&transport, &direct, &solution)?;
+    report.finish()
+}
+
+fn check(options: &RadiosityBakeOptions) -> Result<(), CliError> {
+    let hemicube = options.form_factor != FormFactorKind::Analytic;
+    if hemicube && options.links == LinkKind::Hierarchical {
+        let message = "--form-factor hemicube takes --links full: a hemicube sees single patches, not groups";
+        return Err(CliError::Usage(message.to_owned()));
+    }
+    if options.adaptive.is_some() && (hemicube || options.links == LinkKind::Full) {
+        let message = "--adaptive needs groups of patches: leave --links full and --form-factor hemicube out";
+        return Err(CliError::Usage(message.to_owned()));
+    }
+    let output = &options.output;
+    let known = output.extension().is_some_and(|e| e == "json" || e == "ply");
+    if known || output == Path::new("-") {
+        return Ok(());
+    }
+    Err(CliError::Usage(format!("`{}`: baked light ends in .json or .ply", output.display())))
+}
+
+struct Bake<'a> {
+    options: &'a RadiosityBakeOptions,
+    report: &'a Report<'a>,
+    scene: &'a Scene,
+    surfaces: &'a SceneSurfaces,
+}
+
+impl Bake<'_> {
+    fn solve(&self) -> Result<(Transport, Vec<Rgb>, Solution), CliError> {
+        let Self { options, report, .. } = self;
+        let progress = Progress::new(options.common.progress_mode());
+        progress.begin("radiosity", 3);
+        let stats = &report.stats;
+        let mut patches = stats.stage("divide", || self.divided())?;
+        let lamps = Lamps::new(self.scene);
+        let direct = stats.stage("direct", || with_lamps(&lamps, |list| patches.direct(list)));
+        let direct = direct.map_err(|e| self.refused(&e))?;
+        progress.advance(1);
+        let kind = match options.form_factor {
+            FormFactorKind::Analytic => None,
+            FormFactorKind::Hemicube => Some(HemicubeKind::Exact),
+            FormFactorKind::HemicubeClassic => Some(HemicubeKind::Classic),
+        };
+        let linked = stats.stage("factors", || match kind {
+            None => patches.transport(&direct),
+            Some(kind) => patches.transport_by_hemicubes(kind, options.resolution as usize, &direct),
+        });
+        let (transport, direct) = linked.map_err(|e| self.refused(&e))?;
+        progress.advance(1);
+        let solution = stats.stage("solve", || match options.method {
+            SolveMethod::GaussSeidel => transport.gauss_seidel(&direct, &SolveOptions::DEFAULT),
+            SolveMethod::Progressive => transport.progressive(&direct, &[], &SolveOptions::DEFAULT),
+        });
+        let solution = solution.map_err(|e| self.refused(&e))?;
+        progress.finish();
+        self.tell(&transport, &solution);
+        Ok((transport, direct, solution))
+    }
+
+    /// The scene in patches, linked as asked.
+    fn divided(&self) -> Result<radiosity::Scene, CliError> {
+        let options = self.options;
+        let patch = options.patch.unwrap_or_else(|| self.extent() / PATCHES_ACROSS);
+        let mut settings = SceneOptions::DEFAULT
+            .with_patch(patch)
+            .with_smallest_patch(options.adaptive.unwrap_or(patch))
+            .with_least_factor(options.least_factor)
+            // A patch of four counts five elements.
+            .with_max_elements(options.max_patches.saturating_mul(2));
+        let new = |settings: &SceneOptions| {
+            radiosity::Scene::new(&self.surfaces.surfaces, settings).map_err(|e| self.refused(&e))
+        };
+        let plain = new(&settings)?;
+        let grouped = match options.links {
+            LinkKind::Full => false,
+            LinkKind::Hierarchical => true,
+            LinkKind::Auto => {
+                options.form_factor == FormFactorKind::Analytic
+                    && (plain.patch_count() > MOST_FULL || options.adaptive.is_some())
+            }
+        };
+        if !grouped {
+            return Ok(plain);
+        }
+        settings = settings.with_tolerance(Some(options.tolerance));
+        new(&settings)
+    }
+
+    /// Longest side of the box around all surfaces.
+    fn extent(&self) -> f64 {
+        let all = || self.surfaces.surfaces.iter().flat_map(|s| &s.vertices);
+        let low = all().fold(DVec3::INFINITY, |m, &v| m.min(v));
+        let high = all().fold(DVec3::NEG_INFINITY, |m, &v| m.max(v));
+        let longest = (high - low).max_element();
+        if longest > 0.0 { longest } else { 1.0 }
+    }
+
+    /// Names what the user knows: triangles and materials.
+    fn refused(&self, error: &RadiosityError) -> CliError {
+        use RadiosityError::{Emission, EmitterWithoutArea, Outline, Reflectance, ReflectanceAboveOne};
+        let surface = match error {
+            Outline { surface, .. }
+            | Reflectance { surface, .. }
+            | ReflectanceAboveOne { surface, .. }
+            | Emission { surface, .. }
+            | EmitterWithoutArea { surface } => *surface,
+            RadiosityError::TooManyPatches { .. } => {
+                let limit = self.options.max_patches;
+                let message =
+                    format!("more than {limit} patches: use a larger --patch, or a larger --max-patches");
+                return CliError::Usage(message);
+            }
+            _ => return CliError::Failed(error.to_string()),
+        };
+        let mesh = &self.scene.mesh;
+        let face = self.surfaces.faces[surface][0] as usize;
+        let object = &mesh.objects[mesh.object_of[face] as usize].name;
+        let material = &self.scene.materials[mesh.material_of[face] as usize].name;
+        let name = self.options.scene.as_deref().unwrap_or(Path::new("")).display().to_string();
+        let message = format!("triangle {face} (of `{object}`, material `{material}`): {error}");
+        CliError::Input(crate::input_error::InputError::of_file(name, message))
+    }
+
+    fn tell(&self, transport: &Transport, solution: &Solution) {
+        let stats = &self.report.stats;
+        let counts = transport.counts();
+        stats.count("surfaces", self.surfaces.surfaces.len() as u64);
+        stats.count("patches", transport.patch_count() as u64);
+        stats.count("links", counts.links as u64);
+        stats.count("links_partly_hidden", counts.partly_hidden as u64);
+        stats.count("cells_sampled", counts.cells as u64);
+        stats.count("steps", solution.steps as u64);
+        stats.skip("pairs_facing_apart", counts.facing_apart as u64);
+        stats.skip("pairs_black", counts.black as u64);
+        stats.skip("pairs_hidden", counts.hidden as u64);
+        stats.skip("pairs_below_bound", counts.below_bound as u64);
+        stats.skip("surfaces_without_area", transport.scene().dropped() as u64);
+        stats.skip("triangles_translucent", self.surfaces.translucent as u64);
+        stats.figure("error_bound", solution.bound);
+        stats.figure("contraction", solution.contraction);
+        stats.figure("largest_left_out", counts.left_out);
+        stats.figure("largest_row_excess", counts.row_excess);
+        self.report.note(&format!(
+            "{} patches, {} links, solved in {} steps to within {:.2e}",
+            transport.patch_count(),
+            counts.links,
+            solution.steps,
+            solution.bound
+        ));
+        if !solution.converged {
+            self.report
+                .warn("the solution has not reached its tolerance; the bound above says how far it is");
+        }
+        if counts.below_bound > 0 {
+            let most = counts.left_out;
+            self.report.note(&format!(
+                "{} pairs were left out; of no patch more than {most:.2e} of all it sees",
+                counts.below_bound
+            ));
+        }
+    }
+
+    fn write(&self, transport: &Transport, direct: &[Rgb], solution: &Solution) -> Result<(), CliError> {
+        let Self { options, report, .. } = self;
+        if let Some(path) = &options.factors {
+            report.stats.stage("write", || write_factors(path, transport))?;
+        }
+        let baked = report.stats.stage("gather", || transport.bake(solution, direct));
+        let mut file = BakedFile::new(&baked, &self.surfaces.faces);
+        file.geometry = format!("{:016x}", scene::geometry_fingerprint(&self.scene.mesh));
+        let Scene { materials, textures, lights, .. } = self.scene;
+        file.light = format!("{:016x}", scene::source_fingerprint(materials, textures, lights));
+        file.patches = transport.patch_count();
+        file.bound = solution.bound;
+        let path = &options.output;
+        report.stats.stage("write", || {
+            write_text(path, |output| {
+                if path.extension().is_some_and(|e| e == "ply") {
+                    file.write_ply(output)
+                } else {
+                    file.write_json(output)
+                }
+            })
+        })?;
+        let seconds = report.stats.elapsed().as_secs_f64();
+        let vertices = file.positions.len();
+        report.note(&format!("{}: {vertices} vertices in {seconds:.2} s", path.display()));
+        Ok(())
+    }
+}
+
+fn write_factors(path: &Path, transport: &Transport) -> Result<(), CliError> {
+    write_text(path, |output| {
+        let mut result = writeln!(output, "i,j,F");
+        transport.factors(|i, j, factor| {
+            if result.is_ok() {
+                result = writeln!(output, "{i},{j},{factor}");
+            }
+        });
+        result
+    })
+}

@@ -1,0 +1,158 @@
+//! `pointillist radiosity factors`: pairs of polygons in as JSON lines, form factors out as JSON lines.
+
+use std::io::{BufRead, Write};
+
+use glam::DVec3;
+use pointillist_radiosity::{FactorOptions, Polygon, PolygonError, form_factor};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Lines that are computed together.
+const BATCH: usize = 1024;
+
+/// Why [`run`] stopped.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FactorsError {
+    /// A line of the input cannot be used.
+    #[error("{source_name}, line {line}: {message}\n  {text}\n  {way_out}")]
+    Input {
+        /// Name of the file, or `-`.
+        source_name: String,
+        /// From 1.
+        line: usize,
+        /// What is wrong, with the field.
+        message: String,
+        /// The line, shortened.
+        text: String,
+        /// What to do about it.
+        way_out: String,
+    },
+    /// The input could not be read.
+    #[error("{source_name}, line {line}: {error}")]
+    Read {
+        /// Name of the file, or `-`.
+        source_name: String,
+        /// From 1.
+        line: usize,
+        /// What the system says.
+        #[source]
+        error: std::io::Error,
+    },
+    /// The output could not be written.
+    #[error("writing the result: {0}")]
+    Write(#[source] std::io::Error),
+}
+
+/// One line of the input.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Request {
+    from: Vec<[f64; 3]>,
+    to: Vec<[f64; 3]>,
+    #[serde(default)]
+    occluders: Vec<Vec<[f64; 3]>>,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    #[serde(rename = "F")]
+    factor: f64,
+    error: f64,
+}
+
+/// The expected shape of a line, for messages.
+const EXAMPLE: &str =
+    r#"a line looks like {"from":[[0,0,0],[1,0,0],[0,1,0]],"to":[[0,0,1],[0,1,1],[1,0,1]],"occluders":[]}"#;
+
+/// Answers every line of `input`, on all threads. Blank lines are skipped. Gives the number of pairs.
+///
+/// # Errors
+/// Stops at the first line that cannot be used. The lines before it have been answered.
+pub fn run(
+    input: &mut dyn BufRead,
+    output: &mut dyn Write,
+    options: &FactorOptions,
+    source: &str,
+) -> Result<u64, FactorsError> {
+    let (mut line, mut pairs, mut ended) = (0, 0, false);
+    while !ended {
+        let mut batch: Vec<(usize, String)> = vec![];
+        while batch.len() < BATCH {
+            let mut text = String::new();
+            line += 1;
+            let read = input.read_line(&mut text);
+            let read =
+                read.map_err(|error| FactorsError::Read { source_name: source.to_owned(), line, error })?;
+            if read == 0 {
+                ended = true;
+                break;
+            }
+            if !text.trim().is_empty() {
+                batch.push((line, text));
+            }
+        }
+        let answers: Vec<Result<Answer, (String, String)>> =
+            batch.par_iter().map(|(_, text)| answer(text, options)).collect();
+        for (result, (line, text)) in answers.into_iter().zip(&batch) {
+            let answer = result.map_err(|(message, way_out)| FactorsError::Input {
+                source_name: source.to_owned(),
+                line: *line,
+                message,
+                text: shorten(text.trim()),
+                way_out,
+            })?;
+            serde_json::to_writer(&mut *output, &answer).map_err(|e| FactorsError::Write(e.into()))?;
+            output.write_all(b"\n").map_err(FactorsError::Write)?;
+            pairs += 1;
+        }
+    }
+    output.flush().map_err(FactorsError::Write)?;
+    Ok(pairs)
+}
+
+/// The form factor of one line, or what is wrong with it and the way out.
+fn answer(text: &str, options: &FactorOptions) -> Result<Answer, (String, String)> {
+    let request: Request =
+        serde_json::from_str(text).map_err(|error| (strip_place(&error), EXAMPLE.to_owned()))?;
+    let from = polygon("from", &request.from)?;
+    let to = polygon("to", &request.to)?;
+    let mut occluders = Vec::with_capacity(request.occluders.len());
+    for (i, ring) in request.occluders.iter().enumerate() {
+        occluders.push(polygon(&format!("occluders[{i}]"), ring)?);
+    }
+    let found = form_factor(&from, &to, &occluders, options);
+    Ok(Answer { factor: found.value, error: found.error })
+}
+
+fn polygon(field: &str, ring: &[[f64; 3]]) -> Result<Polygon, (String, String)> {
+    let vertices: Vec<DVec3> = ring.iter().map(|&v| DVec3::from_array(v)).collect();
+    Polygon::new(&vertices).map_err(|error| {
+        let way_out = match error {
+            PolygonError::NotPlanar { .. } | PolygonError::NotConvex { .. } => {
+                "split the polygon into triangles"
+            }
+            PolygonError::NoArea | PolygonError::TooFewVertices { .. } => {
+                "leave out what has no area; it neither gets nor hides light"
+            }
+            _ => "coordinates must be finite numbers",
+        };
+        (format!("{field}: {error}"), way_out.to_owned())
+    })
+}
+
+/// The message with the column; every request is on line 1 as far as the parser knows, so its line would mislead.
+fn strip_place(error: &serde_json::Error) -> String {
+    let message = error.to_string();
+    let end = message.rfind(" at line ").unwrap_or(message.len());
+    format!("{}, column {}", &message[..end], error.column())
+}
+
+/// Lines of any length make a message of one line.
+fn shorten(text: &str) -> String {
+    const LENGTH: usize = 100;
+    match text.char_indices().nth(LENGTH) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}

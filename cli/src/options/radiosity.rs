@@ -1,0 +1,125 @@
+//! `radiosity` and its command.
+
+use super::{Common, TextOutput, values};
+use clap::{Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// `radiosity`.
+#[derive(Debug, clap::Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub struct RadiosityOptions {
+    /// Something else than to bake.
+    #[command(subcommand)]
+    pub command: Option<RadiosityCommand>,
+    /// What to bake.
+    #[command(flatten)]
+    pub bake: RadiosityBakeOptions,
+}
+
+/// What else than to bake.
+#[derive(Debug, Subcommand)]
+pub enum RadiosityCommand {
+    /// Form factors of pairs of polygons: JSON lines in, JSON lines out
+    ///
+    /// Each line holds `from`, `to` and `occluders`: planar convex polygons, counter-clockwise seen from the front. Each line of the
+    /// result holds `F` and a bound on its `error`.
+    #[command(after_help = "Example:\n  \
+        echo '{\"from\":[[0,0,0],[1,0,0],[1,1,0],[0,1,0]],\"to\":[[0,0,1],[0,1,1],[1,1,1],[1,0,1]]}' |\n    \
+        pointillist radiosity factors")]
+    Factors(FactorsOptions),
+}
+
+/// Bakes the light of a scene.
+#[derive(Debug, clap::Args)]
+pub struct RadiosityBakeOptions {
+    /// A scene (.toml, .json) or mesh (.obj, .ply)
+    #[arg(required = true)]
+    pub scene: Option<PathBuf>,
+    /// How the light is solved for
+    #[arg(long, value_name = "METHOD", default_value = "gauss-seidel")]
+    pub method: SolveMethod,
+    /// How form factors are computed: hemicubes are per patch, and need --links full
+    #[arg(long, value_name = "KIND", default_value = "analytic")]
+    pub form_factor: FormFactorKind,
+    /// Pixels across a hemicube
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(4..=1024))]
+    pub resolution: u32,
+    /// Longest edge of a patch, in the scene's unit (default: a 32nd of the scene's longest side)
+    #[arg(long, value_name = "SIZE", value_parser = values::positive)]
+    pub patch: Option<f64>,
+    /// Divide patches down to this where light changes fast: at shadow edges and in corners
+    #[arg(long, value_name = "SIZE", value_parser = values::positive)]
+    pub adaptive: Option<f64>,
+    /// Link each patch with each other, or groups of patches where that is good enough (auto: groups above 1000 patches)
+    #[arg(long, value_name = "HOW", default_value = "auto")]
+    pub links: LinkKind,
+    /// What one link between groups may be off, as a share of the scene's mean radiosity
+    #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = values::positive)]
+    pub tolerance: f64,
+    /// Leave out form factors below this; what was left out is reported
+    #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = values::not_negative)]
+    pub least_factor: f64,
+    /// Refuse to make more patches
+    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    pub max_patches: usize,
+    /// The light: .json for `[ambient] radiosity`, .ply for looking at, or `-` for JSON on standard output
+    #[arg(short, long, value_name = "PATH", default_value = "radiosity.json")]
+    pub output: PathBuf,
+    /// Write all form factors as lines of `i,j,F`
+    #[arg(long, value_name = "F.csv")]
+    pub factors: Option<PathBuf>,
+    /// Override a key of the scene
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `--method`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SolveMethod {
+    /// Row by row; fastest to the end
+    GaussSeidel,
+    /// Shooting, the brightest first
+    Progressive,
+}
+
+/// `--form-factor`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FormFactorKind {
+    /// Polygon to polygon, with error bounds
+    Analytic,
+    /// Hemicubes whose cells hold exact coverage
+    Hemicube,
+    /// Hemicubes with one sample a cell
+    HemicubeClassic,
+}
+
+/// `--links`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LinkKind {
+    /// By the number of patches
+    Auto,
+    /// Each patch with each other
+    Full,
+    /// Groups of patches
+    Hierarchical,
+}
+
+/// `radiosity factors`.
+#[derive(Debug, clap::Args)]
+pub struct FactorsOptions {
+    /// File with a JSON object on each line; `-` is standard input
+    #[arg(value_name = "FILE", default_value = "-")]
+    pub input: PathBuf,
+    /// Relative error to aim at where something is between
+    #[arg(long, value_name = "E", default_value_t = 1e-5, value_parser = values::positive)]
+    pub tolerance: f64,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: TextOutput,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
+}

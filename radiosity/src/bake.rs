@@ -1,0 +1,256 @@
+//! Light per vertex, for drawing.
+//!
+//! A patch's mean is good enough as a source of light for others, but seen itself it shows its borders. So the light at each vertex is
+//! gathered once more: from the patches that its own patches are linked with, by Lambert's formula and exact clipping.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use crate::gather::visible_share;
+use crate::kernel::lambert;
+use crate::parallel;
+use crate::solve::Solution;
+use crate::surface::Rgb;
+use crate::transport::Transport;
+use crate::tree::ElementId;
+use crate::visible::parts::Pieces;
+
+/// Where light is gathered for a vertex on the rim of a surface: this share of the way to its patches' centres. On the rim itself
+/// the share of a wall that begins there is not defined.
+const INWARD: f64 = 0.02;
+/// Below this share of the largest irradiance a vertex is in the dark for good, such as the floor under a box.
+const BURIED: f64 = 1e-9;
+/// Normals that agree to this many parts share vertices.
+const NORMAL_STEPS: f64 = 1e6;
+
+/// Light at a vertex of one side of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BakedVertex {
+    /// In the scene's coordinates.
+    pub position: DVec3,
+    /// Unit normal of the side.
+    pub normal: DVec3,
+    /// What arrives from patches, that is, without the lamps' direct light: power per area.
+    pub irradiance: Rgb,
+    /// What leaves: emission and all that is reflected, direct light included.
+    pub radiosity: Rgb,
+}
+
+/// A triangle between baked vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BakedTriangle {
+    /// Counter-clockwise seen from its side.
+    pub vertices: [u32; 3],
+    /// Index of the surface it is a part of.
+    pub surface: u32,
+    /// Whether it is on the surface's back.
+    pub back: bool,
+}
+
+/// A scene's light, per vertex. Vertices are shared between patches of one plane and material, and split where the
+/// surface bends or changes; patches next to smaller ones use their vertices too, so that there are no cracks.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Baked {
+    /// Vertices, in the order in which triangles first use them.
+    pub vertices: Vec<BakedVertex>,
+    /// Triangles, surface by surface, the front before the back.
+    pub triangles: Vec<BakedTriangle>,
+}
+
+/// Plane and material, as bits.
+type Group = u32;
+
+struct Place {
+    position: DVec3,
+    /// Leaves that meet here.
+    leaves: Vec<ElementId>,
+}
+
+impl Transport {
+    /// The light at every vertex. `direct` as given to the solver.
+    #[must_use]
+    pub fn bake(&self, solution: &Solution, direct: &[Rgb]) -> Baked {
+        let mut mesh = Mesh::new(self);
+        mesh.collect();
+        let light = parallel::map(mesh.places.len(), Pieces::default, |pieces, i| {
+            self.light_at(solution, &mesh.places[i], pieces)
+        });
+        let mut light: Vec<Rgb> = light;
+        mesh.lift_buried(&mut light);
+        mesh.finish(&light, direct)
+    }
+
+    /// Irradiance at one place, the mean of what its leaves' links say.
+    fn light_at(&self, solution: &Solution, place: &Place, pieces: &mut Pieces) -> Rgb {
+        let tree = &self.scene.tree;
+        let count = place.leaves.len() as f64;
+        let centre = place.leaves.iter().map(|&l| tree.elements[l as usize].polygon.centre()).sum::<DVec3>();
+        let point = place.position.lerp(centre / count, INWARD);
+        let mut sum = [0.0; 3];
+        for &leaf in &place.leaves {
+            let normal = tree.elements[leaf as usize].polygon.normal();
+            let mut element = Some(leaf);
+            while let Some(id) = element {
+                for entry in self.row(id) {
+                    let share = self.share_of(entry, point, normal, pieces);
+                    let light = solution.of_element[entry.to as usize];
+                    for (s, l) in sum.iter_mut().zip(light) {
+                        *s += share * l / count;
+                    }
+                }
+                element = self.parents[id as usize];
+            }
+        }
+        sum
+    }
+
+    fn share_of(
+        &self,
+        entry: &crate::transport::Entry,
+        point: DVec3,
+        normal: DVec3,
+        pieces: &mut Pieces,
+    ) -> f64 {
+        let source = &self.scene.tree.elements[entry.to as usize].polygon;
+        if source.height(point) <= 0.0 {
+            return 0.0;
+        }
+        let (from, to) = self.links[entry.link as usize].between;
+        if from == to {
+            return lambert::share_above_horizon(point, normal, source.vertices()).max(0.0);
+        }
+        let list = self.between[from as usize..to as usize].iter();
+        let list = list.map(|&i| &self.scene.occluders[i as usize]);
+        visible_share(point, normal, source, list, pieces)
+    }
+}
+
+/// The mesh between the leaves' vertices.
+struct Mesh<'t> {
+    transport: &'t Transport,
+    groups: Vec<Group>,
+    keys: HashMap<(u32, Group), u32>,
+    places: Vec<Place>,
+    /// Ring of places of each leaf, and the place in its middle if it is drawn as a fan.
+    rings: Vec<(ElementId, Vec<u32>, Option<u32>)>,
+}
+
+impl<'t> Mesh<'t> {
+    fn new(transport: &'t Transport) -> Self {
+        let mut known = HashMap::new();
+        let mut of_side = vec![0; transport.scene.sides.len()];
+        for element in &transport.scene.tree.elements {
+            let side = &transport.scene.sides[element.side as usize];
+            let normal = (element.polygon.normal() * NORMAL_STEPS).round();
+            let bits = |v: [f64; 3]| v.map(|x| (x + 0.0).to_bits());
+            let key = (bits(normal.to_array()), bits(side.reflectance), bits(side.emission));
+            let next = known.len() as u32;
+            of_side[element.side as usize] = *known.entry(key).or_insert(next);
+        }
+        Self { transport, groups: of_side, keys: HashMap::new(), places: vec![], rings: vec![] }
+    }
+
+    fn collect(&mut self) {
+        let tree = &self.transport.scene.tree;
+        for &leaf in &self.transport.leaves {
+            let element = &tree.elements[leaf as usize];
+            let group = self.groups[element.side as usize];
+            for &corner in element.corners() {
+                let next = self.places.len() as u32;
+                let place = *self.keys.entry((corner, group)).or_insert(next);
+                if place == next {
+                    self.places.push(Place { position: tree.vertices[corner as usize], leaves: vec![] });
+                }
+                self.places[place as usize].leaves.push(leaf);
+            }
+        }
+        for &leaf in &self.transport.leaves {
+            let element = &tree.elements[leaf as usize];
+            let group = self.groups[element.side as usize];
+            let corners = element.corners();
+            let mut ring = vec![];
+            for (i, &corner) in corners.iter().enumerate() {
+                ring.push(self.keys[&(corner, group)]);
+                self.between(corner, corners[(i + 1) % corners.len()], group, leaf, &mut ring);
+            }
+            let middle = (ring.len() > corners.len()).then(|| {
+                self.places.push(Place { position: element.polygon.centre(), leaves: vec![leaf] });
+                self.places.len() as u32 - 1
+            });
+            self.rings.push((leaf, ring, middle));
+        }
+    }
+
+    /// Vertices of smaller neighbours on an edge.
+    fn between(&mut self, a: u32, b: u32, group: Group, leaf: ElementId, ring: &mut Vec<u32>) {
+        let Some(middle) = self.transport.scene.tree.known_middle(a, b) else { return };
+        let Some(&place) = self.keys.get(&(middle, group)) else { return };
+        self.between(a, middle, group, leaf, ring);
+        ring.push(place);
+        self.places[place as usize].leaves.push(leaf);
+        self.between(middle, b, group, leaf, ring);
+    }
+
+    /// Gives vertices that no light reaches the mean of their neighbours that some reaches, or the dark under a box would spread over the
+    /// patches that reach under it.
+    fn lift_buried(&self, light: &mut [Rgb]) {
+        let sum = |v: Rgb| v.iter().sum::<f64>();
+        let largest = light.iter().map(|&v| sum(v)).fold(0.0, f64::max);
+        let dark: Vec<bool> = light.iter().map(|&v| sum(v) <= BURIED * largest).collect();
+        let mut lifted = vec![([0.0; 3], 0.0); light.len()];
+        for (_, ring, _) in &self.rings {
+            for &place in ring.iter().filter(|p| dark[**p as usize]) {
+                for &other in ring.iter().filter(|p| !dark[**p as usize]) {
+                    let (total, count) = &mut lifted[place as usize];
+                    *total = crate::solve::add(*total, 1.0, light[other as usize]);
+                    *count += 1.0;
+                }
+            }
+        }
+        for (value, (total, count)) in light.iter_mut().zip(lifted) {
+            if count > 0.0 {
+                *value = total.map(|t| t / count);
+            }
+        }
+    }
+
+    fn finish(&self, light: &[Rgb], direct: &[Rgb]) -> Baked {
+        let scene = &self.transport.scene;
+        let mut direct_of = vec![[0.0; 3]; scene.tree.elements.len()];
+        for (&leaf, value) in self.transport.leaves.iter().zip(direct) {
+            direct_of[leaf as usize] = *value;
+        }
+        let vertex = |place: &Place, irradiance: Rgb| {
+            let element = &scene.tree.elements[place.leaves[0] as usize];
+            let side = &scene.sides[element.side as usize];
+            let count = place.leaves.len() as f64;
+            let lamps = place
+                .leaves
+                .iter()
+                .fold([0.0; 3], |sum, &l| crate::solve::add(sum, 1.0 / count, direct_of[l as usize]));
+            let arriving = crate::solve::add(irradiance, 1.0, lamps);
+            let radiosity =
+                crate::solve::add(side.emission, 1.0, crate::solve::times(side.reflectance, arriving));
+            let position = scene.outward(place.position);
+            BakedVertex { position, normal: element.polygon.normal(), irradiance, radiosity }
+        };
+        let vertices = self.places.iter().zip(light).map(|(place, &light)| vertex(place, light)).collect();
+        let mut triangles = vec![];
+        for (leaf, ring, middle) in &self.rings {
+            let side = &scene.sides[scene.tree.elements[*leaf as usize].side as usize];
+            let mut push = |vertices: [u32; 3]| {
+                triangles.push(BakedTriangle { vertices, surface: side.surface as u32, back: side.back });
+            };
+            match middle {
+                Some(middle) => {
+                    for i in 0..ring.len() {
+                        push([*middle, ring[i], ring[(i + 1) % ring.len()]]);
+                    }
+                }
+                None => (1..ring.len() - 1).for_each(|i| push([ring[0], ring[i], ring[i + 1]])),
+            }
+        }
+        Baked { vertices, triangles }
+    }
+}

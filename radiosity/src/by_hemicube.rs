@@ -1,0 +1,64 @@
+//! Links of a scene whose form factors come from hemicubes at the patches' centres.
+
+use crate::error::RadiosityError;
+use crate::hemicube::{Hemicube, HemicubeKind};
+use crate::parallel;
+use crate::polygon::Polygon;
+use crate::scene::Scene;
+use crate::surface::Rgb;
+use crate::transport::{Link, Transport};
+
+impl Scene {
+    /// As [`Scene::transport`] without a tolerance, with a hemicube of `resolution` cells at each patch's centre.
+    ///
+    /// One point stands for a whole patch, which for neighbours is far from the truth however fine the hemicube is: form factors from
+    /// both ends are averaged, which helps a little and makes them reciprocal. The errors of links are unknown and given as half
+    /// of the difference between both ends.
+    ///
+    /// # Errors
+    /// [`RadiosityError::CountMismatch`] for `direct`, [`RadiosityError::Option`] for a resolution outside 1 to 4096.
+    pub fn transport_by_hemicubes(
+        mut self,
+        kind: HemicubeKind,
+        resolution: usize,
+        direct: &[Rgb],
+    ) -> Result<(Transport, Vec<Rgb>), RadiosityError> {
+        self.options.tolerance = None;
+        let leaves = self.tree.leaves();
+        if !direct.is_empty() && direct.len() != leaves.len() {
+            return Err(RadiosityError::CountMismatch { patches: leaves.len(), given: direct.len() });
+        }
+        if !(1..=4096).contains(&resolution) {
+            let (name, expected) = ("resolution", "from 1 to 4096");
+            return Err(RadiosityError::Option { name, value: resolution as f64, expected });
+        }
+        let polygons: Vec<&Polygon> =
+            leaves.iter().map(|&l| &self.tree.elements[l as usize].polygon).collect();
+        let occluders: Vec<&Polygon> = self.occluders.iter().collect();
+        let rows = parallel::map(
+            leaves.len(),
+            || Hemicube::new(kind, resolution),
+            |hemicube, i| {
+                let polygon = polygons[i];
+                hemicube.factors_of(polygon.centre(), polygon.normal(), &polygons, &occluders)
+            },
+        );
+        let mut links = vec![];
+        for i in 0..leaves.len() {
+            for j in i + 1..leaves.len() {
+                let from = |a: usize, b: usize| rows[a][b] * polygons[a].area();
+                let (one, other) = (from(i, j), from(j, i));
+                let mutual = 0.5 * (one + other);
+                if mutual > 0.0 {
+                    let error = 0.5 * (one - other).abs();
+                    links.push(Link { a: leaves[i], b: leaves[j], mutual, error, between: (0, 0) });
+                }
+            }
+        }
+        let mut of_element = vec![[0.0; 3]; self.tree.elements.len()];
+        for (&leaf, light) in leaves.iter().zip(direct) {
+            of_element[leaf as usize] = *light;
+        }
+        Ok(Transport::of_links(self, links, &of_element))
+    }
+}

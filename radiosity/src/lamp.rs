@@ -1,0 +1,188 @@
+//! Light that comes from outside of the patches: points, directions, and areas that are no surface of the scene.
+
+use glam::DVec3;
+
+use crate::error::RadiosityError;
+use crate::kernel::gauss;
+use crate::polygon::Polygon;
+use crate::scene::Scene;
+use crate::surface::Rgb;
+use crate::tree::{Element, ElementId};
+use crate::visible::cubature;
+use crate::visible::parts::{Eye, Pieces, Source};
+use crate::{factor, parallel};
+
+/// Gauss points along each side of a visible piece.
+const ORDER: usize = 4;
+/// The same where the lamp is within two sizes of the patch.
+const NEAR_ORDER: usize = 10;
+
+/// Irradiance at an unshadowed point with this unit normal.
+pub type Irradiance<'l> = &'l (dyn Fn(DVec3, DVec3) -> Rgb + Sync);
+
+/// A light that is no surface.
+#[derive(Clone, Copy)]
+pub enum Lamp<'l> {
+    /// In one point.
+    Point {
+        /// Where.
+        position: DVec3,
+        /// What it gives where nothing shadows it.
+        irradiance: Irradiance<'l>,
+        /// Whether surfaces shadow it.
+        shadow: bool,
+    },
+    /// Far away.
+    Directional {
+        /// The way the light travels.
+        direction: DVec3,
+        /// What it gives where nothing shadows it.
+        irradiance: Irradiance<'l>,
+        /// Whether surfaces shadow it.
+        shadow: bool,
+    },
+    /// A polygon that shines to its front and hides nothing.
+    Area {
+        /// Its outline.
+        polygon: &'l Polygon,
+        /// Power per area.
+        exitance: Rgb,
+        /// Whether surfaces shadow it.
+        shadow: bool,
+    },
+}
+
+impl Scene {
+    /// Mean irradiance of every patch from lamps, shadows by exact clipping, in the order of patches. Patches on the edge of
+    /// a shadow are divided down to [`SceneOptions::smallest_patch`](crate::SceneOptions::smallest_patch) first.
+    ///
+    /// # Errors
+    /// [`RadiosityError::BadLamp`], [`RadiosityError::TooManyPatches`].
+    pub fn direct(&mut self, lamps: &[Lamp<'_>]) -> Result<Vec<Rgb>, RadiosityError> {
+        for (lamp, kind) in lamps.iter().enumerate() {
+            let usable = match kind {
+                Lamp::Point { position, .. } => position.is_finite(),
+                Lamp::Directional { direction, .. } => direction.try_normalize().is_some(),
+                Lamp::Area { .. } => true,
+            };
+            if !usable {
+                return Err(RadiosityError::BadLamp { lamp });
+            }
+        }
+        let mut of_element = vec![None; self.tree.elements.len()];
+        loop {
+            let open: Vec<ElementId> =
+                self.tree.leaves().into_iter().filter(|&e| of_element[e as usize].is_none()).collect();
+            if open.is_empty() {
+                break;
+            }
+            let found =
+                parallel::map(open.len(), Pieces::default, |pieces, i| self.lit(open[i], lamps, pieces));
+            for (&leaf, (irradiance, edge)) in open.iter().zip(&found) {
+                of_element[leaf as usize] = Some(*irradiance);
+                let size = self.tree.elements[leaf as usize].size;
+                if *edge && size > self.options.smallest_patch * self.scale {
+                    self.tree.divide(leaf);
+                }
+            }
+            if self.tree.elements.len() > self.options.max_elements {
+                return Err(RadiosityError::TooManyPatches { limit: self.options.max_elements });
+            }
+            of_element.resize(self.tree.elements.len(), None);
+        }
+        let of = |leaf: u32| of_element[leaf as usize].unwrap_or_default();
+        Ok(self.tree.leaves().into_iter().map(of).collect())
+    }
+
+    /// Mean irradiance of one leaf, and whether an edge of a shadow crosses it.
+    fn lit(&self, leaf: ElementId, lamps: &[Lamp<'_>], pieces: &mut Pieces) -> (Rgb, bool) {
+        let element = &self.tree.elements[leaf as usize];
+        let mut sum = [0.0; 3];
+        let mut edge = false;
+        for lamp in lamps {
+            let (light, cut) = match *lamp {
+                Lamp::Point { position, irradiance, shadow } => {
+                    self.lit_from(element, Eye::Point(self.inward(position)), irradiance, shadow, pieces)
+                }
+                Lamp::Directional { direction, irradiance, shadow } => {
+                    self.lit_from(element, Eye::Along(direction.normalize()), irradiance, shadow, pieces)
+                }
+                Lamp::Area { polygon, exitance, shadow } => {
+                    (self.lit_by_area(element, polygon, exitance, shadow, pieces), false)
+                }
+            };
+            edge |= cut;
+            for (s, l) in sum.iter_mut().zip(light) {
+                *s += l;
+            }
+        }
+        (sum, edge)
+    }
+
+    fn lit_from(
+        &self,
+        element: &Element,
+        eye: Eye,
+        irradiance: Irradiance<'_>,
+        shadow: bool,
+        pieces: &mut Pieces,
+    ) -> (Rgb, bool) {
+        let polygon = &element.polygon;
+        let (faces, near) = match eye {
+            Eye::Point(p) => {
+                (polygon.height(p) > 0.0, (p - polygon.centre()).length() < 4.0 * polygon.radius())
+            }
+            Eye::Along(d) => (polygon.normal().dot(d) < 0.0, false),
+        };
+        if !faces {
+            return ([0.0; 3], false);
+        }
+        let source = Source::new(polygon);
+        let between = if shadow { &self.occluders[..] } else { &[] };
+        let towards = |o: &&Polygon| match eye {
+            // What is in front of the eye, seen from the patch, only.
+            Eye::Point(p) => {
+                (polygon.centre() - o.centre()).length()
+                    < (p - polygon.centre()).length() + o.radius() + polygon.radius()
+            }
+            Eye::Along(_) => true,
+        };
+        let mut cut = false;
+        let seen = source.see(eye, between.iter().filter(towards), pieces, |_| cut = true);
+        let order = if near { NEAR_ORDER } else { ORDER };
+        let mut sum = [0.0; 3];
+        for piece in seen {
+            let ring: Vec<DVec3> = piece.vertices().iter().map(|&v| source.in_space(v)).collect();
+            let Some(part) = Polygon::unchecked(ring) else { continue };
+            for quad in part.quads() {
+                for (u, weight_u) in gauss::rule(order).iter() {
+                    for (v, weight_v) in gauss::rule(order).iter() {
+                        let (p, area) = gauss::on_quad(&quad, u, v);
+                        let light = irradiance(self.outward(p), polygon.normal());
+                        let weight = weight_u * weight_v * area / polygon.area();
+                        for (s, l) in sum.iter_mut().zip(light) {
+                            *s += weight * l;
+                        }
+                    }
+                }
+            }
+        }
+        (sum, cut && !seen.is_empty())
+    }
+
+    fn lit_by_area(
+        &self,
+        element: &Element,
+        lamp: &Polygon,
+        exitance: Rgb,
+        shadow: bool,
+        pieces: &mut Pieces,
+    ) -> Rgb {
+        let near = lamp.moved(self.by, self.scale);
+        let all: Vec<&Polygon> = if shadow { self.occluders.iter().collect() } else { vec![] };
+        let goal = self.options.factors.goal(element.polygon.area(), 1);
+        let (mutual, _) = cubature::mutual(&element.polygon, &near, &all, goal, pieces);
+        let share = factor::of_mutual(mutual, element.polygon.area()).value;
+        exitance.map(|e| e * share)
+    }
+}

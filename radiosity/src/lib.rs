@@ -1,0 +1,72 @@
+//! Light between diffuse surfaces: what they exchange, with error bounds, and what they look like in the end.
+//!
+//! ```
+//! use glam::{DVec3, dvec3};
+//! use pointillist_radiosity::{FactorOptions, Polygon, form_factor};
+//!
+//! // Of what leaves the floor of a unit cube, a fifth reaches the ceiling, and another fifth each wall: 0.1998 + 4 · 0.2000 = 1.
+//! let square = |o: DVec3, u: DVec3, v: DVec3| Polygon::new(&[o, o + u, o + u + v, o + v]);
+//! let floor = square(DVec3::ZERO, DVec3::X, DVec3::Y)?;
+//! let ceiling = square(DVec3::Z, DVec3::Y, DVec3::X)?;
+//! let wall = square(DVec3::ZERO, DVec3::Y, DVec3::Z)?;
+//! let share = |to: &Polygon| form_factor(&floor, to, &[], &FactorOptions::DEFAULT);
+//! assert!((share(&ceiling).value - 0.199_824_895_698).abs() < 1e-12);
+//! assert!((share(&ceiling).value + 4.0 * share(&wall).value - 1.0).abs() < 1e-12);
+//! # Ok::<(), pointillist_radiosity::PolygonError>(())
+//! ```
+//!
+//! * [`form_factor`]: one pair of polygons, with a bound on the error, past any occluders.
+//! * [`Scene`]: surfaces, checked and divided into patches; [`Scene::direct`] lights them by lamps.
+//! * [`Transport`]: which patches exchange how much, each with each ([`SceneOptions::tolerance`] `None`) or in groups; solved by
+//!   [`Transport::gauss_seidel`] or [`Transport::progressive`] with a bound on the error of the result.
+//! * [`Transport::bake`] and [`Transport::irradiance`]: light at vertices and at free points.
+//! * [`Hemicube`]: the classic method, and the same with exact coverage in its cells.
+//!
+//! # Accuracy and cost
+//! Each pair is computed by the cheapest of three rules that meets the tolerance: quadrature over both areas (far), Lambert's formula at
+//! points (of very different size), contours with closed forms where edges are parallel or touch (near). Past occluders what
+//! a point sees of a polygon is cut exactly, and only the integral over the points is quadrature. Its error is judged by halving, that is, from
+//! samples: what all samples miss by chance is not in the bound.
+//!
+//! A hierarchy's error is that of its tolerance. Figures are in the README and `studies/results/radiosity.md`.
+//!
+//! # Features
+//! `rayon` (default) uses all cores; it never changes a result. `invariants`: facts for property tests and fuzzing.
+//!
+//! # References
+//! 1. P. Schröder, P. Hanrahan: *On the form factor between two polygons*, SIGGRAPH 1993.
+//! 2. M. F. Cohen, J. R. Wallace: *Radiosity and realistic image synthesis*, 1993; M. F. Cohen, S. E. Chen, J. R. Wallace,
+//!    D. P. Greenberg: *A progressive refinement approach to fast radiosity image generation*, SIGGRAPH 1988.
+//! 3. P. Hanrahan, D. Salzman, L. Aupperle: *A rapid hierarchical radiosity algorithm*, SIGGRAPH 1991.
+//! 4. E. A. Haines, J. R. Wallace: *Shaft culling for efficient ray-cast radiosity*, 1991.
+//! 5. M. Feda, W. Purgathofer: *Accelerating radiosity by overshooting*, Eurographics Workshop on Rendering 1992.
+#![forbid(unsafe_code)]
+mod bake;
+mod by_hemicube;
+mod error;
+mod factor;
+mod gather;
+mod hemicube;
+#[cfg(feature = "invariants")]
+pub mod invariants;
+mod kernel;
+mod lamp;
+mod parallel;
+mod polygon;
+mod scene;
+mod solve;
+mod surface;
+mod transport;
+mod tree;
+mod visible;
+
+pub use bake::{Baked, BakedTriangle, BakedVertex};
+pub use error::{PolygonError, RadiosityError};
+pub use factor::{FactorOptions, FormFactor, form_factor};
+pub use hemicube::{Hemicube, HemicubeKind};
+pub use lamp::{Irradiance, Lamp};
+pub use polygon::{Polygon, SHAPE_TOLERANCE};
+pub use scene::{Scene, SceneOptions};
+pub use solve::{Solution, SolveOptions};
+pub use surface::{Rgb, Surface};
+pub use transport::{LinkCounts, Patch, Transport};

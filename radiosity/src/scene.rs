@@ -1,0 +1,218 @@
+//! A checked scene, divided into patches.
+
+use glam::DVec3;
+
+use crate::error::RadiosityError;
+use crate::factor::FactorOptions;
+use crate::polygon::Polygon;
+use crate::surface::{Rgb, Surface};
+use crate::tree::Tree;
+
+/// How a scene is divided and how accurate exchange is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SceneOptions {
+    /// Longest edge of a patch, in the scene's unit. Default: infinite, that is, one patch for each surface that is about square.
+    pub patch: f64,
+    /// Where light changes fast, patches are divided down to this longest edge. Default: infinite, that is, never.
+    pub smallest_patch: f64,
+    /// What one link between patches of a hierarchy may be off, as a share of the scene's mean radiosity; `None` links every
+    /// patch with every other one (the full matrix). Default: `None`.
+    pub tolerance: Option<f64>,
+    /// Most patches and patches of patches. Default: 4 million.
+    pub max_elements: usize,
+    /// Form factors below this are left out; how much they add up to is counted. Default: 0.
+    pub least_factor: f64,
+    /// Accuracy of each form factor. Default: 1e-9 in the open, 1e-4 behind something, or 1e-6 absolute,
+    /// with at most 400 cells.
+    pub factors: FactorOptions,
+}
+
+impl SceneOptions {
+    /// The defaults, as a constant.
+    pub const DEFAULT: Self = Self {
+        patch: f64::INFINITY,
+        smallest_patch: f64::INFINITY,
+        tolerance: None,
+        max_elements: 4_000_000,
+        least_factor: 0.0,
+        factors: FactorOptions::DEFAULT
+            .with_unoccluded(1e-9)
+            .with_occluded(1e-4)
+            .with_absolute(1e-6)
+            .with_max_cells(400),
+    };
+
+    /// Another longest edge of patches.
+    #[must_use]
+    pub const fn with_patch(mut self, size: f64) -> Self {
+        self.patch = size;
+        self
+    }
+
+    /// Patches may become this small where light changes fast.
+    #[must_use]
+    pub const fn with_smallest_patch(mut self, size: f64) -> Self {
+        self.smallest_patch = size;
+        self
+    }
+
+    /// A hierarchy of links with this tolerance, or the full matrix.
+    #[must_use]
+    pub const fn with_tolerance(mut self, tolerance: Option<f64>) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// Another limit of elements.
+    #[must_use]
+    pub const fn with_max_elements(mut self, limit: usize) -> Self {
+        self.max_elements = limit;
+        self
+    }
+
+    /// Leaves out form factors below this.
+    #[must_use]
+    pub const fn with_least_factor(mut self, least: f64) -> Self {
+        self.least_factor = least;
+        self
+    }
+
+    /// Another accuracy of form factors.
+    #[must_use]
+    pub const fn with_factors(mut self, factors: FactorOptions) -> Self {
+        self.factors = factors;
+        self
+    }
+
+    fn check(&self) -> Result<(), RadiosityError> {
+        let above_0 = |name, value: f64| {
+            if value > 0.0 {
+                Ok(())
+            } else {
+                Err(RadiosityError::Option { name, value, expected: "above 0" })
+            }
+        };
+        above_0("patch", self.patch)?;
+        above_0("smallest_patch", self.smallest_patch)?;
+        above_0("tolerance", self.tolerance.unwrap_or(1.0))?;
+        if self.least_factor >= 0.0 && self.least_factor < 1.0 {
+            return Ok(());
+        }
+        let (name, expected) = ("least_factor", "from 0 to below 1");
+        Err(RadiosityError::Option { name, value: self.least_factor, expected })
+    }
+}
+
+impl Default for SceneOptions {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// One side of a surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Side {
+    pub(crate) surface: usize,
+    pub(crate) back: bool,
+    pub(crate) reflectance: Rgb,
+    pub(crate) emission: Rgb,
+}
+
+impl Side {
+    /// Whether it gives no light whatever it gets.
+    pub(crate) fn is_black(&self) -> bool {
+        self.reflectance == [0.0; 3] && self.emission == [0.0; 3]
+    }
+}
+
+/// Surfaces, checked, moved to the origin, scaled to about 1 and divided into patches.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    pub(crate) tree: Tree,
+    pub(crate) sides: Vec<Side>,
+    /// Surfaces as what hides; also those that are black.
+    pub(crate) occluders: Vec<Polygon>,
+    pub(crate) options: SceneOptions,
+    /// Scene coordinates are `(p + by) · scale`.
+    pub(crate) by: DVec3,
+    pub(crate) scale: f64,
+    dropped: usize,
+}
+
+impl Scene {
+    /// Checks and divides. Surfaces without area that emit nothing are dropped and counted.
+    ///
+    /// # Errors
+    /// [`RadiosityError`]: outlines that are not convex and planar, reflectances outside 0 to 1, emissions that are negative or not
+    /// finite, emitters without area, options out of range, too many patches.
+    pub fn new(surfaces: &[Surface], options: &SceneOptions) -> Result<Self, RadiosityError> {
+        options.check()?;
+        let mut kept = vec![];
+        for (i, surface) in surfaces.iter().enumerate() {
+            kept.extend(surface.checked(i)?.map(|polygon| (i, polygon)));
+        }
+        if kept.is_empty() {
+            return Err(RadiosityError::NoSurface);
+        }
+        let all = || kept.iter().flat_map(|(_, p)| p.vertices());
+        let low = all().fold(DVec3::INFINITY, |m, &v| m.min(v));
+        let high = all().fold(DVec3::NEG_INFINITY, |m, &v| m.max(v));
+        let by = -0.5 * (low + high);
+        // A power of two: scaling is exact.
+        let scale = 2.0_f64.powi(-((high - low).max_element().log2().ceil() as i32));
+        let dropped = surfaces.len() - kept.len();
+        let mut scene = Self {
+            tree: Tree::default(),
+            sides: vec![],
+            occluders: vec![],
+            options: *options,
+            by,
+            scale,
+            dropped,
+        };
+        for (i, polygon) in &kept {
+            scene.add(*i, &surfaces[*i], &polygon.moved(by, scale));
+        }
+        if !scene.tree.divide_all(options.patch * scale, options.max_elements) {
+            return Err(RadiosityError::TooManyPatches { limit: options.max_elements });
+        }
+        Ok(scene)
+    }
+
+    fn add(&mut self, index: usize, surface: &Surface, polygon: &Polygon) {
+        let mut side = |polygon: &Polygon, back: bool| {
+            let number = self.sides.len() as u32;
+            let Surface { reflectance, emission, .. } = *surface;
+            self.sides.push(Side { surface: index, back, reflectance, emission });
+            self.tree.add_side(polygon, number);
+        };
+        side(polygon, false);
+        if surface.two_sided {
+            side(&polygon.flipped(), true);
+        }
+        self.occluders.push(polygon.clone());
+    }
+
+    /// How many surfaces without area were dropped.
+    #[must_use]
+    pub const fn dropped(&self) -> usize {
+        self.dropped
+    }
+
+    /// How many patches there are: leaves of the tree. Refinement may add to them.
+    #[must_use]
+    pub fn patch_count(&self) -> usize {
+        self.tree.elements.iter().filter(|e| e.is_leaf()).count()
+    }
+
+    /// To scene coordinates.
+    pub(crate) fn inward(&self, p: DVec3) -> DVec3 {
+        (p + self.by) * self.scale
+    }
+
+    /// From scene coordinates.
+    pub(crate) fn outward(&self, p: DVec3) -> DVec3 {
+        p / self.scale - self.by
+    }
+}

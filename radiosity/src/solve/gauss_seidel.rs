@@ -1,0 +1,104 @@
+//! Gauss–Seidel, root by root.
+
+use super::state::{State, add, times};
+use super::{Solution, SolveOptions, check};
+use crate::error::RadiosityError;
+use crate::surface::Rgb;
+use crate::transport::Transport;
+use crate::tree::ElementId;
+
+pub(super) fn solve(
+    transport: &Transport,
+    direct: &[Rgb],
+    options: &SolveOptions,
+) -> Result<Solution, RadiosityError> {
+    check(options)?;
+    let mut state = State::new(transport, direct)?;
+    let balance = options.balance.then(|| Balance::new(&state));
+    let mut history = vec![1.0];
+    let (mut bound, mut steps, mut converged) = (0.0, 0, state.power == 0.0);
+    while !converged && steps < options.max_sweeps {
+        for &root in &transport.scene.tree.roots {
+            sweep(&mut state, root, [0.0; 3]);
+        }
+        let mut residual = state.residual();
+        if let Some(balance) = &balance {
+            balance.correct(&mut state, &mut residual);
+        }
+        steps += 1;
+        history.push(state.power_of(&residual) / state.power);
+        bound = state.bound(&residual);
+        converged = bound <= options.tolerance * state.largest(&state.radiosity);
+    }
+    let radiosity = transport.leaves.iter().map(|&leaf| state.radiosity[leaf as usize]).collect();
+    let State { radiosity: of_element, contraction, .. } = state;
+    Ok(Solution { of_element, radiosity, bound, contraction, steps, history, converged })
+}
+
+/// Gathers at an element and below, with what its parents' links bring; each value is used as soon as it is known.
+pub(super) fn sweep(state: &mut State<'_>, element: ElementId, from_above: Rgb) {
+    let i = element as usize;
+    let arriving = add(from_above, 1.0, state.gathered(&state.radiosity, element));
+    let children = state.transport.scene.tree.elements[i].children();
+    if children.is_empty() {
+        state.radiosity[i] = add(state.source[i], 1.0, times(state.reflectance(element), arriving));
+        return;
+    }
+    for child in children {
+        sweep(state, child, arriving);
+    }
+    state.radiosity[i] = state.pulled(&state.radiosity, element);
+}
+
+/// A correction along v = ρ, which in bright closed rooms is nearly the slowest part of the error: the step after which
+/// the residual's power, with its signs, is 0.
+struct Balance {
+    /// v, on all levels.
+    along: Vec<Rgb>,
+    /// v − ρ F v.
+    changes: Vec<Rgb>,
+    /// Power of the latter.
+    power: Rgb,
+}
+
+impl Balance {
+    fn new(state: &State<'_>) -> Self {
+        let mut along = vec![[0.0; 3]; state.radiosity.len()];
+        for &leaf in &state.transport.leaves {
+            along[leaf as usize] = state.reflectance(leaf);
+        }
+        state.pull_all(&mut along);
+        let mut changes = state.reflected(&along);
+        for &leaf in &state.transport.leaves {
+            let i = leaf as usize;
+            changes[i] = add(along[i], -1.0, changes[i]);
+        }
+        let power = signed_power(state, &changes);
+        Self { along, changes, power }
+    }
+
+    fn correct(&self, state: &mut State<'_>, residual: &mut [Rgb]) {
+        let missing = signed_power(state, residual);
+        let mut step = [0.0; 3];
+        for band in 0..3 {
+            if self.power[band] > 0.0 {
+                step[band] = missing[band] / self.power[band];
+            }
+        }
+        let negative = step.map(|s| -s);
+        let after: Vec<Rgb> =
+            residual.iter().zip(&self.changes).map(|(r, c)| add(*r, 1.0, times(negative, *c))).collect();
+        if state.power_of(&after) >= state.power_of(residual) {
+            return;
+        }
+        residual.copy_from_slice(&after);
+        for (b, v) in state.radiosity.iter_mut().zip(&self.along) {
+            *b = add(*b, 1.0, times(step, *v));
+        }
+    }
+}
+
+fn signed_power(state: &State<'_>, values: &[Rgb]) -> Rgb {
+    let leaves = state.transport.leaves.iter();
+    leaves.fold([0.0; 3], |sum, &leaf| add(sum, state.area(leaf), values[leaf as usize]))
+}

@@ -1,0 +1,164 @@
+//! Shooting, in the order of unshot power.
+
+use super::state::{State, add, times};
+use super::{Solution, SolveOptions, check};
+use crate::error::RadiosityError;
+use crate::surface::Rgb;
+use crate::transport::Transport;
+use crate::tree::ElementId;
+
+/// What does not matter is shot later, but not never: its least importance relative to the largest.
+const LEAST_IMPORTANCE: f64 = 1e-3;
+
+pub(super) fn solve(
+    transport: &Transport,
+    direct: &[Rgb],
+    importance: &[f64],
+    options: &SolveOptions,
+) -> Result<Solution, RadiosityError> {
+    check(options)?;
+    let patches = transport.leaves.len();
+    if !importance.is_empty() && importance.len() != patches {
+        return Err(RadiosityError::CountMismatch { patches, given: importance.len() });
+    }
+    // What matters most would send its debt back and forth while the rest never gets to pay it.
+    let overshoot = options.overshoot && importance.is_empty();
+    let mut shooter = Shooter::new(State::new(transport, direct)?, importance, overshoot);
+    let mut history = vec![1.0];
+    let (mut bound, mut steps, mut converged) = (0.0, 0, shooter.state.power == 0.0);
+    let units = shooter.units.len();
+    while !converged && steps < options.max_sweeps.saturating_mul(units) {
+        let unit = shooter.next();
+        shooter.shoot(unit);
+        steps += 1;
+        if steps % units == 0 {
+            history.push(shooter.state.power_of(&shooter.unshot) / shooter.state.power);
+            bound = shooter.state.bound(&shooter.unshot);
+            converged = bound <= options.tolerance * shooter.state.largest(&shooter.state.radiosity);
+        }
+    }
+    let mut state = shooter.state;
+    let mut of_element = std::mem::take(&mut state.radiosity);
+    state.pull_all(&mut of_element);
+    let radiosity = transport.leaves.iter().map(|&leaf| of_element[leaf as usize]).collect();
+    Ok(Solution { of_element, radiosity, bound, contraction: state.contraction, steps, history, converged })
+}
+
+struct Shooter<'t> {
+    state: State<'t>,
+    /// Residual of every leaf, exactly: what it has not yet sent.
+    unshot: Vec<Rgb>,
+    /// What is shot at once: leaves, or roots of a hierarchy.
+    units: Vec<ElementId>,
+    weight: Vec<f64>,
+    /// Reflectance averaged over area, and area.
+    mean_reflectance: Rgb,
+    area: f64,
+    overshoot: bool,
+    flat: bool,
+}
+
+impl<'t> Shooter<'t> {
+    fn new(mut state: State<'t>, importance: &[f64], overshoot: bool) -> Self {
+        let transport = state.transport;
+        let flat = transport
+            .links
+            .iter()
+            .all(|l| [l.a, l.b].into_iter().all(|e| transport.scene.tree.elements[e as usize].is_leaf()));
+        let units = if flat { transport.leaves.clone() } else { transport.scene.tree.roots.clone() };
+        let mut of_leaf = vec![1.0; state.source.len()];
+        let most = importance.iter().copied().fold(0.0, f64::max);
+        for (&leaf, value) in transport.leaves.iter().zip(importance) {
+            of_leaf[leaf as usize] = value.max(LEAST_IMPORTANCE * most);
+        }
+        let (mut area, mut reflected) = (0.0, [0.0; 3]);
+        for &leaf in &transport.leaves {
+            area += state.area(leaf);
+            reflected = add(reflected, state.area(leaf), state.reflectance(leaf));
+        }
+        let unshot = state.source.clone();
+        state.radiosity.clone_from(&state.source);
+        let mean_reflectance = reflected.map(|r| r / area);
+        Self { state, unshot, units, weight: of_leaf, mean_reflectance, area, overshoot, flat }
+    }
+
+    fn power_below(&self, unit: ElementId) -> f64 {
+        let mut power = 0.0;
+        self.state.transport.scene.tree.leaves_below(unit, &mut |leaf| {
+            let i = leaf as usize;
+            let light: f64 = self.unshot[i].iter().map(|v| v.abs()).sum();
+            power += self.state.area(leaf) * light * self.weight[i];
+        });
+        power
+    }
+
+    /// The unit with the most unshot power, weighted by importance.
+    fn next(&self) -> ElementId {
+        let mut best = (self.units[0], -1.0);
+        for &unit in &self.units {
+            let power = self.power_below(unit);
+            if power > best.1 {
+                best = (unit, power);
+            }
+        }
+        best.0
+    }
+
+    /// Even ambient radiosity that is still to come: unshot power, reflected on and on (\[2\], eq. 8).
+    fn ambient(&self) -> Rgb {
+        let leaves = self.state.transport.leaves.iter();
+        let power =
+            leaves.fold([0.0; 3], |sum, &leaf| add(sum, self.state.area(leaf), self.unshot[leaf as usize]));
+        let mut ambient = [0.0; 3];
+        for band in 0..3 {
+            let stays = (1.0 - self.mean_reflectance[band]).max(1e-3);
+            ambient[band] = (power[band] / self.area / stays).max(0.0);
+        }
+        ambient
+    }
+
+    fn shoot(&mut self, unit: ElementId) {
+        let transport = self.state.transport;
+        let tree = &transport.scene.tree;
+        let ambient = if self.overshoot { self.ambient() } else { [0.0; 3] };
+        let mut sent = vec![];
+        tree.leaves_below(unit, &mut |leaf| {
+            let i = leaf as usize;
+            // Sending more than there is leaves a debt, which what arrives later pays.
+            let extra = times(self.state.reflectance(leaf), ambient);
+            let light = add(self.unshot[i], 1.0, extra);
+            self.unshot[i] = extra.map(|e| -e);
+            sent.push((leaf, light));
+        });
+        if self.flat {
+            for (leaf, light) in sent {
+                self.deliver(leaf, light);
+            }
+            return;
+        }
+        let mut on_all_levels = vec![[0.0; 3]; tree.elements.len()];
+        for (leaf, light) in sent {
+            on_all_levels[leaf as usize] = light;
+        }
+        self.state.pull_all(&mut on_all_levels);
+        let arrived = self.state.reflected(&on_all_levels);
+        for &leaf in &transport.leaves {
+            let i = leaf as usize;
+            self.unshot[i] = add(self.unshot[i], 1.0, arrived[i]);
+            self.state.radiosity[i] = add(self.state.radiosity[i], 1.0, arrived[i]);
+        }
+    }
+
+    /// From one leaf to all that it is linked with.
+    fn deliver(&mut self, leaf: ElementId, light: Rgb) {
+        let transport = self.state.transport;
+        for entry in transport.row(leaf) {
+            let to = entry.to as usize;
+            // Reciprocity: the link's exchange over the receiver's area.
+            let factor = transport.links[entry.link as usize].mutual / self.state.area(entry.to);
+            let arrived = times(self.state.reflectance(entry.to), light.map(|l| factor * l));
+            self.unshot[to] = add(self.unshot[to], 1.0, arrived);
+            self.state.radiosity[to] = add(self.state.radiosity[to], 1.0, arrived);
+        }
+    }
+}

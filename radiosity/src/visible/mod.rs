@@ -1,0 +1,6 @@
+//! What of a polygon is seen past others: exactly, as convex pieces.
+
+pub(crate) mod boxes;
+pub(crate) mod cubature;
+pub(crate) mod parts;
+pub(crate) mod shaft;
