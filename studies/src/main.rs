@@ -39,6 +39,8 @@ mod probe_streets;
 mod probe_trilinear;
 mod probe_truth;
 mod probe_walk;
+mod radiosity;
+mod radiosity_peer;
 mod ray_reference;
 mod report;
 mod scans;
@@ -63,7 +65,7 @@ use report::Outcome;
 /// Name, what it measures, and the study itself.
 type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
 
-const STUDIES: [Study; 8] = [
+const STUDIES: [Study; 9] = [
     ("dice", "areas of a triangle in the cells of a grid", run_dice),
     ("micropoint", "pictures against point sampling", micropoint::run),
     ("shadow", "shadows against a shadow map", shadow::run),
@@ -74,6 +76,7 @@ const STUDIES: [Study; 8] = [
         "light probes: coefficients, tetrahedra, placement, against direct integration",
         shprobe::run,
     ),
+    ("radiosity", "form factors, hemicubes and solutions: time against error", radiosity::run),
     ("stress", "input at the limits of numbers; fails if a row does", stress::run),
     ("speed", "whole pictures: seconds, threads, memory", speed::run),
 ];
