@@ -166,6 +166,9 @@ fn a_ply_holds_the_light_of_vertices() {
     let folder = corner();
     folder.prints(&["radiosity", "room.toml", "--adaptive", "0.05", "--patch", "0.5", "-o", "light.ply"]);
     let text = std::fs::read_to_string(folder.path("light.ply")).expect("a file");
-    assert!(text.starts_with("ply\nformat ascii 1.0\n") && text.contains("property float red"), "{text}");
+    assert!(
+        text.starts_with("ply\nformat ascii 1.0\n") && text.contains("property float radiosity_red"),
+        "{text}"
+    );
     folder.prints(&["info", "light.ply"]);
 }

@@ -144,7 +144,7 @@ impl<'t> Mesh<'t> {
             let side = &transport.scene.sides[element.side as usize];
             let normal = (element.polygon.normal() * NORMAL_STEPS).round();
             let bits = |v: [f64; 3]| v.map(|x| (x + 0.0).to_bits());
-            let key = (bits(normal.to_array()), bits(side.reflectance), bits(side.emission));
+            let key = (bits(normal.to_array()), bits(side.reflectance), bits(side.emission), side.part);
             let next = known.len() as u32;
             of_side[element.side as usize] = *known.entry(key).or_insert(next);
         }

@@ -43,6 +43,7 @@
 #![forbid(unsafe_code)]
 mod bake;
 mod by_hemicube;
+mod contact;
 mod error;
 mod factor;
 mod gather;

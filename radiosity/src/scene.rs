@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::contact;
 use crate::error::RadiosityError;
 use crate::factor::FactorOptions;
 use crate::polygon::Polygon;
@@ -110,13 +111,15 @@ impl Default for SceneOptions {
     }
 }
 
-/// One side of a surface.
+/// One side of a surface, or of a part of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Side {
     pub(crate) surface: usize,
     pub(crate) back: bool,
     pub(crate) reflectance: Rgb,
     pub(crate) emission: Rgb,
+    /// 0, or different for each part of a surface that others stand on: light jumps between parts.
+    pub(crate) part: u32,
 }
 
 impl Side {
@@ -171,8 +174,9 @@ impl Scene {
             scale,
             dropped,
         };
-        for (i, polygon) in &kept {
-            scene.add(*i, &surfaces[*i], &polygon.moved(by, scale));
+        scene.occluders = kept.iter().map(|(_, polygon)| polygon.moved(by, scale)).collect();
+        for (place, (i, _)) in kept.iter().enumerate() {
+            scene.add(*i, &surfaces[*i], place);
         }
         if !scene.tree.divide_all(options.patch * scale, options.max_elements) {
             return Err(RadiosityError::TooManyPatches { limit: options.max_elements });
@@ -180,18 +184,23 @@ impl Scene {
         Ok(scene)
     }
 
-    fn add(&mut self, index: usize, surface: &Surface, polygon: &Polygon) {
-        let mut side = |polygon: &Polygon, back: bool| {
-            let number = self.sides.len() as u32;
-            let Surface { reflectance, emission, .. } = *surface;
-            self.sides.push(Side { surface: index, back, reflectance, emission });
-            self.tree.add_side(polygon, number);
-        };
-        side(polygon, false);
-        if surface.two_sided {
-            side(&polygon.flipped(), true);
+    /// Adds both sides of a surface, in parts where others stand on it.
+    fn add(&mut self, index: usize, surface: &Surface, place: usize) {
+        let parts = contact::parts(&self.occluders[place], &self.occluders);
+        let Surface { reflectance, emission, .. } = *surface;
+        let whole = parts.len() == 1;
+        for back in [false, true] {
+            if back && !surface.two_sided {
+                continue;
+            }
+            for polygon in &parts {
+                let number = self.sides.len() as u32;
+                let part = if whole { 0 } else { number + 1 };
+                self.sides.push(Side { surface: index, back, reflectance, emission, part });
+                let polygon = if back { polygon.flipped() } else { polygon.clone() };
+                self.tree.add_side(&polygon, number);
+            }
         }
-        self.occluders.push(polygon.clone());
     }
 
     /// How many surfaces without area were dropped.

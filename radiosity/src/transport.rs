@@ -557,6 +557,15 @@ impl Transport {
         })
     }
 
+    /// Corners of the patches, in their order, in the scene's coordinates.
+    pub fn patch_corners(&self) -> impl Iterator<Item = Vec<DVec3>> + '_ {
+        let corners = |&leaf: &ElementId| {
+            let ring = self.scene.tree.elements[leaf as usize].polygon.vertices();
+            ring.iter().map(|&v| self.scene.outward(v)).collect()
+        };
+        self.leaves.iter().map(corners)
+    }
+
     /// Mean irradiance of one patch from all others, by its links.
     ///
     /// # Panics

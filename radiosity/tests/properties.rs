@@ -81,7 +81,7 @@ proptest! {
 
 proptest! {
     // The slow integral takes some milliseconds.
-    #![proptest_config(ProptestConfig { cases: 48, max_shrink_iters: 100, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 24, max_shrink_iters: 50, ..ProptestConfig::default() })]
 
     #[test]
     fn bounds_hold_against_the_slow_integral((a, b) in pair(), digits in 4.0_f64..13.0) {

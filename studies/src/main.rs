@@ -39,6 +39,8 @@ mod probe_streets;
 mod probe_trilinear;
 mod probe_truth;
 mod probe_walk;
+mod radiosity;
+mod radiosity_peer;
 mod ray_reference;
 mod report;
 mod scans;
@@ -76,6 +78,7 @@ const STUDIES: [Study; 9] = [
         "light probes: coefficients, tetrahedra, placement, against direct integration",
         shprobe::run,
     ),
+    ("radiosity", "form factors, hemicubes and solutions: time against error", radiosity::run),
     ("stress", "input at the limits of numbers; fails if a row does", stress::run),
     ("speed", "whole pictures: seconds, threads, memory", speed::run),
 ];

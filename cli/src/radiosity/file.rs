@@ -81,14 +81,15 @@ impl BakedFile {
         writeln!(output)
     }
 
-    /// Writes PLY, ascii: position, normal and radiosity of vertices, and triangles. For looking at, not for `render`.
+    /// Writes PLY, ascii: position, normal and radiosity of vertices, and triangles. Not for `render`. Radiosity goes beyond 1, so it is no
+    /// colour.
     ///
     /// # Errors
     /// What `output` says.
     pub fn write_ply(&self, output: &mut dyn Write) -> io::Result<()> {
         writeln!(output, "ply\nformat ascii 1.0\ncomment radiosity: power per area that leaves, linear RGB")?;
         writeln!(output, "element vertex {}", self.positions.len())?;
-        for name in ["x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"] {
+        for name in ["x", "y", "z", "nx", "ny", "nz", "radiosity_red", "radiosity_green", "radiosity_blue"] {
             writeln!(output, "property float {name}")?;
         }
         writeln!(output, "element face {}", self.triangles.len())?;

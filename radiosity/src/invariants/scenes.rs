@@ -8,7 +8,7 @@ use crate::{Scene, SceneOptions, SolveOptions, Surface};
 pub fn is_refused_or_solved(surfaces: &[Surface], options: &SceneOptions) -> Result<(), String> {
     let Ok(scene) = Scene::new(surfaces, options) else { return Ok(()) };
     let Ok((transport, direct)) = scene.transport(&[]) else { return Ok(()) };
-    let solving = SolveOptions::DEFAULT.with_max_sweeps(200);
+    let solving = SolveOptions::DEFAULT.with_max_sweeps(12);
     let Ok(solved) = transport.gauss_seidel(&direct, &solving) else { return Ok(()) };
     for value in solved.radiosity.iter().flatten() {
         check(value.is_finite() && *value >= -solved.bound, || format!("a radiosity of {value}"))?;

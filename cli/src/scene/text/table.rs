@@ -263,22 +263,6 @@ impl<'a> Table<'a> {
         entries.iter().map(read).collect()
     }
 
-    /// Keys that belong to the format, but that this version cannot serve.
-    ///
-    /// # Errors
-    ///
-    /// One of them is there.
-    pub fn not_yet(&mut self, keys: &[&'static str]) -> Result<(), InputError> {
-        for &key in keys {
-            if self.get(key).is_some() {
-                return Err(self
-                    .error(key, format!("`{}` is not in this version yet", self.name_of(key)))
-                    .with_help(format!("remove `{key}` to go on without it")));
-            }
-        }
-        Ok(())
-    }
-
     /// Reports the first key that nobody asked for.
     ///
     /// # Errors
