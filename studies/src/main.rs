@@ -66,7 +66,7 @@ use report::Outcome;
 /// Name, what it measures, and the study itself.
 type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
 
-const STUDIES: [Study; 9] = [
+const STUDIES: [Study; 10] = [
     ("dice", "areas of a triangle in the cells of a grid", run_dice),
     ("micropoint", "pictures against point sampling", micropoint::run),
     ("shadow", "shadows against a shadow map", shadow::run),
