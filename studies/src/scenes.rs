@@ -178,7 +178,7 @@ pub(crate) type Visibility<'a> = dyn Fn(&SurfaceSample, usize, u32) -> f64 + Syn
 fn ambient_color(scene: &Scene) -> Vec3 {
     match scene.ambient {
         AmbientLight::Color(color) => color,
-        AmbientLight::Probes { .. } => Vec3::ZERO,
+        AmbientLight::Probes { .. } | AmbientLight::Radiosity { .. } => Vec3::ZERO,
     }
 }
 
