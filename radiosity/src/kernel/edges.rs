@@ -17,6 +17,9 @@ const PERPENDICULAR: f64 = 1e-15;
 const PARALLEL_REACH: f64 = 3.0;
 /// Pieces shorter than this, relative to the edge, are no longer halved.
 const SHORTEST_PIECE: f64 = 1e-18;
+/// Towards a point it takes some sixty; edges that run side by side a hair apart, but are not parallel, would take any number. What is left
+/// is in the error.
+const MAX_HALVINGS: usize = 400;
 
 /// A directed edge.
 #[derive(Clone, Copy, Debug)]
@@ -142,12 +145,17 @@ impl Setting {
         let mut sum = Integral::default();
         let mut stack = [(0.0, 0.0, 0.0); 80];
         stack[0] = (0.0, 1.0, gap_of_all);
-        let mut height = 1;
+        let (mut height, mut halvings) = (1, 0);
         while height > 0 {
             height -= 1;
             let (from, to, near) = stack[height];
             let half = 0.5 * (to - from) * a.length;
-            if near < 2.0 * half && to - from > SHORTEST_PIECE && height + 2 <= stack.len() {
+            if near < 2.0 * half
+                && to - from > SHORTEST_PIECE
+                && height + 2 <= stack.len()
+                && halvings < MAX_HALVINGS
+            {
+                halvings += 1;
                 let middle = 0.5 * (from + to);
                 for (f, t) in [(middle, to), (from, middle)] {
                     let piece = part(a, f, t);
