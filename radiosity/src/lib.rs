@@ -54,6 +54,7 @@ mod kernel;
 mod lamp;
 mod parallel;
 mod polygon;
+mod rows;
 mod scene;
 mod solve;
 mod surface;

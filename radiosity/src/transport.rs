@@ -40,6 +40,9 @@ pub(crate) struct Link {
     pub(crate) between: (u32, u32),
 }
 
+/// Rows above 1 by no more than this stay as they are: errors of single factors, which keep the balance of energy exact.
+const LEAST_EXCESS: f64 = 1e-3;
+
 /// What was skipped and why, and what was done.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -62,6 +65,8 @@ pub struct LinkCounts {
     pub left_out: f64,
     /// The largest amount by which the form factors of any patch add up to more than 1, before any scaling.
     pub row_excess: f64,
+    /// The largest relative amount by which a row was scaled so that none adds up to more than 1.
+    pub row_change: f64,
     /// Cells that were sampled to find what partly hidden pairs exchange.
     pub cells: usize,
 }
@@ -474,10 +479,7 @@ impl Transport {
             found.counts.partly_hidden += usize::from(link.between.1 > start);
         }
         let lost = vec![0.0; scene.tree.elements.len()];
-        let (mut transport, direct) = Self::assemble(scene, found, boxes, (&lost, direct));
-        // A centre's form factors may add up to more than 1 once both ends are averaged.
-        transport.limit_rows();
-        (transport, direct)
+        Self::assemble(scene, found, boxes, (&lost, direct))
     }
 
     fn assemble(
@@ -518,6 +520,9 @@ impl Transport {
             Self { scene, links, between, starts, entries, leaves, boxes, parents, scale, counts };
         let sums = transport.row_sums();
         transport.counts.row_excess = sums.into_iter().fold(0.0, |m, s| m.max(s - 1.0));
+        if transport.counts.row_excess > LEAST_EXCESS {
+            transport.counts.row_change = transport.even_rows();
+        }
         (transport, direct)
     }
 
@@ -585,35 +590,6 @@ impl Transport {
 
     pub(crate) fn row(&self, element: ElementId) -> &[Entry] {
         &self.entries[self.starts[element as usize]..self.starts[element as usize + 1]]
-    }
-
-    /// Sum of the form factors of each patch, those of the patches that it is part of included: 1 in a closed scene.
-    #[must_use]
-    pub fn row_sums(&self) -> Vec<f64> {
-        let mut of_element = vec![0.0; self.scene.tree.elements.len()];
-        for (i, sum) in of_element.iter_mut().enumerate() {
-            *sum = self.row(i as u32).iter().map(|e| e.factor).sum();
-        }
-        for (i, element) in self.scene.tree.elements.iter().enumerate() {
-            for child in element.children() {
-                // Children come after their parents, so each is complete before it is handed on.
-                of_element[child as usize] += of_element[i];
-            }
-        }
-        self.leaves.iter().zip(&self.scale).map(|(&leaf, scale)| of_element[leaf as usize] * scale).collect()
-    }
-
-    /// Scales rows that add up to more than 1 down to it, and gives the largest excess there was
-    /// ([`LinkCounts::row_excess`]). That takes light away: links of groups are means, too much for a patch in a corner and too little for
-    /// its neighbours, and solvers do without.
-    pub fn limit_rows(&mut self) -> f64 {
-        let sums = self.row_sums();
-        let mut most = 0.0_f64;
-        for (scale, sum) in self.scale.iter_mut().zip(sums) {
-            most = most.max(sum - 1.0);
-            *scale /= sum.max(1.0);
-        }
-        most
     }
 
     /// Calls `f` with patch, other patch and form factor between them: what links of groups say is handed to their

@@ -73,8 +73,8 @@ pub struct Solution {
     pub(crate) of_element: Vec<Rgb>,
     /// Radiosity of each patch, power per area.
     pub radiosity: Vec<Rgb>,
-    /// Bound on the error of any patch's radiosity, for the given form factors: ‖r‖∞ / (1 − max ρ·row sum), or where rows of a
-    /// hierarchy add up to more than 1, max w · max |r|/v for a w > 0 with v = (I − ρF) w > 0.
+    /// Bound on the error of any patch's radiosity, for the given form factors: ‖r‖∞ / (1 − max ρ·row sum), or where rows add
+    /// up to more than 1, max w · max |r|/v for a w > 0 with v = (I − ρF) w > 0.
     pub bound: f64,
     /// Largest reflectance times row sum: what is left of light after each reflection, at most.
     pub contraction: f64,

@@ -169,7 +169,7 @@ pub(crate) enum Proof {
         /// Reflectance times row sum, at most.
         contraction: f64,
     },
-    /// Rows of a hierarchy may add up to more than 1 where others have less. If w > 0 and v = (I − ρF) w > 0, then (I − ρF)⁻¹
+    /// Rows may add up to more than 1 by errors of their factors. If w > 0 and v = (I − ρF) w > 0, then (I − ρF)⁻¹
     /// has no negative entries, and |error| ≤ max w · max |r|/v.
     Weights {
         /// Largest w.
