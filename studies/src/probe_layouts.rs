@@ -209,7 +209,7 @@ pub(crate) fn cell_count(field: &Field) -> usize {
     }
 }
 
-/// The heads of the columns of [`line`].
+/// The heads of the columns of [`line()`].
 pub(crate) const HEAD: &str = "| scene | placement | asked for | probes | cells | distances | error % | dark room % | choosing, s |\n\
                                | --- | --- | ---: | ---: | ---: | --- | ---: | ---: | ---: |\n";
 

@@ -8,30 +8,26 @@ use pointillist_radiosity::{Scene, SceneOptions};
 use crate::radiosity::cornell;
 use crate::report::{Outcome, timed};
 
-/// Visible, not obstructed, then the form factor, for pairs of the patches that standard input holds.
+/// All form factors of the patches that standard input holds, with visibility and obstruction; the first call, of two
+/// patches, compiles.
 const SCRIPT: &str = r#"
 import json, sys, time
 import numpy as np, pyvista as pv, pyviewfactor as pvf
+def mesh_of(faces):
+    points = np.array([p for f in faces for p in f], float)
+    cells, first = [], 0
+    for f in faces:
+        cells += [len(f), *range(first, first + len(f))]
+        first += len(f)
+    return pv.PolyData(points, faces=cells)
+def factors(mesh):
+    return pvf.compute_viewfactor_matrix_fast(mesh, obstacles=mesh.triangulate())
 faces = json.load(sys.stdin)
-cells = [pv.PolyData(np.array(f, float), faces=[len(f)] + list(range(len(f)))) for f in faces]
-mesh = pv.merge([c.triangulate() for c in cells])
-mesh = mesh if isinstance(mesh, pv.PolyData) else pvf.fc_unstruc2poly(mesh)
-rng = np.random.default_rng(1)
-pairs = rng.integers(0, len(cells), (400, 2))
-def one(i, j):
-    a, b = cells[i], cells[j]
-    seen = pvf.get_visibility(a, b)
-    seen = seen[0] if isinstance(seen, tuple) else seen
-    if not seen: return 0.0
-    free = pvf.get_obstruction(a, b, mesh)
-    free = free[0] if isinstance(free, tuple) else free
-    return pvf.compute_viewfactor(a, b) if free else 0.0
-for i, j in pairs[:20]:
-    if i != j: one(i, j)
+factors(mesh_of(faces[:2]))
+mesh, count = mesh_of(faces), len(faces)
 start = time.perf_counter()
-for i, j in pairs:
-    if i != j: one(i, j)
-print(len(pairs) / (time.perf_counter() - start))
+factors(mesh)
+print(count * (count - 1) / 2 / (time.perf_counter() - start))
 "#;
 
 /// The section.
@@ -74,7 +70,8 @@ pub(crate) fn compare(text: &mut String) -> Outcome {
             match said.parse::<f64>() {
                 Ok(rate) => writeln!(
                     text,
-                    "pyviewfactor, 400 random pairs of the same patches one by one (visibility, obstruction, form factor; one thread): {rate:.0} a second."
+                    "pyviewfactor, `compute_viewfactor_matrix_fast` of the same patches with obstruction, all its threads: {rate:.0} a second; ours are {:.2} times as many.",
+                    pairs / seconds / rate
                 )?,
                 Err(_) => writeln!(text, "pyviewfactor did not answer: {said}")?,
             }
