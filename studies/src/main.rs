@@ -41,6 +41,7 @@ mod probe_truth;
 mod probe_walk;
 mod radiosity;
 mod radiosity_peer;
+mod radiosity_probes;
 mod ray_reference;
 mod report;
 mod scans;

@@ -36,6 +36,17 @@ pub(crate) fn two_rooms() -> Scene {
     sketch.scene
 }
 
+/// Length, height and depth of the closed box.
+pub(crate) const BOX: DVec3 = dvec3(4.0, 3.0, 4.0);
+
+/// One room without a way out, with coloured ends and a lamp.
+pub(crate) fn closed_box() -> Scene {
+    let mut sketch = Sketch::new(dvec3(0.4, 1.7, 0.4), dvec3(3.0, 1.2, 2.2), 75.0, 256);
+    room(&mut sketch, BOX, [RED, BLUE]);
+    lamp(&mut sketch, dvec3(1.5, 2.2, 1.8), 10.0);
+    sketch.scene
+}
+
 /// The paper's *Basic*: red, green and blue walls on three sides of a floor, under a lamp.
 pub(crate) fn basic() -> Scene {
     let mut sketch = Sketch::new(dvec3(2.0, 3.0, 9.0), dvec3(2.0, 1.0, 0.0), 45.0, 256);

@@ -9,8 +9,8 @@ use pointillist_radiosity::{
     FactorOptions, Hemicube, HemicubeKind, Polygon, Scene, SceneOptions, SolveOptions, Surface, form_factor,
 };
 
-use crate::radiosity_peer;
 use crate::report::{Outcome, machine, timed};
+use crate::{radiosity_peer, radiosity_probes};
 
 /// Runs the study.
 pub(crate) fn run(out_dir: &Path) -> Outcome {
@@ -24,6 +24,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     hemicubes(&mut text)?;
     boxes(&mut text)?;
     rooms(&mut text)?;
+    radiosity_probes::compare(&mut text)?;
     radiosity_peer::compare(&mut text)?;
     std::fs::create_dir_all(out_dir)?;
     std::fs::write(out_dir.join("radiosity.md"), &text)?;
