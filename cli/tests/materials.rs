@@ -356,7 +356,7 @@ fn pictures_with_everything_do_not_depend_on_tiles_or_threads() {
     assert!(bytes("whole.exr") == bytes("two.exr") && bytes("whole.exr") == bytes("merged.exr"));
     let info: serde_json::Value = serde_json::from_str(&folder.prints(&["info", "all.toml"])).unwrap();
     assert_eq!(info["textures"].as_array().map(Vec::len), Some(3), "{info}");
-    assert_eq!(info["surfaces"][0]["model"], "Ggx");
+    assert_eq!(info["surfaces"][0]["model"], "ggx");
     assert_eq!(info["surfaces"][0]["maps"], serde_json::json!(["diffuse", "bump"]));
     assert_eq!(info["surfaces"][1]["mirrors"], true);
 }

@@ -125,8 +125,16 @@ fn of_material(material: &Material) -> Value {
         ("bump", d.bump.is_some()),
         ("normal", d.normal.is_some()),
     ];
-    let model =
-        if d.measured.is_some() { "Merl".to_owned() } else { format!("{:?}", material.surface.model) };
+    let model = match material.surface.model {
+        _ if d.measured.is_some() => "merl",
+        Model::Lambert => "lambert",
+        Model::NormalizedPhong => "phong",
+        Model::NormalizedBlinnPhong => "blinn-phong",
+        Model::Ggx => "ggx",
+        Model::Phong => "phong, not normalised",
+        Model::BlinnPhong => "blinn-phong, not normalised",
+        _ => "another",
+    };
     json!({
         "name": material.name,
         "model": model,
