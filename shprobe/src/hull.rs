@@ -21,7 +21,19 @@ pub(crate) struct Hull {
 pub(crate) struct Nearest {
     pub(crate) corners: [u32; 3],
     pub(crate) weights: [f64; 3],
-    dist2: f64,
+    at: DVec3,
+}
+
+/// Cosine of an angle so near to a right one that rounding could turn it.
+const LEVEL: f64 = 4.0 * f64::EPSILON;
+
+impl Nearest {
+    /// Whether it is nearer to `p` than the other. Not by distances, which from far away are all the same.
+    fn is_nearer_than(&self, other: &Self, p: DVec3) -> bool {
+        let step = self.at - other.at;
+        let ahead = p - 0.5 * (self.at + other.at);
+        step.dot(ahead) > LEVEL * step.length() * ahead.length()
+    }
 }
 
 impl Hull {
@@ -58,7 +70,7 @@ impl Hull {
         let mut best = self.on_facet(points, start, p);
         // Distances fall with each step, so no facet is met twice; rounding cannot make it endless either.
         for _ in 0..self.facets.len() {
-            let before = best.dist2;
+            let mut is_nearest = true;
             for corner in best.corners {
                 let (from, to) = (self.first[corner as usize], self.first[corner as usize + 1]);
                 for &facet in &self.around[from as usize..to as usize] {
@@ -67,11 +79,13 @@ impl Hull {
                         > 0.0;
                     if faces_p {
                         let other = self.on_facet(points, facet, p);
-                        best = if other.dist2 < best.dist2 { other } else { best };
+                        if other.is_nearer_than(&best, p) {
+                            (best, is_nearest) = (other, false);
+                        }
                     }
                 }
             }
-            if best.dist2 >= before {
+            if is_nearest {
                 break;
             }
         }
@@ -83,7 +97,7 @@ impl Hull {
         let [a, b, c] = corners.map(|i| points[i as usize]);
         let weights = if corners[1] == corners[2] { on_segment(a, b, p) } else { on_triangle([a, b, c], p) };
         let at = a * weights[0] + b * weights[1] + c * weights[2];
-        Nearest { corners, weights, dist2: at.distance_squared(p) }
+        Nearest { corners, weights, at }
     }
 }
 

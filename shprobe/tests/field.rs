@@ -329,3 +329,13 @@ fn fitting_keeps_what_is_right_already() {
         assert!(change.length() < 1e-12, "probe {i}: {change}");
     }
 }
+
+/// Found by fuzzing: from 1e31 sizes away the distances of all facets of the hull are the same number.
+#[test]
+fn the_nearest_point_is_found_from_very_far_away() {
+    let scale = 2.0_f64.powi(-111);
+    let points = [[5.0, 5.0, 5.0], [-6.0, -6.0, -6.0], [3.0, 7.0, 3.0], [3.0, 3.0, 3.0]]
+        .map(|p| DVec3::from_array(p) * scale);
+    let queries = [dvec3(-2.3e-28, -2.3e-28, 0.0462), dvec3(11.9, 9.1e-44, 0.0), dvec3(0.0, -1e5, 1.0)];
+    weights::weights_find_the_nearest_point(&points, &queries, 1e-9).unwrap();
+}
