@@ -15,11 +15,12 @@ impl Blend {
         Self { probes: [probe; 4], weights: [1.0, 0.0, 0.0, 0.0] }
     }
 
-    /// Of coordinates that may be below 0 by rounding.
+    /// Of coordinates that may be below 0 by rounding, or no numbers where a cell is flat to the last digit: then the first probe
+    /// takes all.
     pub(crate) fn clamped(probes: [u32; 4], coordinates: [f64; 4]) -> Self {
-        let weights = coordinates.map(|w| w.max(0.0));
+        let weights = coordinates.map(|w| if w.is_nan() { 0.0 } else { w.clamp(0.0, 1.0) });
         let sum: f64 = weights.iter().sum();
-        Self { probes, weights: weights.map(|w| w / sum) }
+        if sum > 0.0 { Self { probes, weights: weights.map(|w| w / sum) } } else { Self::of_one(probes[0]) }
     }
 
     /// The probes that count, with their weights.

@@ -339,3 +339,15 @@ fn the_nearest_point_is_found_from_very_far_away() {
     let queries = [dvec3(-2.3e-28, -2.3e-28, 0.0462), dvec3(11.9, 9.1e-44, 0.0), dvec3(0.0, -1e5, 1.0)];
     weights::weights_find_the_nearest_point(&points, &queries, 1e-9).unwrap();
 }
+
+/// Found by fuzzing: two of three probes are one, once the third is scaled to 1; their cell is flat and its coordinates are no numbers.
+#[test]
+fn cells_that_are_flat_to_the_last_digit_have_weights() {
+    let points = [dvec3(-2.2e-272, -1.1e-204, 0.0), DVec3::splat(-2.2e-272), dvec3(-1.8e267, -2.3e305, 0.0)];
+    let locator = Locator::new(&points, &Delaunay::new(&points).unwrap().partition());
+    for query in [DVec3::ZERO, DVec3::Y, points[2] * 0.5] {
+        let weights = locator.locate_anywhere(query).unwrap().weights;
+        assert!(weights.iter().all(|w| (0.0..=1.0).contains(w)), "{weights:?}");
+        assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-14, "{weights:?}");
+    }
+}
