@@ -2,43 +2,10 @@
 
 use std::io::{BufRead, Write};
 
+use crate::json_lines::JsonLinesError;
 use glam::{DVec2, dvec2};
 use pointillist_dice::{Accumulator, DiceError, Grid, accumulate, split};
 use serde::{Deserialize, Serialize};
-
-/// Why [`run`] stopped.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum DiceCommandError {
-    /// A line of the input cannot be used.
-    #[error("{source_name}, line {line}: {message}\n  {text}\n  {way_out}")]
-    Input {
-        /// Name of the file, or `-`.
-        source_name: String,
-        /// From 1.
-        line: usize,
-        /// What is wrong, with the field and its value.
-        message: String,
-        /// The line, shortened.
-        text: String,
-        /// What to do about it.
-        way_out: String,
-    },
-    /// The input could not be read.
-    #[error("{source_name}, line {line}: {error}")]
-    Read {
-        /// Name of the file, or `-`.
-        source_name: String,
-        /// From 1.
-        line: usize,
-        /// What the system says.
-        #[source]
-        error: std::io::Error,
-    },
-    /// The output could not be written.
-    #[error("writing the result: {0}")]
-    Write(#[source] std::io::Error),
-}
 
 /// One line of the input.
 #[derive(Deserialize)]
@@ -91,7 +58,7 @@ pub fn run(
     output: &mut dyn Write,
     areas: bool,
     source: &str,
-) -> Result<(), DiceCommandError> {
+) -> Result<(), JsonLinesError> {
     let mut scratch = Accumulator::new();
     let (mut text, mut line) = (String::new(), 0);
     loop {
@@ -99,9 +66,9 @@ pub fn run(
         text.clear();
         let read = input.read_line(&mut text);
         let count =
-            read.map_err(|error| DiceCommandError::Read { source_name: source.to_owned(), line, error })?;
+            read.map_err(|error| JsonLinesError::Read { source_name: source.to_owned(), line, error })?;
         if count == 0 {
-            return output.flush().map_err(DiceCommandError::Write);
+            return output.flush().map_err(JsonLinesError::Write);
         }
         if text.trim().is_empty() {
             continue;
@@ -219,9 +186,9 @@ fn json(value: &impl Serialize) -> String {
 }
 
 impl Refusal {
-    fn into_error(self, source: &str, line: usize, text: &str) -> DiceCommandError {
+    fn into_error(self, source: &str, line: usize, text: &str) -> JsonLinesError {
         let (message, way_out) = match self {
-            Self::Write(error) => return DiceCommandError::Write(error),
+            Self::Write(error) => return JsonLinesError::Write(error),
             Self::Json(error) => (strip_place(&error), EXAMPLE.to_owned()),
             Self::Dice(error @ DiceError::NotConvex { .. }, value) => (
                 format!("{value}: the polygon is not convex there ({error})"),
@@ -229,7 +196,7 @@ impl Refusal {
             ),
             Self::Dice(error, value) => (format!("{value}: {error}"), way_out(error).to_owned()),
         };
-        DiceCommandError::Input {
+        JsonLinesError::Input {
             source_name: source.to_owned(),
             line,
             message,

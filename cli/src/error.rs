@@ -1,8 +1,7 @@
 //! Why a command ends early, and with which exit code.
 
-use crate::dice_command::DiceCommandError;
-use crate::factors_command::FactorsError;
 use crate::input_error::InputError;
+use crate::json_lines::JsonLinesError;
 use std::io;
 use std::process::ExitCode;
 
@@ -16,12 +15,9 @@ pub enum CliError {
     /// A file that cannot be used. Exit code 3.
     #[error("{0}")]
     Input(#[from] InputError),
-    /// `dice` stopped. Exit code 3 for its input, 1 otherwise.
+    /// Lines could not be answered. Exit code 3 for the input, 1 otherwise.
     #[error("{0}")]
-    Dice(DiceCommandError),
-    /// `radiosity factors` stopped. Exit code 3 for its input, 1 otherwise.
-    #[error("{0}")]
-    Factors(FactorsError),
+    Lines(JsonLinesError),
     /// Parts that are missing or do not belong together. Exit code 4.
     #[error("{0}")]
     Parts(String),
@@ -44,12 +40,10 @@ impl CliError {
             Self::Failed(_) => 1,
             Self::Usage(_) => 2,
             Self::Input(error) if error.mismatched => 4,
-            Self::Input(_)
-            | Self::Dice(DiceCommandError::Input { .. })
-            | Self::Factors(FactorsError::Input { .. }) => 3,
+            Self::Input(_) | Self::Lines(JsonLinesError::Input { .. }) => 3,
             Self::Parts(_) => 4,
             Self::Beyond(_) => 5,
-            Self::Dice(_) | Self::Factors(_) => 1,
+            Self::Lines(_) => 1,
         })
     }
 
@@ -63,20 +57,11 @@ impl CliError {
     }
 }
 
-impl From<DiceCommandError> for CliError {
-    fn from(error: DiceCommandError) -> Self {
+impl From<JsonLinesError> for CliError {
+    fn from(error: JsonLinesError) -> Self {
         match error {
-            DiceCommandError::Write(error) => Self::writing("the result", &error),
-            other => Self::Dice(other),
-        }
-    }
-}
-
-impl From<FactorsError> for CliError {
-    fn from(error: FactorsError) -> Self {
-        match error {
-            FactorsError::Write(error) => Self::writing("the result", &error),
-            other => Self::Factors(other),
+            JsonLinesError::Write(error) => Self::writing("the result", &error),
+            other => Self::Lines(other),
         }
     }
 }

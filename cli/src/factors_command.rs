@@ -2,6 +2,7 @@
 
 use std::io::{BufRead, Write};
 
+use crate::json_lines::JsonLinesError;
 use glam::DVec3;
 use pointillist_radiosity::{FactorOptions, Polygon, PolygonError, form_factor};
 use rayon::prelude::*;
@@ -9,40 +10,6 @@ use serde::{Deserialize, Serialize};
 
 /// Lines that are computed together.
 const BATCH: usize = 1024;
-
-/// Why [`run`] stopped.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FactorsError {
-    /// A line of the input cannot be used.
-    #[error("{source_name}, line {line}: {message}\n  {text}\n  {way_out}")]
-    Input {
-        /// Name of the file, or `-`.
-        source_name: String,
-        /// From 1.
-        line: usize,
-        /// What is wrong, with the field.
-        message: String,
-        /// The line, shortened.
-        text: String,
-        /// What to do about it.
-        way_out: String,
-    },
-    /// The input could not be read.
-    #[error("{source_name}, line {line}: {error}")]
-    Read {
-        /// Name of the file, or `-`.
-        source_name: String,
-        /// From 1.
-        line: usize,
-        /// What the system says.
-        #[source]
-        error: std::io::Error,
-    },
-    /// The output could not be written.
-    #[error("writing the result: {0}")]
-    Write(#[source] std::io::Error),
-}
 
 /// One line of the input.
 #[derive(Deserialize)]
@@ -74,7 +41,7 @@ pub fn run(
     output: &mut dyn Write,
     options: &FactorOptions,
     source: &str,
-) -> Result<u64, FactorsError> {
+) -> Result<u64, JsonLinesError> {
     let (mut line, mut pairs, mut ended) = (0, 0, false);
     while !ended {
         let mut batch: Vec<(usize, String)> = vec![];
@@ -83,7 +50,7 @@ pub fn run(
             line += 1;
             let read = input.read_line(&mut text);
             let read =
-                read.map_err(|error| FactorsError::Read { source_name: source.to_owned(), line, error })?;
+                read.map_err(|error| JsonLinesError::Read { source_name: source.to_owned(), line, error })?;
             if read == 0 {
                 ended = true;
                 break;
@@ -95,19 +62,19 @@ pub fn run(
         let answers: Vec<Result<Answer, (String, String)>> =
             batch.par_iter().map(|(_, text)| answer(text, options)).collect();
         for (result, (line, text)) in answers.into_iter().zip(&batch) {
-            let answer = result.map_err(|(message, way_out)| FactorsError::Input {
+            let answer = result.map_err(|(message, way_out)| JsonLinesError::Input {
                 source_name: source.to_owned(),
                 line: *line,
                 message,
                 text: shorten(text.trim()),
                 way_out,
             })?;
-            serde_json::to_writer(&mut *output, &answer).map_err(|e| FactorsError::Write(e.into()))?;
-            output.write_all(b"\n").map_err(FactorsError::Write)?;
+            serde_json::to_writer(&mut *output, &answer).map_err(|e| JsonLinesError::Write(e.into()))?;
+            output.write_all(b"\n").map_err(JsonLinesError::Write)?;
             pairs += 1;
         }
     }
-    output.flush().map_err(FactorsError::Write)?;
+    output.flush().map_err(JsonLinesError::Write)?;
     Ok(pairs)
 }
 

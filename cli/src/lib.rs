@@ -12,6 +12,7 @@ pub mod factors_command;
 pub mod image_io;
 mod input_error;
 pub mod job;
+pub mod json_lines;
 pub mod memory;
 pub mod mesh_io;
 pub mod options;

@@ -1,50 +1,14 @@
 //! `dice`.
 
 use super::Report;
-use super::report::write_text;
-use crate::dice_command::{self, DiceCommandError};
+use super::json_lines::answer_lines;
+use crate::dice_command;
 use crate::error::CliError;
-use crate::input_error::InputError;
 use crate::options::DiceOptions;
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Write};
-use std::path::Path;
 
 pub(super) fn run(options: &DiceOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
-    let name = options.input.display().to_string();
-    let mut input: Box<dyn BufRead> = if options.input == Path::new("-") {
-        Box::new(io::stdin().lock())
-    } else {
-        let file = File::open(&options.input)
-            .map_err(|error| InputError::of_file(&name, format!("cannot be read: {error}")))?;
-        Box::new(BufReader::new(file))
-    };
-    let path = &options.output.path;
-    let mut stopped = None;
-    let mut dice = |output: &mut dyn Write| {
-        report.stats.stage("dice", || dice_command::run(&mut *input, output, options.areas, &name)).map_err(
-            |error| {
-                let kind = match &error {
-                    DiceCommandError::Write(error) => error.kind(),
-                    _ => io::ErrorKind::Other,
-                };
-                stopped = Some(error);
-                io::Error::from(kind)
-            },
-        )
-    };
-    // On standard output the results of the lines before a bad one stay: they are already read.
-    let result = if path == Path::new("-") {
-        let mut output = io::BufWriter::new(io::stdout().lock());
-        dice(&mut output)
-            .and_then(|()| output.flush())
-            .map_err(|error| CliError::writing("standard output", &error))
-    } else {
-        write_text(path, dice)
-    };
-    match (stopped, result) {
-        (Some(error), _) => Err(error.into()),
-        (None, result) => result.and_then(|()| report.finish()),
-    }
+    answer_lines(&report, &options.input, &options.output.path, |input, output, name| {
+        report.stats.stage("dice", || dice_command::run(input, output, options.areas, name))
+    })
 }

@@ -5,6 +5,7 @@ mod compare;
 mod dice;
 mod generate;
 mod info;
+mod json_lines;
 mod merge;
 mod points;
 mod probe;

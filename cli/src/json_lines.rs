@@ -1,0 +1,35 @@
+//! What can go wrong where JSON lines are answered.
+
+/// Why it stopped.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum JsonLinesError {
+    /// A line of the input cannot be used.
+    #[error("{source_name}, line {line}: {message}\n  {text}\n  {way_out}")]
+    Input {
+        /// Name of the file, or `-`.
+        source_name: String,
+        /// From 1.
+        line: usize,
+        /// What is wrong, with the field and its value.
+        message: String,
+        /// The line, shortened.
+        text: String,
+        /// What to do about it.
+        way_out: String,
+    },
+    /// The input could not be read.
+    #[error("{source_name}, line {line}: {error}")]
+    Read {
+        /// Name of the file, or `-`.
+        source_name: String,
+        /// From 1.
+        line: usize,
+        /// What the system says.
+        #[source]
+        error: std::io::Error,
+    },
+    /// The output could not be written.
+    #[error("writing the result: {0}")]
+    Write(#[source] std::io::Error),
+}
