@@ -174,6 +174,13 @@ impl ConvexPolygon {
     /// A polygon wholly on one side comes back unchanged on that side.
     #[must_use]
     pub fn divided(&self, half: &HalfPlane) -> (Self, Self) {
+        let (mut inside, mut outside) = (Self::EMPTY, Self::EMPTY);
+        self.divide_into(half, &mut inside, &mut outside);
+        (inside, outside)
+    }
+
+    /// As [`ConvexPolygon::divided`], into polygons that are there already: loops that cut again and again need not move theirs.
+    pub fn divide_into(&self, half: &HalfPlane, inside: &mut Self, outside: &mut Self) {
         let n = self.len;
         let mut side = [0.0; MAX_VERTICES];
         let (mut any_in, mut any_out) = (false, false);
@@ -182,13 +189,15 @@ impl ConvexPolygon {
             any_in |= *s > 0.0;
             any_out |= *s < 0.0;
         }
+        (inside.len, outside.len) = (0, 0);
         if !any_out {
-            return (*self, Self::EMPTY);
+            inside.copy(self);
+            return;
         }
         if !any_in {
-            return (Self::EMPTY, *self);
+            outside.copy(self);
+            return;
         }
-        let (mut inside, mut outside) = (Self::EMPTY, Self::EMPTY);
         for i in 0..n {
             let j = if i + 1 == n { 0 } else { i + 1 };
             let (p, q) = (self.vertices[i], self.vertices[j]);
@@ -204,7 +213,12 @@ impl ConvexPolygon {
                 outside.push(crossing);
             }
         }
-        (inside, outside)
+    }
+
+    /// Becomes `other`; what lies beyond its vertices is not moved.
+    fn copy(&mut self, other: &Self) {
+        self.len = other.len;
+        self.vertices[..other.len].copy_from_slice(other.vertices());
     }
 }
 

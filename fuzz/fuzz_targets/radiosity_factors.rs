@@ -55,6 +55,6 @@ fuzz_target!(|input: Input| {
         if both { one.two_sided() } else { one }
     };
     let surfaces: Vec<Surface> = [&a, &b].into_iter().chain(&others).enumerate().map(surface).collect();
-    let options = SceneOptions::DEFAULT.with_patch(4.0).with_tolerance(Some(0.2));
+    let options = SceneOptions::DEFAULT.with_patch(4.0).with_tolerance(Some(0.2)).with_max_elements(1000);
     scenes::is_refused_or_solved(&surfaces, &options).unwrap();
 });

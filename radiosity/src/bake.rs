@@ -240,6 +240,11 @@ impl<'t> Mesh<'t> {
         for (leaf, ring, middle) in &self.rings {
             let side = &scene.sides[scene.tree.elements[*leaf as usize].side as usize];
             let mut push = |vertices: [u32; 3]| {
+                // An edge too short to be divided has its middle at one of its ends.
+                let [a, b, c] = vertices;
+                if a == b || b == c || c == a {
+                    return;
+                }
                 triangles.push(BakedTriangle { vertices, surface: side.surface as u32, back: side.back });
             };
             match middle {

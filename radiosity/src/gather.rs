@@ -109,13 +109,13 @@ pub(crate) fn visible_share<'p>(
     let above = |v: DVec3| normal.dot(v - point);
     if polygon.vertices().iter().all(|&v| above(v) >= 0.0) {
         let source = Source::new(polygon);
-        let seen = source.see(Eye::Point(point), occluders, pieces, |_| ());
+        let (seen, _) = source.see(Eye::Point(point), occluders, pieces);
         return source.share(point, normal, seen).max(0.0);
     }
     let Some(part) = Polygon::unchecked(crate::polygon::clipped(polygon.vertices(), above)) else {
         return 0.0;
     };
     let source = Source::new(&part);
-    let seen = source.see(Eye::Point(point), occluders, pieces, |_| ());
+    let (seen, _) = source.see(Eye::Point(point), occluders, pieces);
     source.share(point, normal, seen).max(0.0)
 }

@@ -120,7 +120,7 @@ impl Hemicube {
         }
         let source = Source::new(polygon);
         let others = occluders.iter().copied().filter(|o| !std::ptr::eq(*o, polygon));
-        let seen = source.see(Eye::Point(point), others, &mut self.pieces, |_| ()).to_vec();
+        let seen = source.see(Eye::Point(point), others, &mut self.pieces).0.to_vec();
         let mut sum = 0.0;
         for piece in &seen {
             let ring: Vec<DVec3> = piece.vertices().iter().map(|&v| source.in_space(v) - point).collect();

@@ -147,8 +147,7 @@ impl Scene {
             }
             Eye::Along(_) => true,
         };
-        let mut cut = false;
-        let seen = source.see(eye, between.iter().filter(towards), pieces, |_| cut = true);
+        let (seen, cut) = source.see(eye, between.iter().filter(towards), pieces);
         let order = if near { NEAR_ORDER } else { ORDER };
         let mut sum = [0.0; 3];
         for piece in seen {

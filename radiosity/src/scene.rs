@@ -24,7 +24,7 @@ pub struct SceneOptions {
     pub max_elements: usize,
     /// Form factors below this are left out; how much they add up to is counted. Default: 0.
     pub least_factor: f64,
-    /// Accuracy of each form factor. Default: 1e-9 in the open, 1e-4 behind something, or 1e-6 absolute,
+    /// Accuracy of each form factor. Default: 1e-9 in the open, 1e-3 behind something, or 1e-5 absolute,
     /// with at most 400 cells.
     pub factors: FactorOptions,
 }
@@ -39,8 +39,8 @@ impl SceneOptions {
         least_factor: 0.0,
         factors: FactorOptions::DEFAULT
             .with_unoccluded(1e-9)
-            .with_occluded(1e-4)
-            .with_absolute(1e-6)
+            .with_occluded(1e-3)
+            .with_absolute(1e-5)
             .with_max_cells(400),
     };
 

@@ -394,7 +394,7 @@ impl Refiner<'_> {
                 0.0
             } else if let Some(flat) = &flat {
                 let list = between.iter().map(|&i| &self.scene.occluders[i as usize]);
-                let seen = flat.see(Eye::Point(p), list, pieces, |_| ());
+                let (seen, _) = flat.see(Eye::Point(p), list, pieces);
                 flat.share(p, receiver.normal(), seen)
             } else {
                 lambert::share_above_horizon(p, receiver.normal(), source.vertices())
@@ -408,12 +408,12 @@ impl Refiner<'_> {
     fn link(&self, (p, q): (ElementId, ElementId), between: &[u32], found: &mut Found, pieces: &mut Pieces) {
         let (a, b) = (self.element(p), self.element(q));
         let smaller = a.polygon.area().min(b.polygon.area());
-        let goal = self.accuracy(a, b).goal(smaller, 1);
+        let goal = self.accuracy(a, b).goal(smaller, 0);
         let mutual = if between.is_empty() {
             pair::mutual(&a.polygon, &b.polygon, goal.unoccluded)
         } else {
             let list: Vec<&Polygon> = between.iter().map(|&i| &self.scene.occluders[i as usize]).collect();
-            let (mutual, work) = cubature::mutual(&a.polygon, &b.polygon, &list, goal, pieces);
+            let (mutual, work) = cubature::mutual_in_shaft(&a.polygon, &b.polygon, &list, goal, pieces);
             found.counts.cells += work.cells;
             mutual
         };

@@ -98,9 +98,9 @@ impl Tree {
         id
     }
 
-    /// The vertex between two others, if there is one.
+    /// The vertex between two others, if there is one. Of two that are neighbours in f64 the middle is one of themselves: that is none.
     pub(crate) fn known_middle(&self, a: u32, b: u32) -> Option<u32> {
-        self.middles.get(&(a.min(b), a.max(b))).copied()
+        self.middles.get(&(a.min(b), a.max(b))).copied().filter(|&middle| middle != a && middle != b)
     }
 
     fn element(&self, ids: &[u32], side: u32) -> Option<Element> {
@@ -137,6 +137,11 @@ impl Tree {
 
     /// Divides until no edge is longer than `size`; false if that takes more than `limit` elements.
     pub(crate) fn divide_all(&mut self, size: f64, limit: usize) -> bool {
+        // No patch has more area than the square of its longest edge: what is too much at once is refused at once.
+        let least = self.elements.iter().map(|e| e.polygon.area()).sum::<f64>() / (size * size);
+        if least > limit as f64 {
+            return false;
+        }
         let mut next = 0;
         while next < self.elements.len() {
             if self.elements[next].size > size && !self.divide(next as u32) {

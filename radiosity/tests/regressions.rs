@@ -50,6 +50,56 @@ fn shooting_by_importance_ends() {
     assert!(solved.converged);
 }
 
+/// Of an edge between neighbours in f64 the middle is an end: looking for smaller neighbours along it never ended. Found by fuzzing.
+#[test]
+fn edges_without_a_middle_are_baked() {
+    let surface = |ring: &[[f64; 3]]| {
+        let ring: Vec<DVec3> = ring.iter().map(|&v| DVec3::from_array(v)).collect();
+        Surface::new(&ring, [0.3; 3]).emitting([77.0; 3]).two_sided()
+    };
+    let surfaces = [
+        surface(&[[2.0, -1.0, 0.0], [2.0, -1.0, 2.0], [0.0, 2.0, 0.0]]),
+        surface(&[[2.0, -2.0, 2.0], [2.0, -1.0, 2.0], [2.0, 2.0, -1.0], [2.0, 0.0, 0.0]]),
+    ];
+    let options = SceneOptions::DEFAULT.with_patch(4.0).with_tolerance(Some(0.2));
+    pointillist_radiosity::invariants::scenes::is_refused_or_solved(&surfaces, &options).expect("solved");
+}
+
+/// The share of a near source seen from a needle was taken for a polynomial: an occluder made it brighter. Found by fuzzing.
+#[test]
+fn occluders_do_not_brighten() {
+    let polygon = |ring: [[f64; 3]; 3]| {
+        pointillist_radiosity::Polygon::new(&ring.map(DVec3::from_array)).expect("a triangle")
+    };
+    let from = polygon([[0.0, -1.0, 2.0], [1.0, 2.0, -3.0], [1.0, -2.0, 3.0]]);
+    let to = polygon([[2.0, 2.0, 2.0], [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]);
+    let between = polygon([[2.0, -1.0, 2.0], [-1.0, -2.0, -1.0], [2.0, 3.0, -2.0]]);
+    let exact = form_factor(&from, &to, std::slice::from_ref(&between), &FactorOptions::DEFAULT);
+    let coarse = FactorOptions::DEFAULT.with_occluded(1e-3).with_absolute(1e-4).with_max_cells(400);
+    let found = form_factor(&from, &to, &[between], &coarse);
+    assert!((found.value - exact.value).abs() <= found.error + exact.error, "{found:?}, {exact:?}");
+    assert!(found.value <= form_factor(&from, &to, &[], &FactorOptions::DEFAULT).value);
+}
+
+/// An outline that is a little off its plane, and 1e57 times as large as the other, sent less than nothing. Found by fuzzing.
+#[test]
+fn nothing_less_than_nothing_is_sent() {
+    let ring = |ring: &[[f64; 3]]| {
+        let ring: Vec<DVec3> = ring.iter().map(|&v| DVec3::from_array(v)).collect();
+        pointillist_radiosity::Polygon::new(&ring).expect("a polygon")
+    };
+    let from = ring(&[[0.0, -2.0, -2.0], [-2.0, -2.0, 1.0], [-2.0, 0.0, 0.0]]);
+    let far = -1.363_115_719_988_382e57;
+    let to = ring(&[
+        [far, -1.363_115_313_690_926_8e57, far],
+        [far, far, far],
+        [far, far, -1.363_115_284_460_894e57],
+        [0.0, -1.363_115_717_718_532_2e57, far],
+        [-1.363_115_719_981_308_8e57, 0.0, 0.0],
+    ]);
+    assert!(form_factor(&from, &to, &[], &FactorOptions::DEFAULT).value >= 0.0);
+}
+
 /// Rows of a hierarchy were scaled down to 1 where they were above it, which took 2 % of all light away.
 #[test]
 fn a_hierarchy_keeps_its_light() {

@@ -1,9 +1,9 @@
-//! Pairs a second beside pyviewfactor, if `POINTILLIST_PYVIEWFACTOR` names a Python that has it.
+//! Pairs a second and errors beside pyviewfactor, if `POINTILLIST_PYVIEWFACTOR` names a Python that has it.
 
 use std::fmt::Write as _;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
-use pointillist_radiosity::{Scene, SceneOptions};
+use pointillist_radiosity::{FactorOptions, Scene, SceneOptions, Transport};
 
 use crate::radiosity::cornell;
 use crate::report::{Outcome, timed};
@@ -26,56 +26,126 @@ faces = json.load(sys.stdin)
 factors(mesh_of(faces[:2]))
 mesh, count = mesh_of(faces), len(faces)
 start = time.perf_counter()
-factors(mesh)
-print(count * (count - 1) / 2 / (time.perf_counter() - start))
+found = factors(mesh)
+rate = count * (count - 1) / 2 / (time.perf_counter() - start)
+print(json.dumps([rate, found.T.ravel().tolist()]))
 "#;
+
+/// Longest edge of the patches.
+const PATCH: f64 = 0.126;
+/// Relative and absolute error asked for behind something.
+const ASKED: [(f64, f64); 4] = [(1e-1, 1e-3), (1e-2, 1e-4), (1e-3, 1e-5), (1e-4, 1e-6)];
+/// The same, of what the others are compared with.
+const REFERENCE: (f64, f64) = (1e-5, 1e-7);
+
+struct Peer {
+    rate: f64,
+    /// From the row's patch to the column's.
+    factors: Vec<f64>,
+}
+
+type Fallible<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;
+
+/// Root mean square over all form factors, largest, and largest of a row's sum.
+struct Errors {
+    root_mean_square: f64,
+    worst: f64,
+    worst_row: f64,
+}
+
+impl Errors {
+    fn of(found: &[f64], exact: &[f64], count: usize) -> Self {
+        let apart: Vec<f64> = found.iter().zip(exact).map(|(f, e)| f - e).collect();
+        let squares: f64 = apart.iter().map(|d| d * d).sum();
+        Self {
+            root_mean_square: (squares / apart.len() as f64).sqrt(),
+            worst: apart.iter().fold(0.0, |m, d| m.max(d.abs())),
+            worst_row: apart.chunks(count).fold(0.0, |m, row| m.max(row.iter().sum::<f64>().abs())),
+        }
+    }
+
+    fn columns(&self) -> String {
+        format!("{:.1e} | {:.1e} | {:.1e}", self.root_mean_square, self.worst, self.worst_row)
+    }
+}
 
 /// The section.
 pub(crate) fn compare(text: &mut String) -> Outcome {
-    let options = SceneOptions::DEFAULT.with_patch(0.126);
-    let scene = Scene::new(&cornell(), &options)?;
-    let count = scene.patch_count();
+    let finest = FactorOptions::DEFAULT.with_occluded(REFERENCE.0).with_absolute(REFERENCE.1);
+    let (_, exact) = linked(finest)?;
+    let count = exact.patch_count();
+    let truth = matrix(&exact);
     let pairs = count as f64 * (count as f64 - 1.0) / 2.0;
-    let (seconds, linked) = timed(|| scene.clone().transport(&[]));
-    let (transport, _) = linked?;
-    let counts = transport.counts();
-    writeln!(text, "\n## Pairs a second with visibility\n")?;
+    let counts = exact.counts();
     writeln!(
         text,
-        "The Cornell box above in {count} patches, all pairs: {pairs:.0} pairs in {seconds:.2} s, {:.0} a second, \
-         {} of them exchange light and {} of these are partly hidden ({} cells sampled); error asked for 1e-9 in the open, 1e-4 behind something or 1e-6 absolute.\n",
-        pairs / seconds,
+        "\n## Pairs a second with visibility\n\nThe Cornell box above in {count} patches, all {pairs:.0} pairs, of which {} exchange light and {} of these are partly hidden. \
+         Errors are absolute, of form factors that are {:.1e} in the mean, against {:e} asked for relatively or {:e} absolutely; in the open 1e-9 is asked for.\n",
         counts.links,
         counts.partly_hidden,
-        counts.cells
+        truth.iter().sum::<f64>() / truth.len() as f64,
+        REFERENCE.0,
+        REFERENCE.1,
     )?;
-    match std::env::var_os("POINTILLIST_PYVIEWFACTOR") {
+    let peer = peer(&exact)?;
+    let columns = "| asked behind something, relative or absolute | cells sampled | pairs a second | of pyviewfactor's | root mean square error | worst | worst row sum |";
+    writeln!(text, "{columns}\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |")?;
+    for asked in ASKED {
+        let factors = SceneOptions::DEFAULT.factors.with_occluded(asked.0).with_absolute(asked.1);
+        let (seconds, found) = linked(factors)?;
+        let rate = pairs / seconds;
+        let times = peer.as_ref().map_or("–".to_owned(), |p| format!("{:.1}", rate / p.rate));
+        let errors = Errors::of(&matrix(&found), &truth, count).columns();
+        writeln!(
+            text,
+            "| {:e}, {:e} | {} | {rate:.0} | {times} | {errors} |",
+            asked.0,
+            asked.1,
+            found.counts().cells
+        )?;
+    }
+    match peer {
+        Some(peer) => writeln!(
+            text,
+            "| pyviewfactor, `compute_viewfactor_matrix_fast` with obstruction, all its threads | – | {:.0} | 1 | {} |\n\n\
+             pyviewfactor asks whether two centres see each other.",
+            peer.rate,
+            Errors::of(&peer.factors, &truth, count).columns()
+        )?,
         None => writeln!(
             text,
-            "pyviewfactor was not run: `POINTILLIST_PYVIEWFACTOR` names no Python that has it."
+            "\npyviewfactor was not run: `POINTILLIST_PYVIEWFACTOR` names no Python that has it."
         )?,
-        Some(python) => {
-            let mut child = Command::new(python)
-                .args(["-c", SCRIPT])
-                .stdin(std::process::Stdio::piped())
-                .stdout(std::process::Stdio::piped())
-                .spawn()?;
-            let faces: Vec<Vec<[f64; 3]>> =
-                transport.patch_corners().map(|ring| ring.iter().map(|p| p.to_array()).collect()).collect();
-            if let Some(input) = child.stdin.take() {
-                serde_json::to_writer(input, &faces)?;
-            }
-            let output = child.wait_with_output()?;
-            let said = String::from_utf8_lossy(&output.stdout).trim().to_owned();
-            match said.parse::<f64>() {
-                Ok(rate) => writeln!(
-                    text,
-                    "pyviewfactor, `compute_viewfactor_matrix_fast` of the same patches with obstruction, all its threads: {rate:.0} a second; ours are {:.2} times as many.",
-                    pairs / seconds / rate
-                )?,
-                Err(_) => writeln!(text, "pyviewfactor did not answer: {said}")?,
-            }
-        }
     }
     Ok(true)
+}
+
+/// Seconds, and all links.
+fn linked(factors: FactorOptions) -> Fallible<(f64, Transport)> {
+    let scene = Scene::new(&cornell(), &SceneOptions::DEFAULT.with_patch(PATCH).with_factors(factors))?;
+    let (seconds, found) = timed(|| scene.clone().transport(&[]));
+    Ok((seconds, found?.0))
+}
+
+/// Form factors, row by row.
+fn matrix(transport: &Transport) -> Vec<f64> {
+    let count = transport.patch_count();
+    let mut all = vec![0.0; count * count];
+    transport.factors(|from, to, factor| all[from * count + to] = factor);
+    all
+}
+
+/// What pyviewfactor says of the same patches; none without it.
+fn peer(transport: &Transport) -> Fallible<Option<Peer>> {
+    let Some(python) = std::env::var_os("POINTILLIST_PYVIEWFACTOR") else { return Ok(None) };
+    let mut child =
+        Command::new(python).args(["-c", SCRIPT]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
+    let faces: Vec<Vec<[f64; 3]>> =
+        transport.patch_corners().map(|ring| ring.iter().map(|p| p.to_array()).collect()).collect();
+    if let Some(input) = child.stdin.take() {
+        serde_json::to_writer(input, &faces)?;
+    }
+    let output = child.wait_with_output()?;
+    let (rate, factors) = serde_json::from_slice(&output.stdout)?;
+    Ok(Some(Peer { rate, factors }))
 }

@@ -75,10 +75,11 @@ pub(crate) fn facing_parts<'p>(
 
 /// Exchange of two polygons without anything between, to about `tolerance` relative to itself where rounding permits.
 pub(crate) fn mutual(a: &Polygon, b: &Polygon, tolerance: f64) -> Mutual {
-    match facing_parts(a, b) {
-        Some((a, b)) => mutual_of_parts(&a, &b, tolerance),
-        None => Mutual::NONE,
-    }
+    let Some((a, b)) = facing_parts(a, b) else { return Mutual::NONE };
+    let found = mutual_of_parts(&a, &b, tolerance);
+    // Neither sends more than all of it to the other, and nothing less than nothing: rounding, and what outlines are off their
+    // plane, may.
+    Mutual { value: found.value.clamp(0.0, a.area().min(b.area())), ..found }
 }
 
 /// As [`mutual`], of polygons that lie in front of each other.
@@ -260,7 +261,5 @@ fn over_contours(a: &Polygon, b: &Polygon, tolerance: f64) -> Mutual {
         }
     }
     let scale = 0.5 / std::f64::consts::PI;
-    // Neither sends more than all of it to the other, and nothing less than nothing.
-    let value = (scale * sum.value).clamp(0.0, a.area().min(b.area()));
-    Mutual { value, error: scale * sum.error, rule: Rule::Contours }
+    Mutual { value: scale * sum.value, error: scale * sum.error, rule: Rule::Contours }
 }

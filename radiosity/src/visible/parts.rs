@@ -34,6 +34,15 @@ pub(crate) enum Eye {
     Along(DVec3),
 }
 
+/// What is wanted of the last occluder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Last {
+    /// What it hides.
+    IsEnough,
+    /// What is left, too.
+    LeavesPieces,
+}
+
 /// Memory of one thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pieces {
@@ -74,39 +83,71 @@ impl Source {
         HalfPlane { anchor: DVec2::ZERO, normal: flat, offset: normal.dot(self.origin - through) }
     }
 
-    /// Visits the pieces that `eye` sees. `meets` is told of every occluder that hides something of them.
+    /// The pieces that `eye` sees; true with them if some occluder hides something.
     pub(crate) fn see<'p, 's>(
         &self,
         eye: Eye,
         occluders: impl Iterator<Item = &'p Polygon>,
         pieces: &'s mut Pieces,
+    ) -> (&'s [ConvexPolygon], bool) {
+        let mut cut = false;
+        self.hide((eye, Last::LeavesPieces), occluders, pieces, |_| (), |_| cut = true);
+        (&pieces.seen, cut)
+    }
+
+    /// Share of the cosine-weighted hemisphere at `point` that the occluders take from the source.
+    pub(crate) fn hidden_share<'p>(
+        &self,
+        (point, normal): (DVec3, DVec3),
+        occluders: impl Iterator<Item = &'p Polygon>,
+        pieces: &mut Pieces,
+        meets: impl FnMut(usize),
+    ) -> f64 {
+        let mut sum = 0.0;
+        let visit = |hidden: &ConvexPolygon| sum += self.share_of(point, normal, hidden);
+        self.hide((Eye::Point(point), Last::IsEnough), occluders, pieces, meets, visit);
+        sum
+    }
+
+    /// Takes from the source, occluder by occluder, what it hides of what is left; `visit` gets these pieces, which do not overlap.
+    /// `meets` is told of every occluder before the source, whether others hide the same or not.
+    fn hide<'p>(
+        &self,
+        (eye, last): (Eye, Last),
+        occluders: impl Iterator<Item = &'p Polygon>,
+        pieces: &mut Pieces,
         mut meets: impl FnMut(usize),
-    ) -> &'s [ConvexPolygon] {
+        mut visit: impl FnMut(&ConvexPolygon),
+    ) {
         pieces.seen.clear();
         pieces.seen.extend_from_slice(&self.parts);
-        for (index, occluder) in occluders.enumerate() {
-            if self.shadow(eye, occluder, &mut pieces.sides) && pieces.subtract() {
-                meets(index);
-            }
-            if pieces.seen.is_empty() {
-                break;
+        let mut any = false;
+        let mut occluders = occluders.enumerate().peekable();
+        while let Some((index, occluder)) = occluders.next() {
+            if self.shadow(eye, occluder, &mut pieces.sides) {
+                let goes_on = last == Last::LeavesPieces || occluders.peek().is_some();
+                let hides = pieces.subtract(goes_on, &mut visit);
+                // What is behind others already may still be before the source.
+                if hides || any {
+                    meets(index);
+                }
+                any |= hides;
             }
         }
-        &pieces.seen
     }
 
     /// Share of the cosine-weighted hemisphere at `point` that the pieces take.
     pub(crate) fn share(&self, point: DVec3, normal: DVec3, pieces: &[ConvexPolygon]) -> f64 {
+        pieces.iter().map(|piece| self.share_of(point, normal, piece)).sum()
+    }
+
+    fn share_of(&self, point: DVec3, normal: DVec3, piece: &ConvexPolygon) -> f64 {
         let mut ring = [DVec3::ZERO; pointillist_dice::convex::MAX_VERTICES];
-        let mut sum = 0.0;
-        for piece in pieces {
-            let corners = piece.vertices();
-            for (place, corner) in ring.iter_mut().zip(corners) {
-                *place = self.in_space(*corner);
-            }
-            sum += lambert::share(point, normal, &ring[..corners.len()]);
+        let corners = piece.vertices();
+        for (place, corner) in ring.iter_mut().zip(corners) {
+            *place = self.in_space(*corner);
         }
-        sum
+        lambert::share(point, normal, &ring[..corners.len()])
     }
 
     /// The half-planes whose common part the occluder hides; false if it hides nothing.
@@ -152,31 +193,39 @@ impl Source {
 }
 
 impl Pieces {
-    /// Takes away what lies in all half-planes; false if nothing does.
-    fn subtract(&mut self) -> bool {
-        let sides = &self.sides;
+    /// Takes away what lies in all half-planes, and visits it; false if there is none. Pieces are `kept` if what is left matters.
+    fn subtract(&mut self, kept: bool, mut visit: impl FnMut(&ConvexPolygon)) -> bool {
         self.next.clear();
-        let mut met = false;
+        let mut any = false;
+        let (mut turns, mut outside) = ([ConvexPolygon::EMPTY; 2], ConvexPolygon::EMPTY);
         for piece in &self.seen {
             let apart = |half: &HalfPlane| piece.vertices().iter().all(|&v| half.value(v) <= 0.0);
-            if sides.iter().any(apart) {
-                self.next.push(*piece);
+            if self.sides.iter().any(apart) {
+                if kept {
+                    self.next.push(*piece);
+                }
                 continue;
             }
-            met = true;
-            let mut left = *piece;
-            for half in sides {
-                let (inside, outside) = left.divided(half);
-                if !outside.is_empty() {
+            turns[0] = *piece;
+            let mut now = 0;
+            for half in &self.sides {
+                let [a, b] = &mut turns;
+                let (left, inside) = if now == 0 { (a, b) } else { (b, a) };
+                left.divide_into(half, inside, &mut outside);
+                now = 1 - now;
+                if kept && !outside.is_empty() {
                     self.next.push(outside);
                 }
-                left = inside;
-                if left.is_empty() {
+                if inside.is_empty() {
                     break;
                 }
             }
+            if !turns[now].is_empty() {
+                visit(&turns[now]);
+                any = true;
+            }
         }
         std::mem::swap(&mut self.seen, &mut self.next);
-        met
+        any
     }
 }

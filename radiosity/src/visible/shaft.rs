@@ -11,6 +11,7 @@ const TOUCHING: f64 = 1e-12;
 #[derive(Clone, Debug)]
 pub(crate) struct Shaft<'p> {
     ends: [&'p [DVec3]; 2],
+    centres: [DVec3; 2],
     low: DVec3,
     high: DVec3,
     slack: f64,
@@ -26,35 +27,41 @@ impl<'p> Shaft<'p> {
         let high = all().fold(DVec3::NEG_INFINITY, |m, &v| m.max(v));
         let slack = TOUCHING * (high - low).max_element();
         let plane = |p: &Polygon| (-p.normal(), -p.normal().dot(p.centre()));
-        Self { ends: [a.vertices(), b.vertices()], low, high, slack, planes: vec![plane(a), plane(b)] }
+        let (ends, centres) = ([a.vertices(), b.vertices()], [a.centre(), b.centre()]);
+        let mut planes = Vec::with_capacity(2 + ends[0].len() + ends[1].len());
+        planes.extend([plane(a), plane(b)]);
+        Self { ends, centres, low, high, slack, planes }
     }
 
     /// Adds the planes through an edge of one end and a corner of the other that have both ends on one side.
     pub(crate) fn with_planes(mut self) -> Self {
-        let [a, b] = self.ends;
-        let mut found = vec![];
-        for (ring, other) in [(a, b), (b, a)] {
-            for (p, q) in edges(ring) {
-                found.extend(other.iter().find_map(|&r| self.supporting(p, q, r)));
+        for (one, other) in [(0, 1), (1, 0)] {
+            for edge in edges(self.ends[one]) {
+                let plane = self.supporting(edge, self.centres[one], self.ends[other]);
+                self.planes.extend(plane);
             }
         }
-        self.planes.append(&mut found);
         self
     }
 
-    /// The plane through three points, if both ends are on one side of it.
-    fn supporting(&self, p: DVec3, q: DVec3, r: DVec3) -> Option<(DVec3, f64)> {
-        let normal = (q - p).cross(r - p).try_normalize()?;
-        let offset = normal.dot(p);
-        let (mut low, mut high) = (0.0_f64, 0.0_f64);
-        for v in self.ends.into_iter().flatten() {
-            let side = normal.dot(*v) - offset;
-            (low, high) = (low.min(side), high.max(side));
-            if low < -self.slack && high > self.slack {
-                return None;
+    /// The plane through an edge of the end around `centre` that has both ends behind it, turned about the edge from corner to
+    /// corner of the `other`.
+    fn supporting(&self, (p, q): (DVec3, DVec3), centre: DVec3, other: &[DVec3]) -> Option<(DVec3, f64)> {
+        let mut outwards: Option<DVec3> = None;
+        for &corner in other {
+            if outwards.is_some_and(|n| n.dot(corner - p) <= self.slack) {
+                continue;
+            }
+            let Some(normal) = (q - p).cross(corner - p).try_normalize() else { continue };
+            let side = normal.dot(centre - p);
+            if side.abs() > self.slack {
+                outwards = Some(if side > 0.0 { -normal } else { normal });
             }
         }
-        if high <= self.slack { Some((normal, offset)) } else { Some((-normal, -offset)) }
+        let normal = outwards?;
+        let offset = normal.dot(p);
+        let behind = |v: &DVec3| normal.dot(*v) - offset <= self.slack;
+        self.ends.into_iter().flatten().all(behind).then_some((normal, offset))
     }
 
     /// Smallest and largest corner of the box around it.
