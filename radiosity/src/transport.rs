@@ -313,11 +313,13 @@ impl Refiner<'_> {
             found.counts.facing_apart += 1;
             return;
         }
-        let mut between = vec![];
-        if !list.is_empty() {
-            let shaft = Shaft::new(&a.polygon, &b.polygon).with_planes();
-            let of = |i: u32| &self.scene.occluders[i as usize];
-            between.extend(list.iter().copied().filter(|&i| shaft.may_hold(of(i))));
+        let mut shaft = Shaft::new(&a.polygon, &b.polygon);
+        let of = |i: u32| &self.scene.occluders[i as usize];
+        // Most is told by the box already.
+        let mut between: Vec<u32> = list.iter().copied().filter(|&i| shaft.may_hold(of(i))).collect();
+        if !between.is_empty() {
+            shaft = shaft.with_planes();
+            between.retain(|&i| shaft.may_hold(of(i)));
             if between.iter().any(|&i| shaft.is_blocked_by(of(i))) {
                 found.counts.hidden += 1;
                 return;

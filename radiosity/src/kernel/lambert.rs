@@ -10,14 +10,19 @@ use crate::polygon::edges;
 /// point (\[1\], eq. 10). Positive if the polygon's front faces `point`. Exact up to rounding, which grows
 /// with the distance over the polygon's size.
 pub(crate) fn share(point: DVec3, normal: DVec3, ring: &[DVec3]) -> f64 {
-    let mut sum = 0.0;
-    let Some(&last) = ring.last() else { return 0.0 };
-    let mut a = last - point;
-    for &v in ring {
-        let b = v - point;
-        sum += edge(a, b, normal);
-        a = b;
+    share_of_ring(normal, ring.iter().map(|&v| v - point))
+}
+
+/// As [`share`], of vertices relative to the point.
+#[inline]
+pub(crate) fn share_of_ring(normal: DVec3, mut ring: impl Iterator<Item = DVec3>) -> f64 {
+    let Some(first) = ring.next() else { return 0.0 };
+    let (mut sum, mut last) = (0.0, first);
+    for v in ring {
+        sum += edge(last, v, normal);
+        last = v;
     }
+    sum += edge(last, first, normal);
     // Rings that are counter-clockwise from their front turn clockwise about a direction that looks at it.
     -sum * (0.5 / std::f64::consts::PI)
 }
@@ -34,7 +39,8 @@ fn edge(a: DVec3, b: DVec3, normal: DVec3) -> f64 {
     let (sine2, cosine) = (cross.length_squared(), a.dot(b));
     // Most edges are seen small; neither root nor arcus tangens is needed for them.
     if cosine > 0.0 && sine2 < SMALL_TANGENT2 * cosine * cosine {
-        return normal.dot(cross) * (arctangent_over(sine2 / (cosine * cosine)) / cosine);
+        let inverse = 1.0 / cosine;
+        return normal.dot(cross) * (arctangent_over(sine2 * inverse * inverse) * inverse);
     }
     let sine = sine2.sqrt();
     if sine <= 1e-30 * (cosine.abs() + f64::MIN_POSITIVE) {

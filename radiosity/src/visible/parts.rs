@@ -49,6 +49,9 @@ pub(crate) struct Pieces {
     seen: Vec<ConvexPolygon>,
     next: Vec<ConvexPolygon>,
     sides: Vec<HalfPlane>,
+    /// What is left of a piece that is cut again and again, from one and to the other in turn.
+    turns: [ConvexPolygon; 2],
+    outside: ConvexPolygon,
 }
 
 impl Source {
@@ -142,12 +145,7 @@ impl Source {
     }
 
     fn share_of(&self, point: DVec3, normal: DVec3, piece: &ConvexPolygon) -> f64 {
-        let mut ring = [DVec3::ZERO; pointillist_dice::convex::MAX_VERTICES];
-        let corners = piece.vertices();
-        for (place, corner) in ring.iter_mut().zip(corners) {
-            *place = self.in_space(*corner);
-        }
-        lambert::share(point, normal, &ring[..corners.len()])
+        lambert::share_of_ring(normal, piece.vertices().iter().map(|&v| self.in_space(v) - point))
     }
 
     /// The half-planes whose common part the occluder hides; false if it hides nothing.
@@ -197,7 +195,6 @@ impl Pieces {
     fn subtract(&mut self, kept: bool, mut visit: impl FnMut(&ConvexPolygon)) -> bool {
         self.next.clear();
         let mut any = false;
-        let (mut turns, mut outside) = ([ConvexPolygon::EMPTY; 2], ConvexPolygon::EMPTY);
         for piece in &self.seen {
             let apart = |half: &HalfPlane| piece.vertices().iter().all(|&v| half.value(v) <= 0.0);
             if self.sides.iter().any(apart) {
@@ -206,22 +203,22 @@ impl Pieces {
                 }
                 continue;
             }
-            turns[0] = *piece;
             let mut now = 0;
-            for half in &self.sides {
-                let [a, b] = &mut turns;
+            for (i, half) in self.sides.iter().enumerate() {
+                let [a, b] = &mut self.turns;
                 let (left, inside) = if now == 0 { (a, b) } else { (b, a) };
-                left.divide_into(half, inside, &mut outside);
+                let left = if i == 0 { piece } else { left };
+                left.divide_into(half, inside, &mut self.outside);
                 now = 1 - now;
-                if kept && !outside.is_empty() {
-                    self.next.push(outside);
+                if kept && !self.outside.is_empty() {
+                    self.next.push(self.outside);
                 }
                 if inside.is_empty() {
                     break;
                 }
             }
-            if !turns[now].is_empty() {
-                visit(&turns[now]);
+            if !self.turns[now].is_empty() {
+                visit(&self.turns[now]);
                 any = true;
             }
         }
