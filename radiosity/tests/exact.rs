@@ -75,6 +75,28 @@ fn a_wall_between_hides_all_and_one_beside_nothing() {
     assert_eq!(form_factor(&floor, &ceiling, &[floor.clone(), ceiling.clone()], &EXACT), open);
 }
 
+/// A ribbon close to the floor, edge by edge between the first samples: each of its places is off by no more than was asked for.
+#[test]
+fn narrow_occluders_do_not_slip_through_between_samples() {
+    let floor = quad(DVec3::ZERO, DVec3::X, DVec3::Y);
+    let lamp = quad(dvec3(0.45, 0.45, 1.0), DVec3::Y * 0.1, DVec3::X * 0.1);
+    for place in [0.2, 0.3, 0.7, 0.8] {
+        let ribbon = quad(dvec3(place, -1.0, 0.02), DVec3::X * 0.01, DVec3::Y * 3.0);
+        let exact = form_factor(&floor, &lamp, std::slice::from_ref(&ribbon), &FactorOptions::DEFAULT).value;
+        let surfaces = [&floor, &lamp, &ribbon].map(|p| Surface::new(p.vertices(), [0.5; 3]));
+        let scene = Scene::new(&surfaces, &SceneOptions::DEFAULT.with_patch(2.0)).expect("a scene");
+        let (transport, _) = scene.transport(&[]).expect("links");
+        let surface: Vec<usize> = transport.patches().map(|p| p.surface).collect();
+        let mut found = 0.0;
+        transport.factors(|from, to, factor| {
+            if (surface[from], surface[to]) == (0, 1) {
+                found += factor;
+            }
+        });
+        assert!((found - exact).abs() < 1e-5, "{place}: {found} for {exact}");
+    }
+}
+
 #[test]
 fn rows_of_a_closed_box_of_384_patches_add_up_to_1() {
     for turn in [DQuat::IDENTITY, DQuat::from_euler(EulerRot::XYZ, 0.3, 0.7, 1.1)] {

@@ -19,8 +19,10 @@ use crate::polygon::{Polygon, clipped};
 
 /// Gauss points along each side of a cell.
 const ORDER: usize = 3;
-/// Cells that were halved less often are looked at from their corners, too, and halved while a small occluder is between that nothing met.
+/// Cells that were halved less often are looked at from their corners, too.
 const LOOKED_AT_CORNERS: u8 = 1;
+/// Cells that were halved less often are halved while a narrow occluder is between that was before no sample.
+const SEARCHED: u8 = 3;
 /// Samples are apart by less than this share of a cell's diagonal.
 const SLIPS_THROUGH: f64 = 0.5;
 /// How far towards the centre a corner is looked from: on the line where an occluder stands nothing is hidden.
@@ -276,18 +278,21 @@ impl Cubature<'_> {
             for corner in cell.quad {
                 hidden_at(corner.lerp(centre, INWARD));
             }
+        }
+        cell.spread = SPREAD * area * (most - least);
+        if cell.depth < SEARCHED {
             let unmet = met.iter().zip(&list).filter(|(met, _)| !**met).map(|(_, occluder)| *occluder);
             cell.error = unmet.map(|occluder| self.missed(&cell.quad, occluder)).sum();
         }
-        cell.spread = SPREAD * area * (most - least);
     }
 
     /// Most that an occluder hides which is before no sample and no corner of a cell.
     fn missed(&self, quad: &[DVec3; 4], occluder: &Polygon) -> f64 {
         let [a, b, c, d] = *quad;
         let size = (c - a).length().max((d - b).length());
-        // A shadow as wide as samples are apart does not slip through between them.
-        if 2.0 * occluder.radius() >= SLIPS_THROUGH * size {
+        // A shadow as wide as samples are apart does not slip through between them; a source without extent makes it as narrow as its
+        // occluder.
+        if occluder.area() / occluder.radius() >= SLIPS_THROUGH * size {
             return 0.0;
         }
         let (centre, normal) = (0.25 * (a + b + c + d), self.receiver.normal());
