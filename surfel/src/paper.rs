@@ -12,10 +12,12 @@
 use crate::camera::Camera;
 use crate::frame::Band;
 use crate::kernel;
+use crate::layer::{LANES, Layer, PITCH, Touched};
 use crate::select::Selected;
 use crate::splat::{Items, Projector, Shape, Splat};
-use crate::tile::{self, Layer, PITCH, Place, Scene};
+use crate::tile::{self, Place, Scene};
 use glam::Vec3;
+use pulp::Scalar;
 
 /// The filter's radius is this many of its standard deviations.
 const DEVIATIONS: f32 = 2.0;
@@ -88,16 +90,18 @@ impl PaperTile {
             self.splats.clear();
             for selected in nodes {
                 let node = &scene.cloud.nodes[selected.node as usize];
-                let items = Items { node, stride: selected.stride.into() };
+                let items = Items::new(node, selected);
                 self.projector.project(scene.cloud, &items, &scene.camera, &shape, place, &mut self.splats);
             }
-            self.layer.near.fill(f32::INFINITY);
+            self.layer.clear_near(&Touched::ALL);
             kernel::nearest::<true>(&mut self.layer, &self.splats);
+            kernel::sharpness_of_nearest(&mut self.layer, &self.splats);
             for row in 0..place.height {
                 for column in 0..place.width {
                     let cell = &mut cells[at(row, column)];
-                    cell.near[k..].fill(self.layer.near[row * PITCH + column]);
-                    cell.radius = self.layer.sharpness[row * PITCH + column];
+                    let (block, lane) = (row * PITCH + column / LANES, column % LANES);
+                    cell.near[k..].fill(self.layer.depths[block].near[lane]);
+                    cell.radius = self.layer.sums[block].0[0][lane];
                 }
             }
         }
@@ -119,10 +123,10 @@ impl PaperTile {
 
 impl Scene<'_> {
     fn link(&self, s: &Splat, at: (usize, usize)) -> Link {
-        let [_, _, a, b, c, red, green, blue] = s.values;
-        let normal = Vec3::new(a, b, c);
-        let colour = self.shader.lit(Vec3::new(red, green, blue), normal, at);
-        Link { depth: s.depth, radius: s.sharpness, normal, colour }
+        let [a, b, c, paint @ .., radius] = s.values;
+        let at = (at.0 as f32, at.1 as f32);
+        let colour = self.shader.lit(Scalar, paint, [a, b, c], at);
+        Link { depth: s.depth, radius, normal: Vec3::new(a, b, c), colour: colour.into() }
     }
 }
 

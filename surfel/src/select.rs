@@ -25,6 +25,8 @@ pub(crate) struct Selected {
     /// First and last pixels of all that it draws, within the picture.
     pub(crate) x: [u16; 2],
     pub(crate) y: [u16; 2],
+    /// How far from its centre any disc of it may touch pixels.
+    pub(crate) margin: f32,
     /// Every which item is drawn, for as many.
     pub(crate) stride: u8,
     /// Nothing of it has a smaller bent depth.
@@ -68,8 +70,8 @@ pub(crate) fn select(
         counts.nodes += 1;
         counts.points += drawn;
         counts.links += if node.is_leaf() { 0 } else { drawn };
-        let Seen { x, y, nearest, thickness, .. } = seen;
-        selected.push(Selected { node: number, place: 0, x, y, stride, nearest, thickness });
+        let Seen { x, y, margin, nearest, thickness, .. } = seen;
+        selected.push(Selected { node: number, place: 0, x, y, margin, stride, nearest, thickness });
     }
     selected.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.node.cmp(&b.node)));
     selected.iter_mut().zip(0..).for_each(|(s, place)| s.place = place);
@@ -79,6 +81,7 @@ pub(crate) fn select(
 struct Seen {
     x: [u16; 2],
     y: [u16; 2],
+    margin: f32,
     nearest: f32,
     thickness: f32,
     /// Relative depths of its points.
@@ -111,16 +114,24 @@ impl Seen {
             let centre = camera.centre[i] as f32;
             let (first, last) = (low + centre - margin, high + centre + margin);
             let inside = last >= 0.0 && first < size as f32;
-            inside.then(|| [first.max(0.0) as u16, last.min(size as f32 - 1.0) as u16])
+            inside.then(|| ([first.max(0.0) as u16, last.min(size as f32 - 1.0) as u16], margin))
         };
-        let (x, y) = (axis(0)?, axis(1)?);
+        let ((x, x_margin), (y, y_margin)) = (axis(0)?, axis(1)?);
+        let margin = x_margin.max(y_margin);
         let before = (nearest_point - camera.plane_reach(deviation, blur_radius)).max(camera.near);
         let inverse = 1.0 / (nearest_point + camera.reference as f32);
         let thickness =
             camera.thickness(node.widest, f32::INFINITY, 1.0 / scale, blur_radius) * camera.bending(inverse);
         // Rounding of what is drawn, relative to its largest number.
         let slack = 1e-5 * (before.abs() + camera.bent(before).abs());
-        Some(Self { x, y, nearest: camera.bent(before) - slack, thickness: thickness + slack, depths })
+        Some(Self {
+            x,
+            y,
+            margin,
+            nearest: camera.bent(before) - slack,
+            thickness: thickness + slack,
+            depths,
+        })
     }
 
     /// How far apart, in pixels, points may be for their blur.
