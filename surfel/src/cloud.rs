@@ -109,7 +109,7 @@ impl Cloud {
         let links = links::make(&cubes, &generations, &attributes);
         let two_sided = points.normals.is_none();
         let nodes = nodes(&cubes, &generations, &links, &attributes, two_sided);
-        let links = Links::pack(&links, attributes.colours.is_some());
+        let links = Links::pack(&links, &attributes);
         Ok(Self { lattice, points: attributes, nodes, links, two_sided })
     }
 

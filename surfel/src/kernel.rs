@@ -1,6 +1,6 @@
 //! Discs into a tile: nearest depths, then weighted sums.
 
-use crate::layer::{Depths, LANES, Layer, PITCH, RAMP, Sums};
+use crate::layer::{Depths, LANES, Layer, Normals, PITCH, RAMP, Sums};
 use crate::splat::Splat;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -22,15 +22,16 @@ pub(crate) fn sharpness_of_nearest(layer: &mut Layer, splats: &[Splat]) {
 }
 
 /// Adds up the splats with these numbers that belong to the nearest surface; `behind` gets the numbers of those that have
-/// parts behind it. Discs may lie behind a surface by `slack` more than their thickness (bent depth).
-pub(crate) fn add<const FIRST: bool>(
+/// parts behind it. Discs may lie behind a surface by `slack` more than their thickness (bent depth). Normals are added up if
+/// they are `WANTED`.
+pub(crate) fn add<const FIRST: bool, const WANTED: bool>(
     layer: &mut Layer,
     splats: &[Splat],
     numbers: impl Iterator<Item = u32>,
     behind: &mut Vec<u32>,
     slack: f32,
 ) {
-    Arch::new().dispatch(Add::<FIRST, _> { layer, splats, numbers, behind, slack });
+    Arch::new().dispatch(Add::<FIRST, WANTED, _> { layer, splats, numbers, behind, slack });
 }
 
 /// Within a kernel h is at most 1/(1 − √½) = 3.4; rounding could make it anything where planes are edge-on.
@@ -80,7 +81,7 @@ impl WithSimd for SharpnessOfNearest<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let none = simd.splat_f32s(0.0);
         for s in self.splats {
-            let own = simd.splat_f32s(s.sharpness());
+            let own = simd.splat_f32s(s.sharpness);
             for column in s.blocks() {
                 for (i, ramp) in S::as_simd_f32s(&RAMP).0.iter().enumerate() {
                     let strip = Strip::new(simd, s, column, *ramp);
@@ -101,7 +102,7 @@ impl WithSimd for SharpnessOfNearest<'_> {
     }
 }
 
-struct Add<'a, const FIRST: bool, I> {
+struct Add<'a, const FIRST: bool, const WANTED: bool, I> {
     layer: &'a mut Layer,
     splats: &'a [Splat],
     numbers: I,
@@ -109,12 +110,13 @@ struct Add<'a, const FIRST: bool, I> {
     slack: f32,
 }
 
-impl<const FIRST: bool, I: Iterator<Item = u32>> WithSimd for Add<'_, FIRST, I> {
+impl<const FIRST: bool, const WANTED: bool, I: Iterator<Item = u32>> WithSimd for Add<'_, FIRST, WANTED, I> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let (depths, sums) = (&self.layer.depths[..], &mut self.layer.sums[..]);
+        let Layer { depths, sums, normals } = self.layer;
+        let (depths, sums, normals) = (&depths[..], &mut sums[..], &mut normals[..]);
         let none = simd.splat_f32s(0.0);
         for number in self.numbers {
             let s = &self.splats[number as usize];
@@ -135,6 +137,9 @@ impl<const FIRST: bool, I: Iterator<Item = u32>> WithSimd for Add<'_, FIRST, I> 
                         let kernel = if s.flat { simd.sqrt_f32s(shown) } else { simd.mul_f32s(shown, shown) };
                         let weights = simd.mul_f32s(weight, kernel);
                         add_block(simd, s, i, weights, depth, &mut sums[row * PITCH + column]);
+                        if WANTED {
+                            add_normals(simd, s, i, weights, &mut normals[row * PITCH + column]);
+                        }
                     }
                 }
             }
@@ -153,10 +158,22 @@ fn add_block<S: Simd>(simd: S, s: &Splat, i: usize, weights: S::f32s, depths: S:
     *weight = simd.add_f32s(*weight, weights);
     let depth = &mut S::as_mut_simd_f32s(depth).0[i];
     *depth = simd.add_f32s(*depth, simd.mul_f32s(weights, depths));
-    for (sum, value) in values.iter_mut().zip(s.values) {
-        let sum = &mut S::as_mut_simd_f32s(sum).0[i];
-        *sum = simd.add_f32s(*sum, simd.mul_f32s(weights, simd.splat_f32s(value)));
+    let [red, green, blue] = s.colour;
+    for (sums, value) in values.iter_mut().zip([s.sharpness, red, green, blue]) {
+        add_value(simd, value, weights, &mut S::as_mut_simd_f32s(sums).0[i]);
     }
+}
+
+#[inline(always)]
+fn add_normals<S: Simd>(simd: S, s: &Splat, i: usize, weights: S::f32s, block: &mut Normals) {
+    for (sums, value) in block.0.iter_mut().zip(s.normal) {
+        add_value(simd, value, weights, &mut S::as_mut_simd_f32s(sums).0[i]);
+    }
+}
+
+#[inline(always)]
+fn add_value<S: Simd>(simd: S, value: f32, weights: S::f32s, sums: &mut S::f32s) {
+    *sums = simd.add_f32s(*sums, simd.mul_f32s(weights, simd.splat_f32s(value)));
 }
 
 /// A column of blocks under a splat: what is the same in all rows.

@@ -1,6 +1,7 @@
 //! Working memory of a tile, in blocks of pixels that are computed together.
 
 use crate::tile::{HEIGHT, WIDTH};
+use std::ops::Range;
 
 /// Pixels of a block, next to one another in a row: a whole number of vectors of any processor.
 pub(crate) const LANES: usize = 8;
@@ -24,13 +25,22 @@ pub(crate) struct Depths {
     pub(crate) floor: Lanes,
 }
 
-/// Weighted sums of a block: weight, bent depth, normal, colour, sharpness.
+/// Weighted sums of a block: weight, bent depth, sharpness, colour.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-pub(crate) struct Sums(pub(crate) [Lanes; 9]);
+pub(crate) struct Sums(pub(crate) [Lanes; 6]);
 
 impl Sums {
-    pub(crate) const NOTHING: Self = Self([[0.0; LANES]; 9]);
+    pub(crate) const NOTHING: Self = Self([[0.0; LANES]; 6]);
+}
+
+/// Weighted sums of normals (in the picture's axes) of a block.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(crate) struct Normals(pub(crate) [Lanes; 3]);
+
+impl Normals {
+    pub(crate) const NOTHING: Self = Self([[0.0; LANES]; 3]);
 }
 
 /// What a block shows while layers are laid under one another.
@@ -53,13 +63,28 @@ impl Pixels {
 pub(crate) struct Layer {
     pub(crate) depths: Vec<Depths>,
     pub(crate) sums: Vec<Sums>,
+    /// Untouched unless normals are asked for.
+    pub(crate) normals: Vec<Normals>,
 }
 
 impl Layer {
     pub(crate) fn new() -> Self {
         let count = PITCH * HEIGHT;
         let depths = Depths { near: [0.0; LANES], floor: [0.0; LANES] };
-        Self { depths: vec![depths; count], sums: vec![Sums::NOTHING; count] }
+        Self {
+            depths: vec![depths; count],
+            sums: vec![Sums::NOTHING; count],
+            normals: vec![Normals::NOTHING; count],
+        }
+    }
+
+    /// Makes these sums empty, with those of normals if they are `WANTED`.
+    #[inline(always)]
+    pub(crate) fn clear_sums<const WANTED: bool>(&mut self, blocks: Range<usize>) {
+        self.sums[blocks.clone()].fill(Sums::NOTHING);
+        if WANTED {
+            self.normals[blocks].fill(Normals::NOTHING);
+        }
     }
 
     /// Makes these blocks of depths empty.
@@ -90,17 +115,17 @@ impl Touched {
         self.rows[1] = self.rows[1].max(rows[1]);
     }
 
-    pub(crate) fn rows(&self) -> std::ops::Range<usize> {
+    pub(crate) fn rows(&self) -> Range<usize> {
         self.rows[0]..self.rows[1]
     }
 
     /// Columns of blocks.
-    pub(crate) fn columns(&self) -> std::ops::Range<usize> {
+    pub(crate) fn columns(&self) -> Range<usize> {
         self.columns[0]..self.columns[1]
     }
 
     /// Indices of a row's blocks.
-    pub(crate) fn blocks(&self, row: usize) -> std::ops::Range<usize> {
+    pub(crate) fn blocks(&self, row: usize) -> Range<usize> {
         row * PITCH + self.columns[0]..row * PITCH + self.columns[1]
     }
 }

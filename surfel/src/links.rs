@@ -24,29 +24,35 @@ pub(crate) struct Link {
     pub(crate) colour: Vec3,
 }
 
-/// The links of all cubes, packed: 12 bytes each, 16 with colour.
+/// The links of all cubes, packed: 24 bytes each, 28 with colour.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Links {
     pub(crate) points: Vec<u32>,
+    /// Of these points: to look them up there would wait for memory at every link.
+    pub(crate) cells: [Vec<u32>; 3],
     pub(crate) areas: Vec<f32>,
     pub(crate) normals: Vec<u32>,
     pub(crate) colours: Option<Vec<u32>>,
 }
 
 impl Links {
-    pub(crate) fn pack(links: &[Vec<Link>], coloured: bool) -> Self {
+    pub(crate) fn pack(links: &[Vec<Link>], points: &Attributes) -> Self {
         let all = || links.iter().flatten();
         Self {
             points: all().map(|l| l.point).collect(),
+            cells: [0, 1, 2].map(|axis| all().map(|l| points.cells[axis][l.point as usize]).collect()),
             areas: all().map(|l| l.area).collect(),
             normals: all().map(|l| packed::pack_direction(l.normal)).collect(),
-            colours: coloured.then(|| all().map(|l| packed::pack_colour(l.colour.to_array())).collect()),
+            colours: points
+                .colours
+                .is_some()
+                .then(|| all().map(|l| packed::pack_colour(l.colour.to_array())).collect()),
         }
     }
 
     /// Memory of all links.
     pub(crate) fn bytes(&self) -> usize {
-        4 * (self.points.len() + self.areas.len() + self.normals.len())
+        4 * (4 * self.points.len() + self.areas.len() + self.normals.len())
             + 4 * self.colours.as_ref().map_or(0, Vec::len)
     }
 }

@@ -17,7 +17,6 @@ use crate::select::Selected;
 use crate::splat::{Items, Projector, Shape, Splat};
 use crate::tile::{self, Place, Scene};
 use glam::Vec3;
-use pulp::Scalar;
 
 /// The filter's radius is this many of its standard deviations.
 const DEVIATIONS: f32 = 2.0;
@@ -42,6 +41,10 @@ struct Link {
 
 impl Link {
     const NONE: Self = Self { depth: f32::INFINITY, radius: 0.0, normal: Vec3::ZERO, colour: Vec3::ZERO };
+
+    fn of(s: &Splat) -> Self {
+        Self { depth: s.depth, radius: s.sharpness, normal: s.normal.into(), colour: s.colour.into() }
+    }
 }
 
 /// A pixel between the two steps.
@@ -91,7 +94,7 @@ impl PaperTile {
             for selected in nodes {
                 let node = &scene.cloud.nodes[selected.node as usize];
                 let items = Items::new(node, selected);
-                self.projector.project(scene.cloud, &items, &scene.camera, &shape, place, &mut self.splats);
+                self.projector.project(scene, &items, &shape, place, &mut self.splats);
             }
             self.layer.clear_near(&Touched::ALL);
             kernel::nearest::<true>(&mut self.layer, &self.splats);
@@ -115,18 +118,9 @@ impl PaperTile {
             let (column, row) = (x as usize, y as usize);
             let cell = &mut cells[at(row, column)];
             if s.depth <= cell.near[0] + s.thickness && s.depth < cell.link.depth {
-                cell.link = scene.link(s, (place.x + column, place.y + row));
+                cell.link = Link::of(s);
             }
         }
-    }
-}
-
-impl Scene<'_> {
-    fn link(&self, s: &Splat, at: (usize, usize)) -> Link {
-        let [a, b, c, paint @ .., radius] = s.values;
-        let at = (at.0 as f32, at.1 as f32);
-        let colour = self.shader.lit(Scalar, paint, [a, b, c], at);
-        Link { depth: s.depth, radius, normal: Vec3::new(a, b, c), colour: colour.into() }
     }
 }
 

@@ -1,9 +1,10 @@
 //! From the sums of a layer to the colours of its pixels, a block at a time.
 
 use crate::frame::Band;
-use crate::layer::{LANES, Lanes, Layer, PITCH, Pixels, RAMP, Sums, Touched};
+use crate::layer::{LANES, Lanes, Layer, PITCH, Pixels, Sums, Touched};
 use crate::shade::{INDEPENDENT, LEAST_LIGHT, Shader, opacity};
 use crate::tile::{Place, WIDTH};
+use crate::vector::Vector;
 use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
 use std::ops::Range;
 
@@ -14,15 +15,14 @@ const LEAST_WEIGHT: f32 = 1e-30;
 const LEAST_INSIDE: f32 = 0.25;
 
 /// Lays a layer under what is in `pixels`, which are empty before the `FIRST`, and clears its sums; whether any pixel that it
-/// touched lets light through.
-pub(crate) fn resolve<const FIRST: bool>(
+/// touched lets light through. Normals are kept if they are `WANTED`.
+pub(crate) fn resolve<const FIRST: bool, const WANTED: bool>(
     layer: &mut Layer,
     pixels: &mut [Pixels],
-    shader: &Shader,
     place: &Place,
     touched: &Touched,
 ) -> bool {
-    Arch::new().dispatch(Resolve::<FIRST> { layer, pixels, shader, place, touched })
+    Arch::new().dispatch(Resolve::<FIRST, WANTED> { layer, pixels, place, touched })
 }
 
 /// Puts the pixels of a tile into the picture.
@@ -31,109 +31,106 @@ pub(crate) fn write(pixels: &[Pixels], shader: &Shader, place: &Place, band: &mu
     Arch::new().dispatch(Write { pixels, shader, place, band });
 }
 
-struct Resolve<'a, const FIRST: bool> {
+struct Resolve<'a, const FIRST: bool, const WANTED: bool> {
     layer: &'a mut Layer,
     pixels: &'a mut [Pixels],
-    shader: &'a Shader,
     place: &'a Place,
     touched: &'a Touched,
 }
 
-impl<const FIRST: bool> WithSimd for Resolve<'_, FIRST> {
+impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANTED> {
     type Output = bool;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let Self { layer, pixels, shader, place, touched } = self;
+        let Self { layer, pixels, place, touched } = self;
         let mut lines = Lines::new();
         let mut open = simd.splat_f32s(0.0);
         for row in touched.rows() {
             lines.take(simd, &layer.sums, place, touched.columns(), row);
             if row > touched.rows().start {
                 // Rows below need it no more.
-                layer.sums[touched.blocks(row - 1)].fill(Sums::NOTHING);
+                layer.clear_sums::<WANTED>(touched.blocks(row - 1));
             }
-            let y = simd.splat_f32s((place.y + row) as f32);
             for column in touched.columns() {
                 let index = row * PITCH + column;
-                let (depths, sums) = (&mut layer.depths[index], &layer.sums[index].0);
-                let pixels = &mut pixels[index];
-                for (i, ramp) in S::as_simd_f32s(&RAMP).0.iter().enumerate() {
-                    let x = simd.add_f32s(simd.splat_f32s((place.x + column * LANES) as f32), *ramp);
-                    let weight = S::as_simd_f32s(&sums[0]).0[i];
-                    let near = S::as_simd_f32s(&depths.near).0[i];
-                    let evened = lines.evened(simd, weight, column, i);
-                    let sums = LayerLanes { weight, evened, near, sums, i };
-                    let floor = sums.lay_under::<FIRST>(simd, shader, pixels, (x, y));
-                    S::as_mut_simd_f32s(&mut depths.floor).0[i] = floor;
-                    let is_open = simd.less_than_f32s(floor, simd.splat_f32s(f32::INFINITY));
+                let depths = &mut layer.depths[index];
+                for i in 0..LANES / S::F32_LANES {
+                    let vector = |lanes: &Lanes| Vector::new(simd, S::as_simd_f32s(lanes).0[i]);
+                    let [weight, depth, sharpness, colour @ ..] = &layer.sums[index].0;
+                    let weight = vector(weight);
+                    // Not where it is NaN.
+                    let is_there = weight.exceeds(LEAST_WEIGHT);
+                    let inverse = weight.if_set(is_there, 1.0).inverse();
+                    let mean = |sums: &Lanes| vector(sums) * inverse;
+                    let alpha = opacity(lines.evened(weight, column, i), mean(sharpness));
+                    let under = Under { alpha, is_there, i };
+                    let colour = [mean(&colour[0]), mean(&colour[1]), mean(&colour[2])];
+                    let pixels = &mut pixels[index];
+                    let (is_first, after) = under.blend::<FIRST>(simd, &mut pixels.colour, colour);
+                    let empty = f32::INFINITY;
+                    keep::<S, FIRST>(mean(depth), is_first, empty, &mut pixels.depth, i);
+                    if WANTED {
+                        for (kept, sums) in pixels.normal.iter_mut().zip(&layer.normals[index].0) {
+                            keep::<S, FIRST>(mean(sums), is_first, 0.0, kept, i);
+                        }
+                    }
+                    let light = -(after - 1.0);
+                    let is_open = simd.and_m32s(is_there, light.exceeds(LEAST_LIGHT));
+                    let floor = vector(&depths.near).if_set(is_open, f32::INFINITY);
+                    S::as_mut_simd_f32s(&mut depths.floor).0[i] = floor.lanes;
                     open = simd.select_f32s(is_open, simd.splat_f32s(1.0), open);
                 }
             }
         }
         if let Some(last) = touched.rows().next_back() {
-            layer.sums[touched.blocks(last)].fill(Sums::NOTHING);
+            layer.clear_sums::<WANTED>(touched.blocks(last));
         }
         simd.reduce_max_f32s(open) > 0.0
     }
 }
 
-/// Vector `i` of a layer's block.
-struct LayerLanes<'a, S: Simd> {
-    weight: S::f32s,
-    evened: S::f32s,
-    near: S::f32s,
-    sums: &'a [Lanes; 9],
+/// A surface that is laid under what is in vector `i` of a block.
+struct Under<S: Simd> {
+    alpha: Vector<S>,
+    /// Where there is one.
+    is_there: S::m32s,
     i: usize,
 }
 
-impl<S: Simd> LayerLanes<'_, S> {
-    /// Lays the surface under what is in the pixels; the floor of the next layer, +∞ where nothing below can be seen.
+impl<S: Simd> Under<S> {
+    /// Where pixels became half opaque, and how opaque they are.
     #[inline(always)]
-    fn lay_under<const FIRST: bool>(
+    fn blend<const FIRST: bool>(
         &self,
         simd: S,
-        shader: &Shader,
-        pixels: &mut Pixels,
-        (x, y): (S::f32s, S::f32s),
-    ) -> S::f32s {
-        let i = self.i;
-        let (none, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
-        // Not where it is NaN.
-        let is_there = simd.greater_than_f32s(self.weight, simd.splat_f32s(LEAST_WEIGHT));
-        let inverse = simd.div_f32s(one, simd.select_f32s(is_there, self.weight, one));
-        let [_, depth, a, b, c, red, green, blue, sharpness] = self.sums;
-        let mean = |sum: &Lanes| simd.mul_f32s(S::as_simd_f32s(sum).0[i], inverse);
-        let normal = [mean(a), mean(b), mean(c)];
-        let shaded = shader.lit(simd, [mean(red), mean(green), mean(blue)], normal, (x, y));
-        let alpha = opacity(simd, self.evened, mean(sharpness));
-        let before = if FIRST { none } else { S::as_simd_f32s(&pixels.colour[3]).0[i] };
-        let left = simd.sub_f32s(one, before);
-        let overlap = simd.sub_f32s(one, simd.mul_f32s(simd.splat_f32s(INDEPENDENT), before));
-        let share = simd.min_f32s(simd.mul_f32s(alpha, overlap), left);
-        let share = simd.select_f32s(is_there, share, none);
-        let after = simd.add_f32s(before, share);
-        let [channels @ .., opacity] = &mut pixels.colour;
-        S::as_mut_simd_f32s(opacity).0[i] = after;
-        for (channel, shaded) in channels.iter_mut().zip(shaded) {
-            let channel = &mut S::as_mut_simd_f32s(channel).0[i];
+        pixels: &mut [Lanes; 4],
+        colour: [Vector<S>; 3],
+    ) -> (S::m32s, Vector<S>) {
+        let [channels @ .., opacity] = pixels;
+        let opacity = &mut S::as_mut_simd_f32s(opacity).0[self.i];
+        let before = if FIRST { Vector::all(simd, 0.0) } else { Vector::new(simd, *opacity) };
+        let overlap = -(before * INDEPENDENT - 1.0);
+        let share = (self.alpha * overlap).min(-(before - 1.0)).if_set(self.is_there, 0.0);
+        let after = before + share;
+        *opacity = after.lanes;
+        for (channel, colour) in channels.iter_mut().zip(colour) {
+            let channel = &mut S::as_mut_simd_f32s(channel).0[self.i];
             // What is not there may be no number.
-            let added = simd.mul_f32s(share, simd.select_f32s(is_there, shaded, none));
-            *channel = if FIRST { added } else { simd.add_f32s(*channel, added) };
+            let added = share * colour.if_set(self.is_there, 0.0);
+            *channel = if FIRST { added } else { Vector::new(simd, *channel) + added }.lanes;
         }
-        let half = simd.splat_f32s(0.5);
-        let was_open = simd.and_m32s(is_there, simd.less_than_f32s(before, half));
-        let is_first = simd.and_m32s(was_open, simd.greater_than_or_equal_f32s(after, half));
-        let empty = [f32::INFINITY, 0.0, 0.0, 0.0];
-        let layers = [&mut pixels.depth].into_iter().chain(&mut pixels.normal);
-        for ((kept, new), empty) in layers.zip([depth, a, b, c]).zip(empty) {
-            let kept = &mut S::as_mut_simd_f32s(kept).0[i];
-            *kept = simd.select_f32s(is_first, mean(new), if FIRST { simd.splat_f32s(empty) } else { *kept });
-        }
-        let light = simd.sub_f32s(one, after);
-        let is_open = simd.and_m32s(is_there, simd.greater_than_f32s(light, simd.splat_f32s(LEAST_LIGHT)));
-        simd.select_f32s(is_open, self.near, simd.splat_f32s(f32::INFINITY))
+        let half = Vector::all(simd, 0.5);
+        let was_open = simd.and_m32s(self.is_there, half.is_above(before));
+        (simd.and_m32s(was_open, simd.greater_than_or_equal_f32s(after.lanes, half.lanes)), after)
     }
+}
+
+/// Sets what a pixel keeps where `mask` is set; before the first layer it has the value `empty`.
+#[inline(always)]
+fn keep<S: Simd, const FIRST: bool>(new: Vector<S>, mask: S::m32s, empty: f32, kept: &mut Lanes, i: usize) {
+    let kept = &mut S::as_mut_simd_f32s(kept).0[i];
+    *kept = if FIRST { new.if_set(mask, empty) } else { new.or_where_unset(mask, *kept) }.lanes;
 }
 
 /// Sums and minima of three pixels above one another, for a row. With a block of room on either side.
@@ -174,16 +171,15 @@ impl Lines {
     ///
     /// Weights vary between points. Over an edge that is blurred they fall evenly: there the mean is that of the middle.
     #[inline(always)]
-    fn evened<S: Simd>(&self, simd: S, own: S::f32s, column: usize, i: usize) -> S::f32s {
+    fn evened<S: Simd>(&self, own: Vector<S>, column: usize, i: usize) -> Vector<S> {
         let first = (column + 1) * LANES;
-        let [left, middle, right] = [first - 1, first, first + 1].map(|at| at..at + LANES);
-        let sum = |at: &Range<usize>| S::as_simd_f32s(&self.sums[at.clone()]).0[i];
-        let least = |at: &Range<usize>| S::as_simd_f32s(&self.least[at.clone()]).0[i];
-        let mean = simd.add_f32s(simd.add_f32s(sum(&left), sum(&right)), sum(&middle));
-        let mean = simd.mul_f32s(mean, simd.splat_f32s(1.0 / 9.0));
-        let least = simd.min_f32s(simd.min_f32s(least(&left), least(&right)), least(&middle));
-        let is_inside = simd.greater_than_f32s(least, simd.splat_f32s(LEAST_INSIDE));
-        simd.select_f32s(is_inside, simd.max_f32s(own, mean), own)
+        let at = |line: &[f32], from: usize| own.with(S::as_simd_f32s(&line[from..from + LANES]).0[i]);
+        let around = |line: &[f32]| [at(line, first - 1), at(line, first), at(line, first + 1)];
+        let [left, middle, right] = around(&self.sums);
+        let mean = (left + right + middle) * (1.0 / 9.0);
+        let [left, middle, right] = around(&self.least);
+        let least = left.min(right).min(middle);
+        mean.max(own).or_where_unset(least.exceeds(LEAST_INSIDE), own.lanes)
     }
 }
 

@@ -1,7 +1,8 @@
-//! Light on surfaces, for as many pixels at a time as the processor computes together.
+//! Light on surfaces, and how much of a pixel they cover.
 
 use crate::camera::Camera;
 use crate::options::{Light, Options};
+use crate::vector::{Real, Vector};
 use glam::Vec3;
 use pulp::Simd;
 
@@ -37,50 +38,43 @@ impl Shader {
         }
     }
 
-    /// Cosine between the mean normal and the light, 0 if it faces away.
+    /// Cosine between normal and light, 0 if it faces away.
     #[inline(always)]
-    fn facing<S: Simd>(&self, simd: S, normal: [S::f32s; 3], at: (S::f32s, S::f32s)) -> S::f32s {
+    fn facing<S: Simd>(&self, normal: [Vector<S>; 3], at: (Vector<S>, Vector<S>)) -> Vector<S> {
         let cosine = match self.light {
-            Some(light) => dot(simd, normal, light.to_array().map(|v| simd.splat_f32s(v))),
-            None => self.facing_eye(simd, normal, at),
+            Some(light) => normal[0] * light.x + normal[1] * light.y + normal[2] * light.z,
+            None => self.facing_eye(normal, at),
         };
-        simd.min_f32s(simd.max_f32s(cosine, simd.splat_f32s(0.0)), simd.splat_f32s(1.0))
+        cosine.at_least(0.0).at_most(1.0)
     }
 
-    /// Cosine between the mean normal and the way to the eye.
+    /// Cosine between normal and the way to the eye.
     #[inline(always)]
-    fn facing_eye<S: Simd>(&self, simd: S, normal: [S::f32s; 3], (x, y): (S::f32s, S::f32s)) -> S::f32s {
+    fn facing_eye<S: Simd>(&self, normal: [Vector<S>; 3], (x, y): (Vector<S>, Vector<S>)) -> Vector<S> {
         if !self.camera.is_perspective {
-            return simd.neg_f32s(normal[2]);
+            return -normal[2];
         }
-        let centre = self.camera.centre.map(|c| simd.splat_f32s(c as f32 - 0.5));
-        let inverse = simd.splat_f32s(-1.0 / self.camera.focal);
-        let towards = [
-            simd.mul_f32s(simd.sub_f32s(x, centre[0]), inverse),
-            simd.mul_f32s(simd.sub_f32s(y, centre[1]), inverse),
-            simd.splat_f32s(-1.0),
-        ];
-        simd.div_f32s(dot(simd, normal, towards), simd.sqrt_f32s(dot(simd, towards, towards)))
+        let inverse = 1.0 / self.camera.focal;
+        let x = (x - self.camera.centre[0] as f32) * inverse;
+        let y = (y - self.camera.centre[1] as f32) * inverse;
+        -(normal[0] * x + normal[1] * y + normal[2]) / (x * x + y * y + 1.0).sqrt()
     }
 
-    /// Colour × (A + (1 − A)·max(0, n·l)) in the pixels (x, y); a mean of normals is shorter than 1, as is the mean of their
-    /// cosines.
+    /// Colour × (A + (1 − A)·max(0, n·l)) of surfaces at places (x, y) of the picture.
     #[inline(always)]
     pub(crate) fn lit<S: Simd>(
         &self,
         simd: S,
-        paint: [S::f32s; 3],
-        normal: [S::f32s; 3],
-        at: (S::f32s, S::f32s),
-    ) -> [S::f32s; 3] {
-        let sun = simd.splat_f32s(1.0 - self.ambient);
-        let sun = simd.mul_f32s(sun, self.facing(simd, normal, at));
-        let light = simd.add_f32s(simd.splat_f32s(self.ambient), sun);
-        let paint = match self.base {
-            Some(base) => base.to_array().map(|v| simd.splat_f32s(v)),
+        paint: [Vector<S>; 3],
+        normal: [Vector<S>; 3],
+        at: (Vector<S>, Vector<S>),
+    ) -> [Vector<S>; 3] {
+        let light = self.facing(normal, at) * (1.0 - self.ambient) + self.ambient;
+        let [red, green, blue] = match self.base {
+            Some(base) => base.to_array().map(|v| Vector::all(simd, v)),
             None => paint,
         };
-        [simd.mul_f32s(paint[0], light), simd.mul_f32s(paint[1], light), simd.mul_f32s(paint[2], light)]
+        [red * light, green * light, blue * light]
     }
 
     /// Distance along the view axis of a bent depth.
@@ -97,24 +91,15 @@ impl Shader {
     }
 }
 
-#[inline(always)]
-fn dot<S: Simd>(simd: S, a: [S::f32s; 3], b: [S::f32s; 3]) -> S::f32s {
-    let sum = simd.add_f32s(simd.mul_f32s(a[0], b[0]), simd.mul_f32s(a[1], b[1]));
-    simd.add_f32s(sum, simd.mul_f32s(a[2], b[2]))
-}
-
 /// How much of a pixel a surface covers, from the sum of its weights and the sharpness of its edge.
 ///
 /// Weights of discs add up to about 1 inside a surface and fall to 0 over its edge, as wide as the discs: where
 /// discs are wider than pixels, the edge is made as steep as a pixel shows it, about the place where half is covered.
 #[inline(always)]
-pub(crate) fn opacity<S: Simd>(simd: S, sum: S::f32s, sharpness: S::f32s) -> S::f32s {
-    let (none, half, one) = (simd.splat_f32s(0.0), simd.splat_f32s(0.5), simd.splat_f32s(1.0));
-    let covered = simd.add_f32s(half, simd.mul_f32s(sharpness, simd.sub_f32s(sum, half)));
-    let covered = simd.min_f32s(simd.max_f32s(covered, none), one);
+pub(crate) fn opacity<S: Simd>(sum: Vector<S>, sharpness: Vector<S>) -> Vector<S> {
+    let covered = (sharpness * (sum - 0.5) + 0.5).at_least(0.0).at_most(1.0);
     // Sums inside a surface vary by a few per cent: it must not let light through for that.
-    let closing = simd.mul_f32s(simd.splat_f32s(CLOSING), simd.mul_f32s(covered, covered));
-    simd.min_f32s(simd.mul_f32s(covered, simd.add_f32s(one, closing)), one)
+    (covered * (covered * covered * CLOSING + 1.0)).at_most(1.0)
 }
 
 /// A coverage of 0.9 and more is taken for all.

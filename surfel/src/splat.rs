@@ -13,9 +13,10 @@ use crate::camera::Camera;
 use crate::cloud::{Cloud, Node, radius_of_area};
 use crate::lattice::offset;
 use crate::layer;
+use crate::links::Links;
 use crate::packed;
 use crate::select::Selected;
-use crate::tile;
+use crate::tile::{self, Scene};
 use crate::vector::{Real, Vector};
 use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
@@ -71,9 +72,12 @@ pub(crate) struct Splat {
     /// Pixels that it may touch, the last not included.
     pub(crate) columns: [u8; 2],
     pub(crate) rows: [u8; 2],
-    /// What is averaged: normal in the picture's axes, colour, how much steeper than the kernel's an edge has to be to look
-    /// sharp.
-    pub(crate) values: [f32; 7],
+    /// How much steeper than the kernel's an edge has to be to look sharp.
+    pub(crate) sharpness: f32,
+    /// In its light.
+    pub(crate) colour: [f32; 3],
+    /// In the picture's axes.
+    pub(crate) normal: [f32; 3],
 }
 
 impl Splat {
@@ -93,13 +97,10 @@ impl Splat {
         flat: false,
         columns: [0; 2],
         rows: [0; 2],
-        values: [0.0; 7],
+        sharpness: 0.0,
+        colour: [0.0; 3],
+        normal: [0.0; 3],
     };
-
-    #[inline(always)]
-    pub(crate) fn sharpness(&self) -> f32 {
-        self.values[6]
-    }
 
     /// Columns of blocks that it may touch.
     #[inline(always)]
@@ -182,6 +183,8 @@ pub(crate) struct Projector {
     normals: [Lanes; 3],
     radii: Lanes,
     areas: Lanes,
+    /// Colours without light, if points have any.
+    paint: [Lanes; 3],
     out: Projected,
 }
 
@@ -202,6 +205,9 @@ enum Value {
     Thickness,
     Flat,
     Sharpness,
+    Red,
+    Green,
+    Blue,
     NormalX,
     NormalY,
     NormalZ,
@@ -219,7 +225,8 @@ struct Projected([Lanes; Value::Kept as usize + 1]);
 struct Map {
     /// Rows x·w, y·w and relative depth, with w the depth or 1.
     rows: [f32; 12],
-    /// The principal point in the tile.
+    /// The tile's first pixel, and the principal point in the tile.
+    first: [f32; 2],
     centre: [f32; 2],
     /// Last row and column, not included.
     size: [f32; 2],
@@ -248,7 +255,8 @@ impl Map {
             row.copy_from_slice(&[n.x as f32, n.y as f32, n.z as f32, offset as f32]);
         }
         let size = [tile.width as f32, tile.height as f32];
-        Self { rows, centre: [cx as f32, cy as f32], size, two_sided, margin }
+        let first = [tile.x as f32, tile.y as f32];
+        Self { rows, first, centre: [cx as f32, cy as f32], size, two_sided, margin }
     }
 }
 
@@ -256,35 +264,44 @@ impl Projector {
     pub(crate) fn new() -> Box<Self> {
         let zero = [0.0; LANES];
         let out = Projected([zero; Value::Kept as usize + 1]);
-        Box::new(Self { offsets: [zero; 3], normals: [zero; 3], radii: zero, areas: zero, out })
+        Box::new(Self {
+            offsets: [zero; 3],
+            normals: [zero; 3],
+            radii: zero,
+            areas: zero,
+            paint: [zero; 3],
+            out,
+        })
     }
 
     /// Appends what `drawn` puts into a tile.
     pub(crate) fn project(
         &mut self,
-        cloud: &Cloud,
+        scene: &Scene<'_>,
         drawn: &Items<'_>,
-        camera: &Camera,
         shape: &Shape,
         tile: &tile::Place,
         splats: &mut Vec<Splat>,
     ) {
         let arch = Arch::new();
-        let map = Map::new(camera, drawn, tile, cloud.two_sided);
+        let map = Map::new(&scene.camera, drawn, tile, scene.cloud.two_sided);
         let end = drawn.node.items.end as usize;
         for start in (drawn.node.items.start as usize..end).step_by(LANES * drawn.stride) {
-            let count = if drawn.stride == 1 && drawn.node.is_leaf() {
-                self.take_run(cloud, drawn.node, start..(start + LANES).min(end))
+            let items = (start..end).step_by(drawn.stride).take(LANES);
+            let count = if !drawn.node.is_leaf() {
+                self.take_links(&scene.cloud.links, drawn, items)
+            } else if drawn.stride > 1 {
+                self.take_points(scene.cloud, drawn, items)
             } else {
-                self.take_each(cloud, drawn, (start..end).step_by(drawn.stride).take(LANES))
+                self.take_run(scene.cloud, drawn.node, start..(start + LANES).min(end))
             };
-            arch.dispatch(Project { lanes: self, camera, shape, map: &map, count });
+            arch.dispatch(Project { lanes: self, scene, shape, map: &map, count });
             // Written in place: to push what was made elsewhere copies it once more.
             let mut next = splats.len();
             splats.resize(next + count, Splat::NONE);
             for i in 0..count {
                 if self.out.get(i, Value::Kept) > 0.0 {
-                    splats[next] = self.out.splat(i, colour(cloud, drawn.node, start + i * drawn.stride));
+                    splats[next] = self.out.splat(i);
                     next += 1;
                 }
             }
@@ -304,39 +321,60 @@ impl Projector {
             self.normals[axis][..count].copy_from_slice(&points.normals[axis][items.clone()]);
         }
         self.radii[..count].copy_from_slice(&points.radii[items.clone()]);
-        self.areas[..count].copy_from_slice(&points.areas[items]);
+        self.areas[..count].copy_from_slice(&points.areas[items.clone()]);
+        if let Some(colours) = &points.colours {
+            let [red, green, blue] = &mut self.paint;
+            let paint = red.iter_mut().zip(green).zip(blue);
+            for (((red, green), blue), colour) in paint.zip(&colours[items]) {
+                [*red, *green, *blue] = *colour;
+            }
+        }
         count
     }
 
-    /// Takes points or links one by one; how many.
-    fn take_each(&mut self, cloud: &Cloud, drawn: &Items<'_>, items: impl Iterator<Item = usize>) -> usize {
-        let (node, points) = (drawn.node, &cloud.points);
+    /// Takes points one by one; how many.
+    fn take_points(&mut self, cloud: &Cloud, drawn: &Items<'_>, items: impl Iterator<Item = usize>) -> usize {
+        let points = &cloud.points;
         let mut count = 0;
-        for item in items {
-            let (point, normal, area, radius) = if node.is_leaf() {
-                (item, points.normal(item), points.areas[item], points.radii[item])
-            } else {
-                let area = cloud.links.areas[item];
-                let normal = packed::unpack_direction(cloud.links.normals[item]);
-                (cloud.links.points[item] as usize, normal, area, radius_of_area(area))
-            };
+        for point in items {
+            let colour = points.colours.as_ref().map_or([0.0; 3], |all| all[point]);
             for axis in 0..3 {
-                self.offsets[axis][count] = offset(node.origin[axis], points.cells[axis][point]);
-                self.normals[axis][count] = normal[axis];
+                self.offsets[axis][count] = offset(drawn.node.origin[axis], points.cells[axis][point]);
+                self.normals[axis][count] = points.normals[axis][point];
+                self.paint[axis][count] = colour[axis];
             }
-            self.areas[count] = area * drawn.stride as f32;
-            self.radii[count] = radius;
+            self.areas[count] = points.areas[point] * drawn.stride as f32;
+            self.radii[count] = points.radii[point];
             count += 1;
         }
         count
     }
-}
 
-fn colour(cloud: &Cloud, node: &Node, item: usize) -> [f32; 3] {
-    if node.is_leaf() {
-        cloud.points.colours.as_ref().map_or([0.0; 3], |all| all[item])
-    } else {
-        cloud.links.colours.as_ref().map_or([0.0; 3], |all| packed::unpack_colour(all[item]))
+    /// Takes links one by one; how many.
+    fn take_links(&mut self, links: &Links, drawn: &Items<'_>, items: impl Iterator<Item = usize>) -> usize {
+        let mut count = 0;
+        for link in items {
+            let way = packed::unpack_way(links.normals[link]);
+            let colour = links.colours.as_ref().map_or([0.0; 3], |all| packed::unpack_colour(all[link]));
+            for axis in 0..3 {
+                self.offsets[axis][count] = offset(drawn.node.origin[axis], links.cells[axis][link]);
+                self.normals[axis][count] = way[axis];
+                self.paint[axis][count] = colour[axis];
+            }
+            self.areas[count] = links.areas[link];
+            count += 1;
+        }
+        // Roots for all of them at once, as vectors.
+        let [x, y, z] = &mut self.normals;
+        for (((x, y), z), _) in x.iter_mut().zip(y).zip(z).zip(0..count) {
+            let inverse = 1.0 / (*x * *x + *y * *y + *z * *z).sqrt();
+            (*x, *y, *z) = (*x * inverse, *y * inverse, *z * inverse);
+        }
+        for ((radius, area), _) in self.radii.iter_mut().zip(&mut self.areas).zip(0..count) {
+            *radius = radius_of_area(*area);
+            *area *= drawn.stride as f32;
+        }
+        count
     }
 }
 
@@ -353,7 +391,7 @@ impl Projected {
     }
 
     #[inline(always)]
-    fn splat(&self, item: usize, [r, g, b]: [f32; 3]) -> Splat {
+    fn splat(&self, item: usize) -> Splat {
         let get = |value: Value| self.get(item, value);
         Splat {
             x: get(Value::X),
@@ -371,15 +409,9 @@ impl Projected {
             flat: get(Value::Flat) > 0.0,
             columns: [get(Value::Left) as u8, get(Value::Right) as u8],
             rows: [get(Value::Top) as u8, get(Value::Bottom) as u8],
-            values: [
-                get(Value::NormalX),
-                get(Value::NormalY),
-                get(Value::NormalZ),
-                r,
-                g,
-                b,
-                get(Value::Sharpness),
-            ],
+            sharpness: get(Value::Sharpness),
+            colour: [get(Value::Red), get(Value::Green), get(Value::Blue)],
+            normal: [get(Value::NormalX), get(Value::NormalY), get(Value::NormalZ)],
         }
     }
 }
@@ -387,7 +419,7 @@ impl Projected {
 /// The arithmetic of [`Projector::project`].
 struct Project<'a> {
     lanes: &'a mut Projector,
-    camera: &'a Camera,
+    scene: &'a Scene<'a>,
     shape: &'a Shape,
     map: &'a Map,
     count: usize,
@@ -396,24 +428,26 @@ struct Project<'a> {
 impl WithSimd for Project<'_> {
     type Output = ();
 
-    // A vector of neighbours in the cloud are neighbours in the picture: often none of them is in the tile.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { lanes: Projector { offsets, normals, radii, areas, out }, camera, shape, map, count } =
-            self;
-        let offsets = offsets.each_ref().map(|o| S::as_simd_f32s(o).0);
-        let normals = normals.each_ref().map(|n| S::as_simd_f32s(n).0);
-        let (radii, areas) = (S::as_simd_f32s(radii).0, S::as_simd_f32s(areas).0);
-        let vector = |all: &[S::f32s], i: usize| Vector::new(simd, all[i]);
+        let Self { lanes, scene, shape, map, count } = self;
+        let Projector { offsets, normals, radii, areas, paint, out } = lanes;
+        let vector = |all: &Lanes, i: usize| Vector::new(simd, S::as_simd_f32s(all).0[i]);
+        let vectors =
+            |all: &[Lanes; 3], i: usize| [vector(&all[0], i), vector(&all[1], i), vector(&all[2], i)];
         for i in 0..count.div_ceil(S::F32_LANES) {
-            let offset = [vector(offsets[0], i), vector(offsets[1], i), vector(offsets[2], i)];
-            let normal = [vector(normals[0], i), vector(normals[1], i), vector(normals[2], i)];
-            let placed = Placed::new(simd, camera, map, offset, normal);
-            let may_show = placed.may_show(simd, camera, map);
-            if simd.first_true_m32s(may_show) < S::F32_LANES {
-                project(simd, &placed, [vector(radii, i), vector(areas, i)], (camera, shape, map), out, i);
-            } else {
+            let placed = Placed::new(simd, &scene.camera, map, vectors(offsets, i), vectors(normals, i));
+            let may_show = placed.may_show(simd, &scene.camera, map);
+            // Neighbours in the cloud are neighbours in the picture: often none of a vector is in the tile.
+            if simd.first_true_m32s(may_show) == S::F32_LANES {
                 out.set(i, Value::Kept, Vector::all(simd, 0.0));
+                continue;
+            }
+            project(simd, &placed, [vector(radii, i), vector(areas, i)], (&scene.camera, shape, map), out, i);
+            let at = (placed.x + map.first[0], placed.y + map.first[1]);
+            let [red, green, blue] = scene.shader.lit(simd, vectors(paint, i), placed.normal, at);
+            for (value, shaded) in [(Value::Red, red), (Value::Green, green), (Value::Blue, blue)] {
+                out.set(i, value, shaded);
             }
         }
     }

@@ -70,6 +70,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) camera: Camera,
     pub(crate) shader: Shader,
     pub(crate) culling: bool,
+    /// Whether normals are asked for.
+    pub(crate) normals: bool,
     /// Which of the selected nodes any tile has drawn.
     pub(crate) shown: &'a [AtomicBool],
 }
@@ -103,11 +105,21 @@ impl Tile {
             band.clear(place.x / WIDTH);
             return;
         }
+        if scene.normals {
+            self.draw_layers::<true>(scene, place, touched);
+        } else {
+            self.draw_layers::<false>(scene, place, touched);
+        }
+        write(&self.pixels, &scene.shader, place, band);
+    }
+
+    /// From the splats of the first layer, which touch these pixels, to the colours of all, with normals if they are `WANTED`.
+    fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, place: &Place, mut touched: Touched) {
         self.pixels[..PITCH * place.height].fill(Pixels::EMPTY);
         self.behind.clear();
         let all = 0..self.splats.len() as u32;
-        kernel::add::<true>(&mut self.layer, &self.splats, all, &mut self.behind, 0.0);
-        let mut open = resolve::<true>(&mut self.layer, &mut self.pixels, &scene.shader, place, &touched);
+        kernel::add::<true, WANTED>(&mut self.layer, &self.splats, all, &mut self.behind, 0.0);
+        let mut open = resolve::<true, WANTED>(&mut self.layer, &mut self.pixels, place, &touched);
         for number in 1..MOST_LAYERS {
             if !open {
                 break;
@@ -117,16 +129,15 @@ impl Tile {
                 break;
             }
             let slack = if number + 1 == MOST_LAYERS { f32::INFINITY } else { 0.0 };
-            open = self.next_layer(scene, place, touched, slack);
+            open = self.next_layer::<WANTED>(place, touched, slack);
         }
-        write(&self.pixels, &scene.shader, place, band);
     }
 
     fn project(&mut self, scene: &Scene<'_>, place: &Place, selected: &Selected) {
         let node = &scene.cloud.nodes[selected.node as usize];
         scene.shown[selected.place as usize].store(true, Ordering::Relaxed);
         let items = Items::new(node, selected);
-        self.projector.project(scene.cloud, &items, &scene.camera, &Shape::BLENDED, place, &mut self.splats);
+        self.projector.project(scene, &items, &Shape::BLENDED, place, &mut self.splats);
     }
 
     /// Projects those of the hidden nodes that may be seen through pixels that are not done; what all discs that are left may
@@ -151,13 +162,13 @@ impl Tile {
         touched
     }
 
-    fn next_layer(&mut self, scene: &Scene<'_>, place: &Place, touched: Touched, slack: f32) -> bool {
+    fn next_layer<const WANTED: bool>(&mut self, place: &Place, touched: Touched, slack: f32) -> bool {
         self.layer.clear_near(&touched);
         kernel::nearest_of(&mut self.layer, &self.splats, &self.behind);
         let candidates = std::mem::take(&mut self.behind);
         let numbers = candidates.iter().copied();
-        kernel::add::<false>(&mut self.layer, &self.splats, numbers, &mut self.behind, slack);
-        resolve::<false>(&mut self.layer, &mut self.pixels, &scene.shader, place, &touched)
+        kernel::add::<false, WANTED>(&mut self.layer, &self.splats, numbers, &mut self.behind, slack);
+        resolve::<false, WANTED>(&mut self.layer, &mut self.pixels, place, &touched)
     }
 
     fn hides(&mut self, selected: &Selected, place: &Place) -> bool {

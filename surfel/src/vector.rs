@@ -49,6 +49,12 @@ impl<S: Simd> Vector<S> {
         Self { simd, lanes: simd.splat_f32s(value) }
     }
 
+    /// Other lanes of the same kind.
+    #[inline(always)]
+    pub(crate) fn with(self, lanes: S::f32s) -> Self {
+        Self { lanes, ..self }
+    }
+
     /// 1/x.
     #[inline(always)]
     pub(crate) fn inverse(self) -> Self {
@@ -63,6 +69,11 @@ impl<S: Simd> Vector<S> {
     #[inline(always)]
     pub(crate) fn min(self, other: Self) -> Self {
         Self { lanes: self.simd.min_f32s(self.lanes, other.lanes), ..self }
+    }
+
+    #[inline(always)]
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self { lanes: self.simd.max_f32s(self.lanes, other.lanes), ..self }
     }
 
     #[inline(always)]
@@ -84,6 +95,12 @@ impl<S: Simd> Vector<S> {
     #[inline(always)]
     pub(crate) fn if_set(self, mask: S::m32s, otherwise: f32) -> Self {
         Self { lanes: self.simd.select_f32s(mask, self.lanes, self.simd.splat_f32s(otherwise)), ..self }
+    }
+
+    /// This where `mask` is set, others elsewhere.
+    #[inline(always)]
+    pub(crate) fn or_where_unset(self, mask: S::m32s, others: S::f32s) -> Self {
+        Self { lanes: self.simd.select_f32s(mask, self.lanes, others), ..self }
     }
 }
 

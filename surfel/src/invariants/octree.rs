@@ -3,7 +3,7 @@
 use super::{OwnedPoints, check, cloud};
 use crate::cloud::{Cloud, Node};
 use crate::lattice::between;
-use crate::packed::unpack_direction;
+use crate::packed::unpack_way;
 use glam::Vec3;
 use std::ops::Range;
 
@@ -101,7 +101,7 @@ fn cone_holds(cloud: &Cloud, node: &Node, below: Range<usize>) -> Result<(), Str
     };
     below.into_iter().try_for_each(|point| holds("a point", cloud.points.normal(point)))?;
     let links = if node.is_leaf() { 0..0 } else { node.items.start as usize..node.items.end as usize };
-    links.into_iter().try_for_each(|link| holds("a link", unpack_direction(cloud.links.normals[link])))
+    links.into_iter().try_for_each(|link| holds("a link", unpack_way(cloud.links.normals[link]).normalize()))
 }
 
 fn links_are_sound(cloud: &Cloud, node: &Node, below: Range<usize>) -> Result<(), String> {
