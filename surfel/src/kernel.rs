@@ -53,10 +53,12 @@ impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<
             for column in s.blocks() {
                 for (i, ramp) in S::as_simd_f32s(&RAMP).0.iter().enumerate() {
                     let strip = Strip::new(simd, s, column, *ramp);
+                    let mut dy = s.first_dy();
                     for row in s.rows() {
                         let block = &mut self.depths[row * PITCH + column];
                         let floor = S::as_simd_f32s(&block.floor).0[i];
-                        let (rest, depth) = strip.at::<FIRST>(simd, s, row, floor);
+                        let (rest, depth) = strip.at::<FIRST>(simd, s, dy, floor);
+                        dy += 1.0;
                         let is_there = simd.greater_than_f32s(rest, none);
                         let near = &mut S::as_mut_simd_f32s(&mut block.near).0[i];
                         // A minimum, not a choice between the old and the new: that would become a masked store, which
@@ -85,10 +87,12 @@ impl WithSimd for SharpnessOfNearest<'_> {
             for column in s.blocks() {
                 for (i, ramp) in S::as_simd_f32s(&RAMP).0.iter().enumerate() {
                     let strip = Strip::new(simd, s, column, *ramp);
+                    let mut dy = s.first_dy();
                     for row in s.rows() {
                         let block = &self.layer.depths[row * PITCH + column];
                         let floor = S::as_simd_f32s(&block.floor).0[i];
-                        let (rest, depth) = strip.at::<true>(simd, s, row, floor);
+                        let (rest, depth) = strip.at::<true>(simd, s, dy, floor);
+                        dy += 1.0;
                         let near = S::as_simd_f32s(&block.near).0[i];
                         let is_there = simd.greater_than_f32s(rest, none);
                         let is_nearest = simd.and_m32s(is_there, simd.less_than_or_equal_f32s(depth, near));
@@ -126,11 +130,14 @@ impl<const FIRST: bool, const WANTED: bool, I: Iterator<Item = u32>> WithSimd fo
             for column in s.blocks() {
                 for (i, ramp) in S::as_simd_f32s(&RAMP).0.iter().enumerate() {
                     let strip = Strip::new(simd, s, column, *ramp);
+                    let mut dy = s.first_dy();
                     for row in s.rows() {
                         let block = &depths[row * PITCH + column];
                         let near = S::as_simd_f32s(&block.near).0[i];
                         let floor = S::as_simd_f32s(&block.floor).0[i];
-                        let (rest, depth) = strip.at::<FIRST>(simd, s, row, floor);
+                        let (rest, depth) = strip.at::<FIRST>(simd, s, dy, floor);
+                        dy += 1.0;
+                        let rest = simd.max_f32s(rest, none);
                         let belongs = simd.less_than_or_equal_f32s(depth, simd.add_f32s(near, thickness));
                         let shown = simd.select_f32s(belongs, rest, none);
                         hidden = simd.add_f32s(hidden, simd.sub_f32s(rest, shown));
@@ -198,19 +205,18 @@ impl<S: Simd> Strip<S> {
         }
     }
 
-    /// (1 − q/R)·h², or 0 where the kernel is not or lies before the floor; and the bent depth.
+    /// (1 − q/R)·h², not above 0 where the kernel is not or lies before the floor; and the bent depth.
     ///
     /// The factor h² spares a division: it is 1 at the centre and not far from it anywhere. Beyond the horizon of the
     /// disc's plane h is not above 0. Multiplied and added apart, not fused, so that all processors agree.
     #[inline(always)]
-    fn at<const FIRST: bool>(&self, simd: S, s: &Splat, row: usize, floor: S::f32s) -> (S::f32s, S::f32s) {
+    fn at<const FIRST: bool>(&self, simd: S, s: &Splat, dy: f32, floor: S::f32s) -> (S::f32s, S::f32s) {
         let none = simd.splat_f32s(0.0);
-        let dy = row as f32 + 0.5 - s.y;
         let h = simd.add_f32s(self.h, simd.splat_f32s(s.ky * dy));
         let h = simd.min_f32s(simd.max_f32s(h, none), simd.splat_f32s(LARGEST_H));
         let q = simd.add_f32s(simd.mul_f32s(self.qxy, simd.splat_f32s(dy)), simd.splat_f32s(s.yy * dy * dy));
         let q = simd.add_f32s(self.qx, q);
-        let rest = simd.max_f32s(simd.sub_f32s(simd.mul_f32s(h, h), q), none);
+        let rest = simd.sub_f32s(simd.mul_f32s(h, h), q);
         let depth = simd.add_f32s(self.depth, simd.splat_f32s(s.depth_y * dy));
         if FIRST {
             return (rest, depth);

@@ -108,6 +108,12 @@ impl Splat {
         usize::from(self.columns[0]) / layer::LANES..usize::from(self.columns[1]).div_ceil(layer::LANES)
     }
 
+    /// The way from the centre to those of the pixels of its first row.
+    #[inline(always)]
+    pub(crate) fn first_dy(&self) -> f32 {
+        f32::from(self.rows[0]) + 0.5 - self.y
+    }
+
     #[inline(always)]
     pub(crate) fn rows(&self) -> Range<usize> {
         usize::from(self.rows[0])..usize::from(self.rows[1])
@@ -298,7 +304,7 @@ impl Projector {
             arch.dispatch(Project { lanes: self, scene, shape, map: &map, count });
             // Written in place: to push what was made elsewhere copies it once more.
             let mut next = splats.len();
-            splats.resize(next + count, Splat::NONE);
+            splats.extend_from_slice(&[Splat::NONE; LANES][..count]);
             for i in 0..count {
                 if self.out.get(i, Value::Kept) > 0.0 {
                     splats[next] = self.out.splat(i);
@@ -338,10 +344,10 @@ impl Projector {
         let mut count = 0;
         for point in items {
             let colour = points.colours.as_ref().map_or([0.0; 3], |all| all[point]);
-            for axis in 0..3 {
+            for (axis, channel) in colour.into_iter().enumerate() {
                 self.offsets[axis][count] = offset(drawn.node.origin[axis], points.cells[axis][point]);
                 self.normals[axis][count] = points.normals[axis][point];
-                self.paint[axis][count] = colour[axis];
+                self.paint[axis][count] = channel;
             }
             self.areas[count] = points.areas[point] * drawn.stride as f32;
             self.radii[count] = points.radii[point];
@@ -356,10 +362,10 @@ impl Projector {
         for link in items {
             let way = packed::unpack_way(links.normals[link]);
             let colour = links.colours.as_ref().map_or([0.0; 3], |all| packed::unpack_colour(all[link]));
-            for axis in 0..3 {
+            for (axis, channel) in colour.into_iter().enumerate() {
                 self.offsets[axis][count] = offset(drawn.node.origin[axis], links.cells[axis][link]);
                 self.normals[axis][count] = way[axis];
-                self.paint[axis][count] = colour[axis];
+                self.paint[axis][count] = channel;
             }
             self.areas[count] = links.areas[link];
             count += 1;
