@@ -13,8 +13,8 @@ const BLURRED_START: f32 = 1.3;
 const BLURRED_SLOPE: f32 = 0.4;
 const BLURRED_MOST: f32 = 0.5;
 
-/// Between the levels of the tree, of blurred points only every second to fourth is drawn, for as many.
-const MOST_STRIDE: f32 = 4.0;
+/// Between the levels of the tree, of blurred points down to a fourth is drawn, for all.
+const MOST_THINNING: f32 = 4.0;
 
 /// A node to draw.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +27,8 @@ pub(crate) struct Selected {
     pub(crate) y: [u16; 2],
     /// How far from its centre any disc of it may touch pixels.
     pub(crate) margin: f32,
-    /// Every which item is drawn, for as many.
-    pub(crate) stride: u8,
+    /// How many of its items are drawn, for all.
+    pub(crate) drawn: u32,
     /// Nothing of it has a smaller bent depth.
     pub(crate) nearest: f32,
     /// Nor does anything belong to a surface farther before it than this.
@@ -65,13 +65,22 @@ pub(crate) fn select(
         }
         let thinning = (blurred_px / spacing_px).powi(2);
         // Not `clamp`, which keeps NaN: points that have no extent on the picture, and no blur.
-        let stride = if thinning > 1.0 { thinning.min(MOST_STRIDE) as u8 } else { 1 };
-        let drawn = node.items.len().div_ceil(stride.into());
+        let thinning = if thinning > 1.0 { thinning.min(MOST_THINNING) } else { 1.0 };
+        let drawn = (node.items.len() as f32 / thinning).ceil() as usize;
         counts.nodes += 1;
         counts.points += drawn;
         counts.links += if node.is_leaf() { 0 } else { drawn };
         let Seen { x, y, margin, nearest, thickness, .. } = seen;
-        selected.push(Selected { node: number, place: 0, x, y, margin, stride, nearest, thickness });
+        selected.push(Selected {
+            node: number,
+            place: 0,
+            x,
+            y,
+            margin,
+            drawn: drawn as u32,
+            nearest,
+            thickness,
+        });
     }
     selected.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.node.cmp(&b.node)));
     selected.iter_mut().zip(0..).for_each(|(s, place)| s.place = place);

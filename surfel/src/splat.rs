@@ -123,15 +123,26 @@ impl Splat {
 /// What is drawn of a node.
 pub(crate) struct Items<'a> {
     pub(crate) node: &'a Node,
-    /// Every which item, for as many.
-    pub(crate) stride: usize,
+    /// How many of its items, evenly among all, for all.
+    pub(crate) drawn: usize,
     /// No disc touches pixels farther from its centre.
     pub(crate) margin: f32,
 }
 
 impl<'a> Items<'a> {
     pub(crate) fn new(node: &'a Node, selected: &Selected) -> Self {
-        Self { node, stride: selected.stride.into(), margin: selected.margin }
+        Self { node, drawn: selected.drawn as usize, margin: selected.margin }
+    }
+
+    /// The item that is drawn after so many others.
+    #[inline(always)]
+    fn item(&self, rank: usize) -> usize {
+        self.node.items.start as usize + rank * self.node.items.len() / self.drawn
+    }
+
+    /// How many items one stands for.
+    fn share(&self) -> f32 {
+        self.node.items.len() as f32 / self.drawn as f32
     }
 }
 
@@ -291,16 +302,17 @@ impl Projector {
     ) {
         let arch = Arch::new();
         let map = Map::new(&scene.camera, drawn, tile, scene.cloud.two_sided);
-        let end = drawn.node.items.end as usize;
-        for start in (drawn.node.items.start as usize..end).step_by(LANES * drawn.stride) {
-            let items = (start..end).step_by(drawn.stride).take(LANES);
-            let count = if !drawn.node.is_leaf() {
-                self.take_links(&scene.cloud.links, drawn, items)
-            } else if drawn.stride > 1 {
-                self.take_points(scene.cloud, drawn, items)
+        let first = drawn.node.items.start as usize;
+        for start in (0..drawn.drawn).step_by(LANES) {
+            let ranks = start..(start + LANES).min(drawn.drawn);
+            let count = ranks.len();
+            if !drawn.node.is_leaf() {
+                self.take_links(&scene.cloud.links, drawn, ranks);
+            } else if drawn.drawn < drawn.node.items.len() {
+                self.take_points(scene.cloud, drawn, ranks);
             } else {
-                self.take_run(scene.cloud, drawn.node, start..(start + LANES).min(end))
-            };
+                self.take_run(scene.cloud, drawn.node, first + ranks.start..first + ranks.end);
+            }
             arch.dispatch(Project { lanes: self, scene, shape, map: &map, count });
             // Written in place: to push what was made elsewhere copies it once more.
             let mut next = splats.len();
@@ -315,8 +327,8 @@ impl Projector {
         }
     }
 
-    /// Takes points that follow one another; how many.
-    fn take_run(&mut self, cloud: &Cloud, node: &Node, items: Range<usize>) -> usize {
+    /// Takes points that follow one another.
+    fn take_run(&mut self, cloud: &Cloud, node: &Node, items: Range<usize>) {
         let points = &cloud.points;
         let count = items.len();
         for axis in 0..3 {
@@ -335,40 +347,35 @@ impl Projector {
                 [*red, *green, *blue] = *colour;
             }
         }
-        count
     }
 
-    /// Takes points one by one; how many.
-    fn take_points(&mut self, cloud: &Cloud, drawn: &Items<'_>, items: impl Iterator<Item = usize>) -> usize {
+    /// Takes points one by one.
+    fn take_points(&mut self, cloud: &Cloud, drawn: &Items<'_>, ranks: Range<usize>) {
         let points = &cloud.points;
-        let mut count = 0;
-        for point in items {
+        for (lane, point) in ranks.map(|rank| drawn.item(rank)).enumerate() {
             let colour = points.colours.as_ref().map_or([0.0; 3], |all| all[point]);
             for (axis, channel) in colour.into_iter().enumerate() {
-                self.offsets[axis][count] = offset(drawn.node.origin[axis], points.cells[axis][point]);
-                self.normals[axis][count] = points.normals[axis][point];
-                self.paint[axis][count] = channel;
+                self.offsets[axis][lane] = offset(drawn.node.origin[axis], points.cells[axis][point]);
+                self.normals[axis][lane] = points.normals[axis][point];
+                self.paint[axis][lane] = channel;
             }
-            self.areas[count] = points.areas[point] * drawn.stride as f32;
-            self.radii[count] = points.radii[point];
-            count += 1;
+            self.areas[lane] = points.areas[point] * drawn.share();
+            self.radii[lane] = points.radii[point];
         }
-        count
     }
 
-    /// Takes links one by one; how many.
-    fn take_links(&mut self, links: &Links, drawn: &Items<'_>, items: impl Iterator<Item = usize>) -> usize {
-        let mut count = 0;
-        for link in items {
+    /// Takes links one by one.
+    fn take_links(&mut self, links: &Links, drawn: &Items<'_>, ranks: Range<usize>) {
+        let count = ranks.len();
+        for (lane, link) in ranks.map(|rank| drawn.item(rank)).enumerate() {
             let way = packed::unpack_way(links.normals[link]);
             let colour = links.colours.as_ref().map_or([0.0; 3], |all| packed::unpack_colour(all[link]));
             for (axis, channel) in colour.into_iter().enumerate() {
-                self.offsets[axis][count] = offset(drawn.node.origin[axis], links.cells[axis][link]);
-                self.normals[axis][count] = way[axis];
-                self.paint[axis][count] = channel;
+                self.offsets[axis][lane] = drawn.node.offset(axis, links.places[axis][link]);
+                self.normals[axis][lane] = way[axis];
+                self.paint[axis][lane] = channel;
             }
-            self.areas[count] = links.areas[link];
-            count += 1;
+            self.areas[lane] = links.areas[link];
         }
         // Roots for all of them at once, as vectors.
         let [x, y, z] = &mut self.normals;
@@ -378,9 +385,8 @@ impl Projector {
         }
         for ((radius, area), _) in self.radii.iter_mut().zip(&mut self.areas).zip(0..count) {
             *radius = radius_of_area(*area);
-            *area *= drawn.stride as f32;
+            *area *= drawn.share();
         }
-        count
     }
 }
 
