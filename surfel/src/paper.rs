@@ -13,8 +13,9 @@ use crate::camera::Camera;
 use crate::frame::Band;
 use crate::kernel;
 use crate::layer::{LANES, Layer, PITCH, Touched};
+use crate::project::{Items, Projector};
 use crate::select::Selected;
-use crate::splat::{Items, Projector, Shape, Splat};
+use crate::splat::{Shape, Splat};
 use crate::tile::{self, Place, Scene};
 use glam::Vec3;
 

@@ -10,16 +10,12 @@
 //! conic of its perspective image, evaluated about the image's own centre, and 1/h scales a depth that is affine in d.
 
 use crate::camera::Camera;
-use crate::cloud::{Cloud, Node, radius_of_area};
-use crate::lattice::offset;
 use crate::layer;
-use crate::links::Links;
-use crate::packed;
-use crate::select::Selected;
-use crate::tile::{self, Scene};
+use crate::project::Items;
+use crate::tile;
 use crate::vector::{Real, Vector};
 use glam::DVec3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 use std::ops::Range;
 
 /// Standard deviation of a disc's kernel over its radius. Found by experiment: narrower ones leave spots between
@@ -81,7 +77,7 @@ pub(crate) struct Splat {
 }
 
 impl Splat {
-    const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         x: 0.0,
         y: 0.0,
         xx: 0.0,
@@ -117,32 +113,6 @@ impl Splat {
     #[inline(always)]
     pub(crate) fn rows(&self) -> Range<usize> {
         usize::from(self.rows[0])..usize::from(self.rows[1])
-    }
-}
-
-/// What is drawn of a node.
-pub(crate) struct Items<'a> {
-    pub(crate) node: &'a Node,
-    /// How many of its items, evenly among all, for all.
-    pub(crate) drawn: usize,
-    /// No disc touches pixels farther from its centre.
-    pub(crate) margin: f32,
-}
-
-impl<'a> Items<'a> {
-    pub(crate) fn new(node: &'a Node, selected: &Selected) -> Self {
-        Self { node, drawn: selected.drawn as usize, margin: selected.margin }
-    }
-
-    /// The item that is drawn after so many others.
-    #[inline(always)]
-    fn item(&self, rank: usize) -> usize {
-        self.node.items.start as usize + rank * self.node.items.len() / self.drawn
-    }
-
-    /// How many items one stands for.
-    fn share(&self) -> f32 {
-        self.node.items.len() as f32 / self.drawn as f32
     }
 }
 
@@ -190,24 +160,13 @@ impl Shape {
 }
 
 /// Items of a node that are projected together.
-const LANES: usize = 64;
+pub(crate) const LANES: usize = 64;
 
-type Lanes = [f32; LANES];
-
-/// Items of a node in its own frame, and on the picture.
-pub(crate) struct Projector {
-    offsets: [Lanes; 3],
-    normals: [Lanes; 3],
-    radii: Lanes,
-    areas: Lanes,
-    /// Colours without light, if points have any.
-    paint: [Lanes; 3],
-    out: Projected,
-}
+pub(crate) type Lanes = [f32; LANES];
 
 /// What [`Projected`] holds of each item.
 #[derive(Clone, Copy)]
-enum Value {
+pub(crate) enum Value {
     X,
     Y,
     Xx,
@@ -235,175 +194,24 @@ enum Value {
     Kept,
 }
 
-struct Projected([Lanes; Value::Kept as usize + 1]);
-
-/// The map from a node's frame to a tile.
-#[derive(Clone, Copy)]
-struct Map {
-    /// Rows x·w, y·w and relative depth, with w the depth or 1.
-    rows: [f32; 12],
-    /// The tile's first pixel, and the principal point in the tile.
-    first: [f32; 2],
-    centre: [f32; 2],
-    /// Last row and column, not included.
-    size: [f32; 2],
-    two_sided: bool,
-    margin: f32,
-}
-
-impl Map {
-    fn new(camera: &Camera, drawn: &Items<'_>, tile: &tile::Place, two_sided: bool) -> Self {
-        let Items { node, margin, .. } = *drawn;
-        let f = f64::from(camera.focal);
-        let v = &camera.view;
-        let origin = camera.local(node);
-        let [cx, cy] = [camera.centre[0] - tile.x as f64, camera.centre[1] - tile.y as f64];
-        let (x, y) = if camera.is_perspective {
-            (
-                (f * v.right + cx * v.forward, f * origin.x + cx * origin.z),
-                (f * v.down + cy * v.forward, f * origin.y + cy * origin.z),
-            )
-        } else {
-            ((f * v.right, f * origin.x + cx), (f * v.down, f * origin.y + cy))
-        };
-        let depth = (v.forward, origin.z - camera.reference);
-        let mut rows = [0.0; 12];
-        for (row, (n, offset)) in rows.chunks_exact_mut(4).zip::<[(DVec3, f64); 3]>([x, y, depth]) {
-            row.copy_from_slice(&[n.x as f32, n.y as f32, n.z as f32, offset as f32]);
-        }
-        let size = [tile.width as f32, tile.height as f32];
-        let first = [tile.x as f32, tile.y as f32];
-        Self { rows, first, centre: [cx as f32, cy as f32], size, two_sided, margin }
-    }
-}
-
-impl Projector {
-    pub(crate) fn new() -> Box<Self> {
-        let zero = [0.0; LANES];
-        let out = Projected([zero; Value::Kept as usize + 1]);
-        Box::new(Self {
-            offsets: [zero; 3],
-            normals: [zero; 3],
-            radii: zero,
-            areas: zero,
-            paint: [zero; 3],
-            out,
-        })
-    }
-
-    /// Appends what `drawn` puts into a tile.
-    pub(crate) fn project(
-        &mut self,
-        scene: &Scene<'_>,
-        drawn: &Items<'_>,
-        shape: &Shape,
-        tile: &tile::Place,
-        splats: &mut Vec<Splat>,
-    ) {
-        let arch = Arch::new();
-        let map = Map::new(&scene.camera, drawn, tile, scene.cloud.two_sided);
-        let first = drawn.node.items.start as usize;
-        for start in (0..drawn.drawn).step_by(LANES) {
-            let ranks = start..(start + LANES).min(drawn.drawn);
-            let count = ranks.len();
-            if !drawn.node.is_leaf() {
-                self.take_links(&scene.cloud.links, drawn, ranks);
-            } else if drawn.drawn < drawn.node.items.len() {
-                self.take_points(scene.cloud, drawn, ranks);
-            } else {
-                self.take_run(scene.cloud, drawn.node, first + ranks.start..first + ranks.end);
-            }
-            arch.dispatch(Project { lanes: self, scene, shape, map: &map, count });
-            // Written in place: to push what was made elsewhere copies it once more.
-            let mut next = splats.len();
-            splats.extend_from_slice(&[Splat::NONE; LANES][..count]);
-            for i in 0..count {
-                if self.out.get(i, Value::Kept) > 0.0 {
-                    splats[next] = self.out.splat(i);
-                    next += 1;
-                }
-            }
-            splats.truncate(next);
-        }
-    }
-
-    /// Takes points that follow one another.
-    fn take_run(&mut self, cloud: &Cloud, node: &Node, items: Range<usize>) {
-        let points = &cloud.points;
-        let count = items.len();
-        for axis in 0..3 {
-            let cells = &points.cells[axis][items.clone()];
-            for (to, &cell) in self.offsets[axis].iter_mut().zip(cells) {
-                *to = offset(node.origin[axis], cell);
-            }
-            self.normals[axis][..count].copy_from_slice(&points.normals[axis][items.clone()]);
-        }
-        self.radii[..count].copy_from_slice(&points.radii[items.clone()]);
-        self.areas[..count].copy_from_slice(&points.areas[items.clone()]);
-        if let Some(colours) = &points.colours {
-            let [red, green, blue] = &mut self.paint;
-            let paint = red.iter_mut().zip(green).zip(blue);
-            for (((red, green), blue), colour) in paint.zip(&colours[items]) {
-                [*red, *green, *blue] = *colour;
-            }
-        }
-    }
-
-    /// Takes points one by one.
-    fn take_points(&mut self, cloud: &Cloud, drawn: &Items<'_>, ranks: Range<usize>) {
-        let points = &cloud.points;
-        for (lane, point) in ranks.map(|rank| drawn.item(rank)).enumerate() {
-            let colour = points.colours.as_ref().map_or([0.0; 3], |all| all[point]);
-            for (axis, channel) in colour.into_iter().enumerate() {
-                self.offsets[axis][lane] = offset(drawn.node.origin[axis], points.cells[axis][point]);
-                self.normals[axis][lane] = points.normals[axis][point];
-                self.paint[axis][lane] = channel;
-            }
-            self.areas[lane] = points.areas[point] * drawn.share();
-            self.radii[lane] = points.radii[point];
-        }
-    }
-
-    /// Takes links one by one.
-    fn take_links(&mut self, links: &Links, drawn: &Items<'_>, ranks: Range<usize>) {
-        let count = ranks.len();
-        for (lane, link) in ranks.map(|rank| drawn.item(rank)).enumerate() {
-            let way = packed::unpack_way(links.normals[link]);
-            let colour = links.colours.as_ref().map_or([0.0; 3], |all| packed::unpack_colour(all[link]));
-            for (axis, channel) in colour.into_iter().enumerate() {
-                self.offsets[axis][lane] = drawn.node.offset(axis, links.places[axis][link]);
-                self.normals[axis][lane] = way[axis];
-                self.paint[axis][lane] = channel;
-            }
-            self.areas[lane] = links.areas[link];
-        }
-        // Roots for all of them at once, as vectors.
-        let [x, y, z] = &mut self.normals;
-        for (((x, y), z), _) in x.iter_mut().zip(y).zip(z).zip(0..count) {
-            let inverse = 1.0 / (*x * *x + *y * *y + *z * *z).sqrt();
-            (*x, *y, *z) = (*x * inverse, *y * inverse, *z * inverse);
-        }
-        for ((radius, area), _) in self.radii.iter_mut().zip(&mut self.areas).zip(0..count) {
-            *radius = radius_of_area(*area);
-            *area *= drawn.share();
-        }
-    }
-}
+pub(crate) struct Projected([Lanes; Value::Kept as usize + 1]);
 
 impl Projected {
+    pub(crate) const NOTHING: Self = Self([[0.0; LANES]; Value::Kept as usize + 1]);
+
     #[inline(always)]
-    fn get(&self, item: usize, value: Value) -> f32 {
+    pub(crate) fn get(&self, item: usize, value: Value) -> f32 {
         self.0[value as usize][item]
     }
 
     /// Sets a vector of items.
     #[inline(always)]
-    fn set<S: Simd>(&mut self, place: usize, value: Value, vector: Vector<S>) {
+    pub(crate) fn set<S: Simd>(&mut self, place: usize, value: Value, vector: Vector<S>) {
         S::as_mut_simd_f32s(&mut self.0[value as usize]).0[place] = vector.lanes;
     }
 
     #[inline(always)]
-    fn splat(&self, item: usize) -> Splat {
+    pub(crate) fn splat(&self, item: usize) -> Splat {
         let get = |value: Value| self.get(item, value);
         Splat {
             x: get(Value::X),
@@ -428,54 +236,57 @@ impl Projected {
     }
 }
 
-/// The arithmetic of [`Projector::project`].
-struct Project<'a> {
-    lanes: &'a mut Projector,
-    scene: &'a Scene<'a>,
-    shape: &'a Shape,
-    map: &'a Map,
-    count: usize,
+/// The map from a node's frame to a tile.
+#[derive(Clone, Copy)]
+pub(crate) struct Map {
+    /// Rows x·w, y·w and relative depth, with w the depth or 1.
+    rows: [f32; 12],
+    /// The tile's first pixel, and the principal point in the tile.
+    pub(crate) first: [f32; 2],
+    centre: [f32; 2],
+    /// Last row and column, not included.
+    size: [f32; 2],
+    two_sided: bool,
+    margin: f32,
 }
 
-impl WithSimd for Project<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { lanes, scene, shape, map, count } = self;
-        let Projector { offsets, normals, radii, areas, paint, out } = lanes;
-        let vector = |all: &Lanes, i: usize| Vector::new(simd, S::as_simd_f32s(all).0[i]);
-        let vectors =
-            |all: &[Lanes; 3], i: usize| [vector(&all[0], i), vector(&all[1], i), vector(&all[2], i)];
-        for i in 0..count.div_ceil(S::F32_LANES) {
-            let placed = Placed::new(simd, &scene.camera, map, vectors(offsets, i), vectors(normals, i));
-            let may_show = placed.may_show(simd, &scene.camera, map);
-            // Neighbours in the cloud are neighbours in the picture: often none of a vector is in the tile.
-            if simd.first_true_m32s(may_show) == S::F32_LANES {
-                out.set(i, Value::Kept, Vector::all(simd, 0.0));
-                continue;
-            }
-            project(simd, &placed, [vector(radii, i), vector(areas, i)], (&scene.camera, shape, map), out, i);
-            let at = (placed.x + map.first[0], placed.y + map.first[1]);
-            let [red, green, blue] = scene.shader.lit(simd, vectors(paint, i), placed.normal, at);
-            for (value, shaded) in [(Value::Red, red), (Value::Green, green), (Value::Blue, blue)] {
-                out.set(i, value, shaded);
-            }
+impl Map {
+    pub(crate) fn new(camera: &Camera, drawn: &Items<'_>, tile: &tile::Place, two_sided: bool) -> Self {
+        let Items { node, margin, .. } = *drawn;
+        let f = f64::from(camera.focal);
+        let v = &camera.view;
+        let origin = camera.local(node);
+        let [cx, cy] = [camera.centre[0] - tile.x as f64, camera.centre[1] - tile.y as f64];
+        let (x, y) = if camera.is_perspective {
+            (
+                (f * v.right + cx * v.forward, f * origin.x + cx * origin.z),
+                (f * v.down + cy * v.forward, f * origin.y + cy * origin.z),
+            )
+        } else {
+            ((f * v.right, f * origin.x + cx), (f * v.down, f * origin.y + cy))
+        };
+        let depth = (v.forward, origin.z - camera.reference);
+        let mut rows = [0.0; 12];
+        for (row, (n, offset)) in rows.chunks_exact_mut(4).zip::<[(DVec3, f64); 3]>([x, y, depth]) {
+            row.copy_from_slice(&[n.x as f32, n.y as f32, n.z as f32, offset as f32]);
         }
+        let size = [tile.width as f32, tile.height as f32];
+        let first = [tile.x as f32, tile.y as f32];
+        Self { rows, first, centre: [cx as f32, cy as f32], size, two_sided, margin }
     }
 }
 
 /// Where centres are on the picture, and which way discs face.
-struct Placed<S: Simd> {
-    x: Vector<S>,
-    y: Vector<S>,
+pub(crate) struct Placed<S: Simd> {
+    pub(crate) x: Vector<S>,
+    pub(crate) y: Vector<S>,
     depth: Vector<S>,
     /// 1/distance from the eye along the view axis, and pixels per unit there.
     inverse: Vector<S>,
     scale: Vector<S>,
     /// The way from the eye, for one along the view axis.
     way: [Vector<S>; 2],
-    normal: [Vector<S>; 3],
+    pub(crate) normal: [Vector<S>; 3],
     /// Below 0 towards the eye.
     facing: Vector<S>,
 }
@@ -483,7 +294,13 @@ struct Placed<S: Simd> {
 impl<S: Simd> Placed<S> {
     /// Steps: 1 place and depth; 2 normal, seen from the eye.
     #[inline(always)]
-    fn new(simd: S, camera: &Camera, map: &Map, offset: [Vector<S>; 3], normal: [Vector<S>; 3]) -> Self {
+    pub(crate) fn new(
+        simd: S,
+        camera: &Camera,
+        map: &Map,
+        offset: [Vector<S>; 3],
+        normal: [Vector<S>; 3],
+    ) -> Self {
         // 1
         let rows = map.rows;
         let depth = row(offset, [rows[8], rows[9], rows[10]]) + rows[11];
@@ -509,7 +326,7 @@ impl<S: Simd> Placed<S> {
 
     /// Which discs face the eye and may have parts in the tile.
     #[inline(always)]
-    fn may_show(&self, simd: S, camera: &Camera, map: &Map) -> S::m32s {
+    pub(crate) fn may_show(&self, simd: S, camera: &Camera, map: &Map) -> S::m32s {
         let right =
             simd.and_m32s(self.x.exceeds(-map.margin), (-self.x).exceeds(-(map.size[0] + map.margin)));
         let below =
@@ -532,7 +349,7 @@ fn along<S: Simd>([kx, ky]: [Vector<S>; 2], v: [Vector<S>; 3]) -> Vector<S> {
 
 /// Steps, on: 3 covariance; 4 plane; 5 kernel; 6 the pixels that it touches.
 #[inline(always)]
-fn project<S: Simd>(
+pub(crate) fn project<S: Simd>(
     simd: S,
     placed: &Placed<S>,
     [disc_radius, area]: [Vector<S>; 2],

@@ -9,10 +9,11 @@ use crate::cloud::Cloud;
 use crate::frame::Band;
 use crate::kernel;
 use crate::layer::{LANES, Layer, PITCH, Pixels, Touched};
+use crate::project::{Items, Projector};
 use crate::resolve::{resolve, write};
 use crate::select::Selected;
 use crate::shade::Shader;
-use crate::splat::{Items, Projector, Shape, Splat};
+use crate::splat::{Shape, Splat};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 

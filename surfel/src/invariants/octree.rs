@@ -11,7 +11,7 @@ use std::ops::Range;
 const AREA_ROUNDING: f64 = 1e-3;
 
 /// Bytes per point that octree, links and areas of a surface take at most, for clouds of 10,000 points and more: 4 for the
-/// area, and for nodes and links 3 (a plane) to 7 (a thin sheet with two sides and colours).
+/// area, and for nodes and links 3 (a sphere) to 10 (a thin sheet with two sides and colours).
 pub const MOST_OVERHEAD: f64 = 16.0;
 
 /// Any points become a sound octree, or are refused.
