@@ -124,7 +124,7 @@ impl Camera {
     #[inline(always)]
     pub(crate) fn bending<R: Real>(&self, inverse: R) -> R {
         let ratio = inverse * self.reference as f32;
-        if self.is_perspective { ratio * ratio } else { ratio * 0.0 + 1.0 }
+        if self.is_perspective { ratio * ratio } else { ratio.like(1.0) }
     }
 
     /// How far a disc's plane is followed from its centre, units of depth.

@@ -13,12 +13,19 @@ pub(crate) trait Real:
     + Mul<Output = Self>
     + Mul<f32, Output = Self>
 {
+    /// A constant of the same kind.
+    fn like(self, value: f32) -> Self;
     fn abs(self) -> Self;
     /// The smaller of this and a constant.
     fn at_most(self, limit: f32) -> Self;
 }
 
 impl Real for f32 {
+    #[inline(always)]
+    fn like(self, value: f32) -> Self {
+        value
+    }
+
     #[inline(always)]
     fn abs(self) -> Self {
         Self::abs(self)
@@ -105,6 +112,11 @@ impl<S: Simd> Vector<S> {
 }
 
 impl<S: Simd> Real for Vector<S> {
+    #[inline(always)]
+    fn like(self, value: f32) -> Self {
+        Self::all(self.simd, value)
+    }
+
     #[inline(always)]
     fn abs(self) -> Self {
         Self { lanes: self.simd.abs_f32s(self.lanes), ..self }
