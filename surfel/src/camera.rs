@@ -3,6 +3,7 @@
 use crate::cloud::Node;
 use crate::focus::Focus;
 use crate::lattice::Lattice;
+use crate::vector::Real;
 use crate::view::View;
 use glam::{DVec3, Vec3};
 
@@ -78,8 +79,8 @@ impl Camera {
 
     /// Radius of the blur at a relative depth, units.
     #[inline(always)]
-    pub(crate) fn blur_radius(&self, depth: f32) -> f32 {
-        self.blur * (depth - self.focus).abs()
+    pub(crate) fn blur_radius<R: Real>(&self, depth: R) -> R {
+        (depth - self.focus).abs() * self.blur
     }
 
     /// The depth that is affine over the picture on planes: d·z₀/z for a perspective camera, d = z − z₀ from the reference z₀.
@@ -93,12 +94,14 @@ impl Camera {
     }
 
     /// The relative depth again.
+    #[inline(always)]
     fn unbent(&self, bent: f32) -> f64 {
         let bent = f64::from(bent);
         if self.is_perspective { bent / (1.0 - bent / self.reference).max(0.0) } else { bent }
     }
 
     /// Distance along the view axis in the world.
+    #[inline(always)]
     pub(crate) fn world_depth(&self, bent: f32) -> f32 {
         // Planes of discs beside the eye reach behind it.
         ((self.unbent(bent) + self.reference).max(0.0) * self.lattice.side) as f32
@@ -119,21 +122,21 @@ impl Camera {
 
     /// Bent depth per depth.
     #[inline(always)]
-    pub(crate) fn bending(&self, inverse: f32) -> f32 {
-        let ratio = self.reference as f32 * inverse;
-        if self.is_perspective { ratio * ratio } else { 1.0 }
+    pub(crate) fn bending<R: Real>(&self, inverse: R) -> R {
+        let ratio = inverse * self.reference as f32;
+        if self.is_perspective { ratio * ratio } else { ratio.like(1.0) }
     }
 
     /// How far a disc's plane is followed from its centre, units of depth.
     #[inline(always)]
-    pub(crate) fn plane_reach(&self, deviation: f32, blur_radius: f32) -> f32 {
-        REACH * deviation + BLURRED_PLANE * blur_radius
+    pub(crate) fn plane_reach<R: Real>(&self, deviation: R, blur_radius: R) -> R {
+        deviation * REACH + blur_radius * BLURRED_PLANE
     }
 
     /// Depth within which discs belong to one surface, units. `pixel` is the side of a pixel there.
     #[inline(always)]
-    pub(crate) fn thickness(&self, radius: f32, slope: f32, pixel: f32, blur_radius: f32) -> f32 {
-        let slope = slope.min(STEEPEST);
-        THICKNESS * radius + slope * (SLANTED_THICKNESS * pixel + BLURRED_THICKNESS * blur_radius)
+    pub(crate) fn thickness<R: Real>(&self, radius: R, slope: R, pixel: R, blur_radius: R) -> R {
+        let slanted = pixel * SLANTED_THICKNESS + blur_radius * BLURRED_THICKNESS;
+        radius * THICKNESS + slope.at_most(STEEPEST) * slanted
     }
 }

@@ -1,7 +1,7 @@
 //! A cloud, made ready for drawing.
 
 use crate::error::SurfelError;
-use crate::lattice::{Lattice, between, morton};
+use crate::lattice::{Lattice, between, morton, offset};
 use crate::links::{self, Link, Links};
 use crate::neighbours::Places;
 use crate::octree::{self, Cube};
@@ -13,6 +13,9 @@ use std::ops::Range;
 
 /// Radii and areas are at least this many units: 2⁻³³, half a cell of the lattice.
 const SMALLEST: f32 = 1.164_153_2e-10;
+
+/// Steps of a packed coordinate on either side of 0.
+const STEPS: f32 = 32767.0;
 
 /// What points are, in Morton order.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,6 +75,17 @@ impl Node {
     pub(crate) fn is_leaf(&self) -> bool {
         self.children.is_empty()
     }
+
+    /// A coordinate of a cell of its box in steps of half a side over [`STEPS`], from the middle.
+    pub(crate) fn place(&self, axis: usize, cell: u32) -> i16 {
+        (offset(self.origin[axis], cell) / self.half[axis] * STEPS).round() as i16
+    }
+
+    /// That coordinate again, units from the middle; off by 1/65534 of half a side at most.
+    #[inline(always)]
+    pub(crate) fn offset(&self, axis: usize, place: i16) -> f32 {
+        f32::from(place) * (self.half[axis] * (1.0 / STEPS))
+    }
 }
 
 /// A cloud of surfels in an octree: points at the leaves, links to them above.
@@ -109,7 +123,7 @@ impl Cloud {
         let links = links::make(&cubes, &generations, &attributes);
         let two_sided = points.normals.is_none();
         let nodes = nodes(&cubes, &generations, &links, &attributes, two_sided);
-        let links = Links::pack(&links, attributes.colours.is_some());
+        let links = Links::pack(&links, &nodes, &attributes);
         Ok(Self { lattice, points: attributes, nodes, links, two_sided })
     }
 

@@ -39,7 +39,7 @@
 //! * [`Cloud`]: an octree whose leaves hold the points and whose inner nodes hold links to a few of them, each with the mean area,
 //!   normal and colour of what it stands for.
 //! * [`Renderer`] takes each part of the cloud from the coarsest level on which points are a pixel apart, or, out of focus, a part of the
-//!   blur. Discs become ellipses with exact perspective; in each pixel those of the nearest surface are averaged, shaded once, and laid over
+//!   blur. Discs become ellipses with exact perspective and are lit; in each pixel those of the nearest surface are averaged and laid over
 //!   what is behind.
 //! * [`Focus`]: the paper's parameter d (\[3\], §3), or a thin lens, of which d = aperture/focus is the same.
 //! * [`Procedure::Paper`]: what the paper does (\[3\]), for comparison.
@@ -73,6 +73,7 @@ mod frame;
 pub mod invariants;
 mod kernel;
 mod lattice;
+mod layer;
 mod ldi;
 mod links;
 mod mesh;
@@ -85,14 +86,17 @@ mod paper;
 mod parallel;
 mod point;
 mod points;
+mod project;
 mod radius;
 mod render;
+mod resolve;
 mod rows;
 mod sample;
 mod select;
 mod shade;
 mod splat;
 mod tile;
+mod vector;
 mod view;
 
 pub use cloud::Cloud;

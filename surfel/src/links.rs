@@ -3,7 +3,7 @@
 //! A link names the point that it is drawn at; area, normal and colour are the means of what it stands for, as the
 //! prefiltered textures of \[1\] are, so that a coarse level is not a noisy one.
 
-use crate::cloud::Attributes;
+use crate::cloud::{Attributes, Node};
 use crate::lattice::{CODE_BITS, between, morton};
 use crate::octree::Cube;
 use crate::packed;
@@ -24,20 +24,33 @@ pub(crate) struct Link {
     pub(crate) colour: Vec3,
 }
 
-/// The links of all cubes, packed: 12 bytes each, 16 with colour.
+/// The links of all cubes, packed: 18 bytes each, 22 with colour.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Links {
     pub(crate) points: Vec<u32>,
+    /// Where these points are in the boxes of their nodes, see [`Node::offset`]: to look them up would wait for memory at
+    /// every link.
+    pub(crate) places: [Vec<i16>; 3],
     pub(crate) areas: Vec<f32>,
     pub(crate) normals: Vec<u32>,
     pub(crate) colours: Option<Vec<u32>>,
 }
 
 impl Links {
-    pub(crate) fn pack(links: &[Vec<Link>], coloured: bool) -> Self {
+    /// `nodes` are those of the cubes.
+    pub(crate) fn pack(links: &[Vec<Link>], nodes: &[Node], points: &Attributes) -> Self {
         let all = || links.iter().flatten();
+        let coloured = points.colours.is_some();
+        let with_nodes =
+            || nodes.iter().zip(links).flat_map(|(node, list)| list.iter().map(move |l| (node, l)));
+        let place = |axis: usize| {
+            let packed =
+                |(node, link): (&Node, &Link)| node.place(axis, points.cells[axis][link.point as usize]);
+            with_nodes().map(packed).collect()
+        };
         Self {
             points: all().map(|l| l.point).collect(),
+            places: [0, 1, 2].map(place),
             areas: all().map(|l| l.area).collect(),
             normals: all().map(|l| packed::pack_direction(l.normal)).collect(),
             colours: coloured.then(|| all().map(|l| packed::pack_colour(l.colour.to_array())).collect()),
@@ -47,6 +60,7 @@ impl Links {
     /// Memory of all links.
     pub(crate) fn bytes(&self) -> usize {
         4 * (self.points.len() + self.areas.len() + self.normals.len())
+            + 2 * 3 * self.points.len()
             + 4 * self.colours.as_ref().map_or(0, Vec::len)
     }
 }

@@ -12,9 +12,11 @@
 use crate::camera::Camera;
 use crate::frame::Band;
 use crate::kernel;
+use crate::layer::{LANES, Layer, PITCH, Touched};
+use crate::project::{Items, Projector};
 use crate::select::Selected;
-use crate::splat::{Items, Projector, Shape, Splat};
-use crate::tile::{self, Layer, PITCH, Place, Scene};
+use crate::splat::{Shape, Splat};
+use crate::tile::{self, Place, Scene};
 use glam::Vec3;
 
 /// The filter's radius is this many of its standard deviations.
@@ -40,6 +42,10 @@ struct Link {
 
 impl Link {
     const NONE: Self = Self { depth: f32::INFINITY, radius: 0.0, normal: Vec3::ZERO, colour: Vec3::ZERO };
+
+    fn of(s: &Splat) -> Self {
+        Self { depth: s.depth, radius: s.sharpness, normal: s.normal.into(), colour: s.colour.into() }
+    }
 }
 
 /// A pixel between the two steps.
@@ -88,16 +94,18 @@ impl PaperTile {
             self.splats.clear();
             for selected in nodes {
                 let node = &scene.cloud.nodes[selected.node as usize];
-                let items = Items { node, stride: selected.stride.into() };
-                self.projector.project(scene.cloud, &items, &scene.camera, &shape, place, &mut self.splats);
+                let items = Items::new(node, selected);
+                self.projector.project(scene, &items, &shape, place, &mut self.splats);
             }
-            self.layer.near.fill(f32::INFINITY);
+            self.layer.clear_near(&Touched::ALL);
             kernel::nearest::<true>(&mut self.layer, &self.splats);
+            kernel::sharpness_of_nearest(&mut self.layer, &self.splats);
             for row in 0..place.height {
                 for column in 0..place.width {
                     let cell = &mut cells[at(row, column)];
-                    cell.near[k..].fill(self.layer.near[row * PITCH + column]);
-                    cell.radius = self.layer.sharpness[row * PITCH + column];
+                    let (block, lane) = (row * PITCH + column / LANES, column % LANES);
+                    cell.near[k..].fill(self.layer.depths[block].near[lane]);
+                    cell.radius = self.layer.sums[block].0[0][lane];
                 }
             }
         }
@@ -111,18 +119,9 @@ impl PaperTile {
             let (column, row) = (x as usize, y as usize);
             let cell = &mut cells[at(row, column)];
             if s.depth <= cell.near[0] + s.thickness && s.depth < cell.link.depth {
-                cell.link = scene.link(s, (place.x + column, place.y + row));
+                cell.link = Link::of(s);
             }
         }
-    }
-}
-
-impl Scene<'_> {
-    fn link(&self, s: &Splat, at: (usize, usize)) -> Link {
-        let [_, _, a, b, c, red, green, blue] = s.values;
-        let normal = Vec3::new(a, b, c);
-        let colour = self.shader.lit(Vec3::new(red, green, blue), normal, at);
-        Link { depth: s.depth, radius: s.sharpness, normal, colour }
     }
 }
 

@@ -57,7 +57,8 @@ impl Renderer {
         // The paper's procedure hides nothing.
         let is_paper = options.procedure == Procedure::Paper;
         shown.resize_with(self.selected.len(), || AtomicBool::new(is_paper));
-        let scene = Scene { cloud, camera, shader, culling: options.culling, shown: &shown };
+        let Options { culling, normals, .. } = *options;
+        let scene = Scene { cloud, camera, shader, culling, normals, shown: &shown };
         match options.procedure {
             Procedure::Blended => self.blend(&scene, frame),
             Procedure::Paper => self.link_and_filter(&scene, frame),

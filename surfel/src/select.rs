@@ -13,8 +13,8 @@ const BLURRED_START: f32 = 1.3;
 const BLURRED_SLOPE: f32 = 0.4;
 const BLURRED_MOST: f32 = 0.5;
 
-/// Between the levels of the tree, of blurred points only every second to fourth is drawn, for as many.
-const MOST_STRIDE: f32 = 4.0;
+/// Between the levels of the tree, of blurred points down to a fourth is drawn, for all.
+const MOST_THINNING: f32 = 4.0;
 
 /// A node to draw.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +25,10 @@ pub(crate) struct Selected {
     /// First and last pixels of all that it draws, within the picture.
     pub(crate) x: [u16; 2],
     pub(crate) y: [u16; 2],
-    /// Every which item is drawn, for as many.
-    pub(crate) stride: u8,
+    /// How far from its centre any disc of it may touch pixels.
+    pub(crate) margin: f32,
+    /// How many of its items are drawn, for all.
+    pub(crate) drawn: u32,
     /// Nothing of it has a smaller bent depth.
     pub(crate) nearest: f32,
     /// Nor does anything belong to a surface farther before it than this.
@@ -63,13 +65,22 @@ pub(crate) fn select(
         }
         let thinning = (blurred_px / spacing_px).powi(2);
         // Not `clamp`, which keeps NaN: points that have no extent on the picture, and no blur.
-        let stride = if thinning > 1.0 { thinning.min(MOST_STRIDE) as u8 } else { 1 };
-        let drawn = node.items.len().div_ceil(stride.into());
+        let thinning = if thinning > 1.0 { thinning.min(MOST_THINNING) } else { 1.0 };
+        let drawn = (node.items.len() as f32 / thinning).ceil() as usize;
         counts.nodes += 1;
         counts.points += drawn;
         counts.links += if node.is_leaf() { 0 } else { drawn };
-        let Seen { x, y, nearest, thickness, .. } = seen;
-        selected.push(Selected { node: number, place: 0, x, y, stride, nearest, thickness });
+        let Seen { x, y, margin, nearest, thickness, .. } = seen;
+        selected.push(Selected {
+            node: number,
+            place: 0,
+            x,
+            y,
+            margin,
+            drawn: drawn as u32,
+            nearest,
+            thickness,
+        });
     }
     selected.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.node.cmp(&b.node)));
     selected.iter_mut().zip(0..).for_each(|(s, place)| s.place = place);
@@ -79,6 +90,7 @@ pub(crate) fn select(
 struct Seen {
     x: [u16; 2],
     y: [u16; 2],
+    margin: f32,
     nearest: f32,
     thickness: f32,
     /// Relative depths of its points.
@@ -111,16 +123,24 @@ impl Seen {
             let centre = camera.centre[i] as f32;
             let (first, last) = (low + centre - margin, high + centre + margin);
             let inside = last >= 0.0 && first < size as f32;
-            inside.then(|| [first.max(0.0) as u16, last.min(size as f32 - 1.0) as u16])
+            inside.then(|| ([first.max(0.0) as u16, last.min(size as f32 - 1.0) as u16], margin))
         };
-        let (x, y) = (axis(0)?, axis(1)?);
+        let ((x, x_margin), (y, y_margin)) = (axis(0)?, axis(1)?);
+        let margin = x_margin.max(y_margin);
         let before = (nearest_point - camera.plane_reach(deviation, blur_radius)).max(camera.near);
         let inverse = 1.0 / (nearest_point + camera.reference as f32);
         let thickness =
             camera.thickness(node.widest, f32::INFINITY, 1.0 / scale, blur_radius) * camera.bending(inverse);
         // Rounding of what is drawn, relative to its largest number.
         let slack = 1e-5 * (before.abs() + camera.bent(before).abs());
-        Some(Self { x, y, nearest: camera.bent(before) - slack, thickness: thickness + slack, depths })
+        Some(Self {
+            x,
+            y,
+            margin,
+            nearest: camera.bent(before) - slack,
+            thickness: thickness + slack,
+            depths,
+        })
     }
 
     /// How far apart, in pixels, points may be for their blur.

@@ -10,12 +10,12 @@
 //! conic of its perspective image, evaluated about the image's own centre, and 1/h scales a depth that is affine in d.
 
 use crate::camera::Camera;
-use crate::cloud::{Cloud, Node, radius_of_area};
-use crate::lattice::offset;
-use crate::packed;
+use crate::layer;
+use crate::project::Items;
 use crate::tile;
-use glam::{DVec3, Vec3};
-use pulp::{Arch, NullaryFnOnce};
+use crate::vector::{Real, Vector};
+use glam::DVec3;
+use pulp::Simd;
 use std::ops::Range;
 
 /// Standard deviation of a disc's kernel over its radius. Found by experiment: narrower ones leave spots between
@@ -70,15 +70,50 @@ pub(crate) struct Splat {
     pub(crate) rows: [u8; 2],
     /// How much steeper than the kernel's an edge has to be to look sharp.
     pub(crate) sharpness: f32,
-    /// What is averaged: 1, room for the depth, normal in the picture's axes, colour.
-    pub(crate) values: [f32; 8],
+    /// In its light.
+    pub(crate) colour: [f32; 3],
+    /// In the picture's axes.
+    pub(crate) normal: [f32; 3],
 }
 
-/// What is drawn of a node.
-pub(crate) struct Items<'a> {
-    pub(crate) node: &'a Node,
-    /// Every which item, for as many.
-    pub(crate) stride: usize,
+impl Splat {
+    pub(crate) const NONE: Self = Self {
+        x: 0.0,
+        y: 0.0,
+        xx: 0.0,
+        xy: 0.0,
+        yy: 0.0,
+        depth: 0.0,
+        depth_x: 0.0,
+        depth_y: 0.0,
+        kx: 0.0,
+        ky: 0.0,
+        weight: 0.0,
+        thickness: 0.0,
+        flat: false,
+        columns: [0; 2],
+        rows: [0; 2],
+        sharpness: 0.0,
+        colour: [0.0; 3],
+        normal: [0.0; 3],
+    };
+
+    /// Columns of blocks that it may touch.
+    #[inline(always)]
+    pub(crate) fn blocks(&self) -> Range<usize> {
+        usize::from(self.columns[0]) / layer::LANES..usize::from(self.columns[1]).div_ceil(layer::LANES)
+    }
+
+    /// The way from the centre to those of the pixels of its first row.
+    #[inline(always)]
+    pub(crate) fn first_dy(&self) -> f32 {
+        f32::from(self.rows[0]) + 0.5 - self.y
+    }
+
+    #[inline(always)]
+    pub(crate) fn rows(&self) -> Range<usize> {
+        usize::from(self.rows[0])..usize::from(self.rows[1])
+    }
 }
 
 /// How discs are drawn.
@@ -125,53 +160,99 @@ impl Shape {
 }
 
 /// Items of a node that are projected together.
-const LANES: usize = 64;
+pub(crate) const LANES: usize = 64;
 
-type Lanes = [f32; LANES];
+pub(crate) type Lanes = [f32; LANES];
 
-/// Items of a node in its own frame, and on the picture.
-pub(crate) struct Projector {
-    offsets: [Lanes; 3],
-    normals: [Lanes; 3],
-    radii: Lanes,
-    areas: Lanes,
-    out: Projected,
+/// What [`Projected`] holds of each item.
+#[derive(Clone, Copy)]
+pub(crate) enum Value {
+    X,
+    Y,
+    Xx,
+    Xy,
+    Yy,
+    Depth,
+    DepthX,
+    DepthY,
+    Kx,
+    Ky,
+    Weight,
+    Thickness,
+    Flat,
+    Sharpness,
+    Red,
+    Green,
+    Blue,
+    NormalX,
+    NormalY,
+    NormalZ,
+    Left,
+    Right,
+    Top,
+    Bottom,
+    Kept,
 }
 
-struct Projected {
-    x: Lanes,
-    y: Lanes,
-    xx: Lanes,
-    xy: Lanes,
-    yy: Lanes,
-    depth: Lanes,
-    depth_x: Lanes,
-    depth_y: Lanes,
-    kx: Lanes,
-    ky: Lanes,
-    weight: Lanes,
-    thickness: Lanes,
-    flat: Lanes,
-    sharpness: Lanes,
-    normals: [Lanes; 3],
-    ends: [Lanes; 4],
-    kept: Lanes,
+pub(crate) struct Projected([Lanes; Value::Kept as usize + 1]);
+
+impl Projected {
+    pub(crate) const NOTHING: Self = Self([[0.0; LANES]; Value::Kept as usize + 1]);
+
+    #[inline(always)]
+    pub(crate) fn get(&self, item: usize, value: Value) -> f32 {
+        self.0[value as usize][item]
+    }
+
+    /// Sets a vector of items.
+    #[inline(always)]
+    pub(crate) fn set<S: Simd>(&mut self, place: usize, value: Value, vector: Vector<S>) {
+        S::as_mut_simd_f32s(&mut self.0[value as usize]).0[place] = vector.lanes;
+    }
+
+    #[inline(always)]
+    pub(crate) fn splat(&self, item: usize) -> Splat {
+        let get = |value: Value| self.get(item, value);
+        Splat {
+            x: get(Value::X),
+            y: get(Value::Y),
+            xx: get(Value::Xx),
+            xy: get(Value::Xy),
+            yy: get(Value::Yy),
+            depth: get(Value::Depth),
+            depth_x: get(Value::DepthX),
+            depth_y: get(Value::DepthY),
+            kx: get(Value::Kx),
+            ky: get(Value::Ky),
+            weight: get(Value::Weight),
+            thickness: get(Value::Thickness),
+            flat: get(Value::Flat) > 0.0,
+            columns: [get(Value::Left) as u8, get(Value::Right) as u8],
+            rows: [get(Value::Top) as u8, get(Value::Bottom) as u8],
+            sharpness: get(Value::Sharpness),
+            colour: [get(Value::Red), get(Value::Green), get(Value::Blue)],
+            normal: [get(Value::NormalX), get(Value::NormalY), get(Value::NormalZ)],
+        }
+    }
 }
 
 /// The map from a node's frame to a tile.
 #[derive(Clone, Copy)]
-struct Map {
+pub(crate) struct Map {
     /// Rows x·w, y·w and relative depth, with w the depth or 1.
     rows: [f32; 12],
-    /// The principal point in the tile.
+    /// The tile's first pixel, and the principal point in the tile.
+    pub(crate) first: [f32; 2],
     centre: [f32; 2],
     /// Last row and column, not included.
     size: [f32; 2],
     two_sided: bool,
+    margin: f32,
 }
 
 impl Map {
-    fn new(camera: &Camera, node: &Node, tile: &tile::Place, two_sided: bool) -> Self {
+    pub(crate) fn new(camera: &Camera, drawn: &Items<'_>, tile: &tile::Place, two_sided: bool) -> Self {
+        let Items { node, margin, .. } = *drawn;
         let f = f64::from(camera.focal);
         let v = &camera.view;
         let origin = camera.local(node);
@@ -190,247 +271,187 @@ impl Map {
             row.copy_from_slice(&[n.x as f32, n.y as f32, n.z as f32, offset as f32]);
         }
         let size = [tile.width as f32, tile.height as f32];
-        Self { rows, centre: [cx as f32, cy as f32], size, two_sided }
+        let first = [tile.x as f32, tile.y as f32];
+        Self { rows, first, centre: [cx as f32, cy as f32], size, two_sided, margin }
     }
 }
 
-impl Projector {
-    pub(crate) fn new() -> Box<Self> {
-        let zero = [0.0; LANES];
-        let out = Projected {
-            x: zero,
-            y: zero,
-            xx: zero,
-            xy: zero,
-            yy: zero,
-            depth: zero,
-            depth_x: zero,
-            depth_y: zero,
-            kx: zero,
-            ky: zero,
-            weight: zero,
-            thickness: zero,
-            flat: zero,
-            sharpness: zero,
-            normals: [zero; 3],
-            ends: [zero; 4],
-            kept: zero,
-        };
-        Box::new(Self { offsets: [zero; 3], normals: [zero; 3], radii: zero, areas: zero, out })
-    }
-
-    /// Appends what `drawn` puts into a tile.
-    pub(crate) fn project(
-        &mut self,
-        cloud: &Cloud,
-        drawn: &Items<'_>,
-        camera: &Camera,
-        shape: &Shape,
-        tile: &tile::Place,
-        splats: &mut Vec<Splat>,
-    ) {
-        let arch = Arch::new();
-        let map = Map::new(camera, drawn.node, tile, cloud.two_sided);
-        let end = drawn.node.items.end as usize;
-        for start in (drawn.node.items.start as usize..end).step_by(LANES * drawn.stride) {
-            let count = if drawn.stride == 1 && drawn.node.is_leaf() {
-                self.take_run(cloud, drawn.node, start..(start + LANES).min(end))
-            } else {
-                self.take_each(cloud, drawn, (start..end).step_by(drawn.stride).take(LANES))
-            };
-            arch.dispatch(Project { lanes: self, camera, shape, map: &map, count });
-            for i in 0..count {
-                if self.out.kept[i] > 0.0 {
-                    splats.push(self.out.splat(i, colour(cloud, drawn.node, start + i * drawn.stride)));
-                }
-            }
-        }
-    }
-
-    /// Takes points that follow one another; how many.
-    fn take_run(&mut self, cloud: &Cloud, node: &Node, items: Range<usize>) -> usize {
-        let points = &cloud.points;
-        let count = items.len();
-        for axis in 0..3 {
-            let cells = &points.cells[axis][items.clone()];
-            for (to, &cell) in self.offsets[axis].iter_mut().zip(cells) {
-                *to = offset(node.origin[axis], cell);
-            }
-            self.normals[axis][..count].copy_from_slice(&points.normals[axis][items.clone()]);
-        }
-        self.radii[..count].copy_from_slice(&points.radii[items.clone()]);
-        self.areas[..count].copy_from_slice(&points.areas[items]);
-        count
-    }
-
-    /// Takes points or links one by one; how many.
-    fn take_each(&mut self, cloud: &Cloud, drawn: &Items<'_>, items: impl Iterator<Item = usize>) -> usize {
-        let (node, points) = (drawn.node, &cloud.points);
-        let mut count = 0;
-        for item in items {
-            let (point, normal, area, radius) = if node.is_leaf() {
-                (item, points.normal(item), points.areas[item], points.radii[item])
-            } else {
-                let area = cloud.links.areas[item];
-                let normal = packed::unpack_direction(cloud.links.normals[item]);
-                (cloud.links.points[item] as usize, normal, area, radius_of_area(area))
-            };
-            for axis in 0..3 {
-                self.offsets[axis][count] = offset(node.origin[axis], points.cells[axis][point]);
-                self.normals[axis][count] = normal[axis];
-            }
-            self.areas[count] = area * drawn.stride as f32;
-            self.radii[count] = radius;
-            count += 1;
-        }
-        count
-    }
+/// Where centres are on the picture, and which way discs face.
+pub(crate) struct Placed<S: Simd> {
+    pub(crate) x: Vector<S>,
+    pub(crate) y: Vector<S>,
+    depth: Vector<S>,
+    /// 1/distance from the eye along the view axis, and pixels per unit there.
+    inverse: Vector<S>,
+    scale: Vector<S>,
+    /// The way from the eye, for one along the view axis.
+    way: [Vector<S>; 2],
+    pub(crate) normal: [Vector<S>; 3],
+    /// Below 0 towards the eye.
+    facing: Vector<S>,
 }
 
-fn colour(cloud: &Cloud, node: &Node, item: usize) -> [f32; 3] {
-    if node.is_leaf() {
-        cloud.points.colours.as_ref().map_or([0.0; 3], |all| all[item])
-    } else {
-        cloud.links.colours.as_ref().map_or([0.0; 3], |all| packed::unpack_colour(all[item]))
-    }
-}
-
-impl Projected {
-    fn splat(&self, i: usize, colour: [f32; 3]) -> Splat {
-        let n = [0, 1, 2].map(|axis| self.normals[axis][i]);
-        let [r, g, b] = colour;
-        Splat {
-            x: self.x[i],
-            y: self.y[i],
-            xx: self.xx[i],
-            xy: self.xy[i],
-            yy: self.yy[i],
-            depth: self.depth[i],
-            depth_x: self.depth_x[i],
-            depth_y: self.depth_y[i],
-            kx: self.kx[i],
-            ky: self.ky[i],
-            weight: self.weight[i],
-            thickness: self.thickness[i],
-            flat: self.flat[i] > 0.0,
-            columns: [self.ends[0][i] as u8, self.ends[1][i] as u8],
-            rows: [self.ends[2][i] as u8, self.ends[3][i] as u8],
-            sharpness: self.sharpness[i],
-            values: [1.0, 0.0, n[0], n[1], n[2], r, g, b],
-        }
-    }
-}
-
-/// The arithmetic of [`Projector::project`], compiled once more for each kind of vector instructions: the same
-/// operations in the same order, so results do not change.
-struct Project<'a> {
-    lanes: &'a mut Projector,
-    camera: &'a Camera,
-    shape: &'a Shape,
-    map: &'a Map,
-    count: usize,
-}
-
-impl NullaryFnOnce for Project<'_> {
-    type Output = ();
-
-    // A closure would not be inlined into the vectorised caller, and what is not inlined stays narrow.
+impl<S: Simd> Placed<S> {
+    /// Steps: 1 place and depth; 2 normal, seen from the eye.
     #[inline(always)]
-    fn call(self) {
-        project_lanes(self.lanes, self.camera, self.shape, self.map, self.count);
+    pub(crate) fn new(
+        simd: S,
+        camera: &Camera,
+        map: &Map,
+        offset: [Vector<S>; 3],
+        normal: [Vector<S>; 3],
+    ) -> Self {
+        // 1
+        let rows = map.rows;
+        let depth = row(offset, [rows[8], rows[9], rows[10]]) + rows[11];
+        let inverse = (depth + camera.reference as f32).inverse();
+        let w = if camera.is_perspective { inverse } else { Vector::all(simd, 1.0) };
+        let x = (row(offset, [rows[0], rows[1], rows[2]]) + rows[3]) * w;
+        let y = (row(offset, [rows[4], rows[5], rows[6]]) + rows[7]) * w;
+        // 2
+        let slope = if camera.is_perspective { 1.0 / camera.focal } else { 0.0 };
+        let way = [(x - map.centre[0]) * slope, (y - map.centre[1]) * slope];
+        let [a, b, c] = camera.axes;
+        let normal = [row(normal, a.to_array()), row(normal, b.to_array()), row(normal, c.to_array())];
+        let facing = normal[0] * way[0] + normal[1] * way[1] + normal[2];
+        let scale = w * camera.focal;
+        let mut placed = Self { x, y, depth, inverse, scale, way, normal, facing };
+        if map.two_sided {
+            let flip = Vector::all(simd, -1.0).if_set(facing.exceeds(0.0), 1.0);
+            placed.facing = facing * flip;
+            placed.normal = [normal[0] * flip, normal[1] * flip, normal[2] * flip];
+        }
+        placed
+    }
+
+    /// Which discs face the eye and may have parts in the tile.
+    #[inline(always)]
+    pub(crate) fn may_show(&self, simd: S, camera: &Camera, map: &Map) -> S::m32s {
+        let right =
+            simd.and_m32s(self.x.exceeds(-map.margin), (-self.x).exceeds(-(map.size[0] + map.margin)));
+        let below =
+            simd.and_m32s(self.y.exceeds(-map.margin), (-self.y).exceeds(-(map.size[1] + map.margin)));
+        let faces = simd.and_m32s(self.depth.exceeds(camera.near), (-self.facing).exceeds(0.0));
+        simd.and_m32s(simd.and_m32s(right, below), faces)
     }
 }
 
-/// First column, last column (not included), first row and last row of the box around q ≤ R, within a tile.
+#[inline(always)]
+fn row<S: Simd>(v: [Vector<S>; 3], row: [f32; 3]) -> Vector<S> {
+    v[0] * row[0] + v[1] * row[1] + v[2] * row[2]
+}
+
+/// kᵀ·V·k, V as its three different entries.
+#[inline(always)]
+fn along<S: Simd>([kx, ky]: [Vector<S>; 2], v: [Vector<S>; 3]) -> Vector<S> {
+    kx * kx * v[0] + kx * ky * v[1] * 2.0 + ky * ky * v[2]
+}
+
+/// Steps, on: 3 covariance; 4 plane; 5 kernel; 6 the pixels that it touches.
+#[inline(always)]
+pub(crate) fn project<S: Simd>(
+    simd: S,
+    placed: &Placed<S>,
+    [disc_radius, area]: [Vector<S>; 2],
+    (camera, shape, map): (&Camera, &Shape, &Map),
+    out: &mut Projected,
+    place: usize,
+) {
+    let Placed { x, y, depth, inverse, scale, way: [ux, uy], normal: [a, b, c], facing } = *placed;
+    let (focal, reference) = (camera.focal, camera.reference as f32);
+    let constant = |value: f32| Vector::all(simd, value);
+    // 3
+    let blur_radius = camera.blur_radius(depth);
+    let radius = disc_radius + blur_radius * shape.widening;
+    let deviation = radius * shape.deviation;
+    let on_picture = deviation * scale;
+    let s2 = on_picture * on_picture;
+    let blur_deviation = blur_radius * scale * (0.5 * shape.lens);
+    let blur = blur_deviation * blur_deviation;
+    let (mx, my) = (a - ux * c, b - uy * c);
+    let disc = [s2 * (ux * ux - mx * mx + 1.0), s2 * (ux * uy - mx * my), s2 * (uy * uy - my * my + 1.0)];
+    let added = blur + shape.pixel_variance;
+    let v = [disc[0] + added, disc[1], disc[2] + added];
+    let determinant = v[0] * v[2] - v[1] * v[1];
+    // 4
+    let edge_on = (facing.at_most(-1e-6) * focal).inverse();
+    let (kx, ky) = (a * edge_on, b * edge_on);
+    let slope_of_disc = (kx * kx + ky * ky).sqrt() * focal;
+    // What the pixel adds to the disc must not make its plane longer, nor may it come too near to the eye.
+    let reach = camera.plane_reach(deviation, blur_radius) * (scale * (1.0 / focal));
+    let longest = (reach * reach).at_most(NEAREST_PLANE2) * (1.0 / shape.reach2);
+    let long = along([kx, ky], [disc[0] + blur, disc[1], disc[2] + blur]).min(longest);
+    let shrink = (long / along([kx, ky], v).at_least(f32::MIN_POSITIVE)).at_most(1.0).sqrt();
+    let (kx, ky) = (kx * shrink, ky * shrink);
+    let bend = if camera.is_perspective { inverse * (reference * reference) } else { constant(1.0) };
+    // The planes of an orthographic view keep their shape: h is 1.
+    let curved = if camera.is_perspective { 1.0 } else { 0.0 };
+    let k = [kx * curved, ky * curved];
+    // 5
+    let is_flat = blur.is_above((disc[0] + disc[2]) * 0.5 + shape.pixel_variance);
+    let reach2 = constant(shape.flat_reach2).if_set(is_flat, shape.reach2);
+    // The integrals of (1 − q/R)² and of √(1 − q/R): πR/3 and 2πR/3, times the root of |V|.
+    let integral = reach2 * constant(2.0).if_set(is_flat, 1.0) * (std::f32::consts::PI / 3.0);
+    let root = determinant.at_least(f32::MIN_POSITIVE).sqrt();
+    let share = -(area * scale * scale * facing);
+    let half_difference = (v[0] - v[2]) * 0.5;
+    let narrow = (v[0] + v[2]) * 0.5 - (half_difference * half_difference + v[1] * v[1]).sqrt();
+    let conic = (determinant * reach2).inverse();
+    let edge = (narrow / (blur + EDGE_VARIANCE)).at_least(1.0).sqrt();
+    // 6
+    let [left, right, top, bottom] = ends([x, y], v, k, reach2, map.size);
+    let is_kept = simd.and_m32s(depth.exceeds(camera.near), (-facing).exceeds(0.0));
+    let is_kept = simd.and_m32s(is_kept, simd.and_m32s(right.is_above(left), bottom.is_above(top)));
+    let bent = if camera.is_perspective { depth * (inverse * reference) } else { depth };
+    let thickness = camera.thickness(disc_radius, slope_of_disc, scale.inverse(), blur_radius);
+    let sharpness = if shape.is_paper { (radius * scale).at_most(1e6) } else { edge };
+    for (value, result) in [
+        (Value::X, x),
+        (Value::Y, y),
+        (Value::Xx, v[2] * conic),
+        (Value::Xy, -(v[1] * conic)),
+        (Value::Yy, v[0] * conic),
+        (Value::Depth, bent),
+        (Value::DepthX, -(kx * bend)),
+        (Value::DepthY, -(ky * bend)),
+        (Value::Kx, k[0]),
+        (Value::Ky, k[1]),
+        // Discs of any size next to the eye: sums of weights have to stay numbers.
+        (Value::Weight, (share / (integral * root)).at_most(1e3)),
+        (Value::Thickness, thickness * camera.bending(inverse)),
+        (Value::Flat, constant(1.0).if_set(is_flat, 0.0)),
+        (Value::Sharpness, sharpness),
+        (Value::NormalX, a),
+        (Value::NormalY, b),
+        (Value::NormalZ, c),
+        (Value::Left, left),
+        (Value::Right, right),
+        (Value::Top, top),
+        (Value::Bottom, bottom),
+        (Value::Kept, constant(1.0).if_set(is_kept, 0.0)),
+    ] {
+        out.set(place, value, result);
+    }
+}
+
+/// First column, last column (not included), first row and last row of the box around q ≤ R, within a tile. Not whole
+/// numbers: their integral parts.
 ///
 /// With t = V·k and τ = R·k·t < 1, q ≤ R is an ellipse about R·t/(1 − τ) with the covariance V + R·t·tᵀ/(1 − τ), to the
 /// reach R/(1 − τ).
 #[inline(always)]
-fn ends(centre: [f32; 2], v: [f32; 3], k: [f32; 2], reach2: f32, size: [f32; 2]) -> [f32; 4] {
-    let (tx, ty) = (v[0] * k[0] + v[1] * k[1], v[1] * k[0] + v[2] * k[1]);
-    let reach = reach2 / (1.0 - (reach2 * (k[0] * tx + k[1] * ty)).min(0.75));
-    let half = |v: f32, t: f32| (reach * (v + reach * t * t)).sqrt();
+fn ends<S: Simd>(
+    [x, y]: [Vector<S>; 2],
+    v: [Vector<S>; 3],
+    [kx, ky]: [Vector<S>; 2],
+    reach2: Vector<S>,
+    size: [f32; 2],
+) -> [Vector<S>; 4] {
+    let (tx, ty) = (v[0] * kx + v[1] * ky, v[1] * kx + v[2] * ky);
+    let reach = reach2 / -((reach2 * (kx * tx + ky * ty)).at_most(0.75) - 1.0);
+    let half = |v: Vector<S>, t: Vector<S>| (reach * (v + reach * t * t)).sqrt();
     let (hx, hy) = (half(v[0], tx), half(v[2], ty));
-    let (x, y) = (centre[0] + reach * tx, centre[1] + reach * ty);
-    let end = |v: f32, size: f32| (v + 0.5).clamp(0.0, size) as i32 as f32;
+    let (x, y) = (x + reach * tx + 0.5, y + reach * ty + 0.5);
+    let end = |v: Vector<S>, size: f32| v.at_least(0.0).at_most(size);
     [end(x - hx, size[0]), end(x + hx, size[0]), end(y - hy, size[1]), end(y + hy, size[1])]
-}
-
-/// Steps: 1 place and depth; 2 normal, seen from the eye; 3 covariance; 4 plane; 5 kernel; 6 the pixels that it touches.
-#[inline(always)]
-fn project_lanes(lanes: &mut Projector, camera: &Camera, shape: &Shape, map: &Map, count: usize) {
-    let Projector { offsets: [px, py, pz], normals: [nx, ny, nz], radii, areas, out } = lanes;
-    let (rows, axes) = (&map.rows, &camera.axes);
-    let (focal, reference) = (camera.focal, camera.reference as f32);
-    let slope = if camera.is_perspective { 1.0 / focal } else { 0.0 };
-    let turned = |axis: Vec3, i: usize| axis.x * nx[i] + axis.y * ny[i] + axis.z * nz[i];
-    for i in 0..count.min(LANES) {
-        // 1
-        let row = |r: usize| rows[r] * px[i] + rows[r + 1] * py[i] + rows[r + 2] * pz[i] + rows[r + 3];
-        let depth = row(8);
-        let distance = depth + reference;
-        let inverse = 1.0 / distance;
-        let w = if camera.is_perspective { inverse } else { 1.0 };
-        let (x, y) = (row(0) * w, row(4) * w);
-        let (ux, uy) = ((x - map.centre[0]) * slope, (y - map.centre[1]) * slope);
-        // 2
-        let n = [turned(axes[0], i), turned(axes[1], i), turned(axes[2], i)];
-        let facing = n[0] * ux + n[1] * uy + n[2];
-        let flip = if map.two_sided && facing > 0.0 { -1.0 } else { 1.0 };
-        let (a, b, c, facing) = (n[0] * flip, n[1] * flip, n[2] * flip, facing * flip);
-        // 3
-        let scale = focal * w;
-        let blur_radius = camera.blur_radius(depth);
-        let radius = radii[i] + shape.widening * blur_radius;
-        let deviation = shape.deviation * radius;
-        let s2 = (deviation * scale).powi(2);
-        let blur = (0.5 * shape.lens * blur_radius * scale).powi(2);
-        let (mx, my) = (a - ux * c, b - uy * c);
-        let disc = [s2 * (1.0 + ux * ux - mx * mx), s2 * (ux * uy - mx * my), s2 * (1.0 + uy * uy - my * my)];
-        let added = blur + shape.pixel_variance;
-        let v = [disc[0] + added, disc[1], disc[2] + added];
-        let determinant = v[0] * v[2] - v[1] * v[1];
-        // 4
-        let edge_on = 1.0 / (focal * facing.min(-1e-6));
-        let (kx, ky) = (a * edge_on, b * edge_on);
-        let slope_of_disc = (kx * kx + ky * ky).sqrt() * focal;
-        let slant = |v: [f32; 3]| kx * kx * v[0] + 2.0 * kx * ky * v[1] + ky * ky * v[2];
-        // What the pixel adds to the disc must not make its plane longer, nor may it come too near to the eye.
-        let reach = camera.plane_reach(deviation, blur_radius) * w;
-        let longest = (reach * reach).min(NEAREST_PLANE2) / shape.reach2;
-        let long = slant([disc[0] + blur, disc[1], disc[2] + blur]).min(longest);
-        let shrink = (long / slant(v).max(f32::MIN_POSITIVE)).min(1.0).sqrt();
-        let (kx, ky) = (kx * shrink, ky * shrink);
-        let bend = if camera.is_perspective { reference * (reference * inverse) } else { 1.0 };
-        // The planes of an orthographic view keep their shape: h is 1.
-        let (hkx, hky) = (kx * slope * focal, ky * slope * focal);
-        // 5
-        let is_flat = blur > 0.5 * (disc[0] + disc[2]) + shape.pixel_variance;
-        let reach2 = if is_flat { shape.flat_reach2 } else { shape.reach2 };
-        // The integrals of (1 − q/R)² and of √(1 − q/R): πR/3 and 2πR/3, times the root of |V|.
-        let integral = std::f32::consts::PI / 3.0 * reach2 * if is_flat { 2.0 } else { 1.0 };
-        let root = determinant.max(f32::MIN_POSITIVE).sqrt();
-        let share = areas[i] * scale * scale * -facing;
-        let half_difference = 0.5 * (v[0] - v[2]);
-        let narrow = 0.5 * (v[0] + v[2]) - (half_difference * half_difference + v[1] * v[1]).sqrt();
-        let conic = 1.0 / (determinant * reach2);
-        // 6
-        let [left, right, top, bottom] = ends([x, y], v, [hkx, hky], reach2, map.size);
-        let kept = (depth > camera.near) & (facing < 0.0) & (left < right) & (top < bottom);
-        (out.x[i], out.y[i]) = (x, y);
-        (out.xx[i], out.xy[i], out.yy[i]) = (v[2] * conic, -v[1] * conic, v[0] * conic);
-        out.depth[i] = if camera.is_perspective { depth * (reference * inverse) } else { depth };
-        (out.depth_x[i], out.depth_y[i]) = (-kx * bend, -ky * bend);
-        (out.kx[i], out.ky[i]) = (hkx, hky);
-        // Discs of any size next to the eye: sums of weights have to stay numbers.
-        out.weight[i] = (share / (integral * root)).min(1e3);
-        out.thickness[i] =
-            camera.thickness(radii[i], slope_of_disc, 1.0 / scale, blur_radius) * camera.bending(inverse);
-        out.flat[i] = if is_flat { 1.0 } else { 0.0 };
-        let edge = (narrow / (EDGE_VARIANCE + blur)).max(1.0).sqrt();
-        out.sharpness[i] = if shape.is_paper { (radius * scale).min(1e6) } else { edge };
-        (out.normals[0][i], out.normals[1][i], out.normals[2][i]) = (a, b, c);
-        (out.ends[0][i], out.ends[1][i], out.ends[2][i], out.ends[3][i]) = (left, right, top, bottom);
-        out.kept[i] = if kept { 1.0 } else { 0.0 };
-    }
 }

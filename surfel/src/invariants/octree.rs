@@ -3,7 +3,7 @@
 use super::{OwnedPoints, check, cloud};
 use crate::cloud::{Cloud, Node};
 use crate::lattice::between;
-use crate::packed::unpack_direction;
+use crate::packed::unpack_way;
 use glam::Vec3;
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use std::ops::Range;
 const AREA_ROUNDING: f64 = 1e-3;
 
 /// Bytes per point that octree, links and areas of a surface take at most, for clouds of 10,000 points and more: 4 for the
-/// area, and for nodes and links 3 (a plane) to 7 (a thin sheet with two sides and colours).
+/// area, and for nodes and links 3 (a sphere) to 10 (a thin sheet with two sides and colours).
 pub const MOST_OVERHEAD: f64 = 16.0;
 
 /// Any points become a sound octree, or are refused.
@@ -101,7 +101,7 @@ fn cone_holds(cloud: &Cloud, node: &Node, below: Range<usize>) -> Result<(), Str
     };
     below.into_iter().try_for_each(|point| holds("a point", cloud.points.normal(point)))?;
     let links = if node.is_leaf() { 0..0 } else { node.items.start as usize..node.items.end as usize };
-    links.into_iter().try_for_each(|link| holds("a link", unpack_direction(cloud.links.normals[link])))
+    links.into_iter().try_for_each(|link| holds("a link", unpack_way(cloud.links.normals[link]).normalize()))
 }
 
 fn links_are_sound(cloud: &Cloud, node: &Node, below: Range<usize>) -> Result<(), String> {

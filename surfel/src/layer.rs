@@ -1,0 +1,131 @@
+//! Working memory of a tile, in blocks of pixels that are computed together.
+
+use crate::tile::{HEIGHT, WIDTH};
+use std::ops::Range;
+
+/// Pixels of a block, next to one another in a row: a whole number of vectors of any processor.
+pub(crate) const LANES: usize = 8;
+
+/// Blocks from row to row.
+pub(crate) const PITCH: usize = WIDTH / LANES;
+
+/// A value for each pixel of a block.
+pub(crate) type Lanes = [f32; LANES];
+
+/// Distances of the pixels of a block from its first.
+pub(crate) const RAMP: Lanes = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+/// Depths of a block.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(crate) struct Depths {
+    /// Bent depth of the nearest disc.
+    pub(crate) near: Lanes,
+    /// Depth of the layer before: discs must lie behind it by more than their thickness. +∞ where the pixel is done.
+    pub(crate) floor: Lanes,
+}
+
+/// Weighted sums of a block: weight, bent depth, sharpness, colour.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(crate) struct Sums(pub(crate) [Lanes; 6]);
+
+impl Sums {
+    pub(crate) const NOTHING: Self = Self([[0.0; LANES]; 6]);
+}
+
+/// Weighted sums of normals (in the picture's axes) of a block.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(crate) struct Normals(pub(crate) [Lanes; 3]);
+
+impl Normals {
+    pub(crate) const NOTHING: Self = Self([[0.0; LANES]; 3]);
+}
+
+/// What a block shows while layers are laid under one another.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(crate) struct Pixels {
+    /// Premultiplied colour and opacity.
+    pub(crate) colour: [Lanes; 4],
+    /// Bent depth and normal (in the picture's axes) of the layer that made it half opaque; the depth is +∞ before.
+    pub(crate) depth: Lanes,
+    pub(crate) normal: [Lanes; 3],
+}
+
+impl Pixels {
+    pub(crate) const EMPTY: Self =
+        Self { colour: [[0.0; LANES]; 4], depth: [f32::INFINITY; LANES], normal: [[0.0; LANES]; 3] };
+}
+
+/// Depths and sums of the layer that is being drawn.
+pub(crate) struct Layer {
+    pub(crate) depths: Vec<Depths>,
+    pub(crate) sums: Vec<Sums>,
+    /// Untouched unless normals are asked for.
+    pub(crate) normals: Vec<Normals>,
+}
+
+impl Layer {
+    pub(crate) fn new() -> Self {
+        let count = PITCH * HEIGHT;
+        let depths = Depths { near: [0.0; LANES], floor: [0.0; LANES] };
+        Self {
+            depths: vec![depths; count],
+            sums: vec![Sums::NOTHING; count],
+            normals: vec![Normals::NOTHING; count],
+        }
+    }
+
+    /// Makes these sums empty, with those of normals if they are `WANTED`.
+    #[inline(always)]
+    pub(crate) fn clear_sums<const WANTED: bool>(&mut self, blocks: Range<usize>) {
+        self.sums[blocks.clone()].fill(Sums::NOTHING);
+        if WANTED {
+            self.normals[blocks].fill(Normals::NOTHING);
+        }
+    }
+
+    /// Makes these blocks of depths empty.
+    pub(crate) fn clear_near(&mut self, touched: &Touched) {
+        for row in touched.rows() {
+            self.depths[touched.blocks(row)].iter_mut().for_each(|d| d.near = [f32::INFINITY; LANES]);
+        }
+    }
+}
+
+/// Blocks of a tile that discs may touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touched {
+    /// First and last, the last not included.
+    columns: [usize; 2],
+    rows: [usize; 2],
+}
+
+impl Touched {
+    pub(crate) const NOTHING: Self = Self { columns: [PITCH, 0], rows: [HEIGHT, 0] };
+    pub(crate) const ALL: Self = Self { columns: [0, PITCH], rows: [0, HEIGHT] };
+
+    /// Adds columns and rows of pixels, the last not included.
+    pub(crate) fn add(&mut self, columns: [usize; 2], rows: [usize; 2]) {
+        self.columns[0] = self.columns[0].min(columns[0] / LANES);
+        self.columns[1] = self.columns[1].max(columns[1].div_ceil(LANES));
+        self.rows[0] = self.rows[0].min(rows[0]);
+        self.rows[1] = self.rows[1].max(rows[1]);
+    }
+
+    pub(crate) fn rows(&self) -> Range<usize> {
+        self.rows[0]..self.rows[1]
+    }
+
+    /// Columns of blocks.
+    pub(crate) fn columns(&self) -> Range<usize> {
+        self.columns[0]..self.columns[1]
+    }
+
+    /// Indices of a row's blocks.
+    pub(crate) fn blocks(&self, row: usize) -> Range<usize> {
+        row * PITCH + self.columns[0]..row * PITCH + self.columns[1]
+    }
+}
