@@ -248,6 +248,19 @@ fn threads_do_not_change_a_byte() {
     assert_eq!(with_threads(&scattered(40_000)).dimension(), 3);
 }
 
+/// What a huge point made equal in scaled coordinates was named in another order when that point had gone.
+#[test]
+fn a_huge_point_leaves_no_trace() {
+    let points = [
+        dvec3(1e-146, 0.0, 0.0),
+        DVec3::ZERO,
+        dvec3(0.0, 0.0, -1.5e-107),
+        dvec3(0.0, -2.3e-106, 0.0),
+        dvec3(7.8e216, 0.0, 5e216),
+    ];
+    facts::removal_is_building(&points, &[4]).unwrap();
+}
+
 #[test]
 fn most_points_in_one_place_can_be_divided() {
     // The median of these is their least: nothing lies before it.

@@ -49,9 +49,10 @@ fn last_part(starts: &[u32]) -> &[u32] {
 fn ranks(solid: &Solid) -> Vec<u32> {
     let vertices: Vec<Vertex> =
         (0..).map(Vertex).zip(&solid.index).filter(|(_, i)| **i != OUTSIDE).map(|(v, _)| v).collect();
-    let curve = Curve::new(vertices.iter().map(|&v| solid.sites.position(v)));
-    let mut keyed =
-        parallel::map(vertices.len(), |k| (curve.place(solid.sites.position(vertices[k])), vertices[k]));
+    // Scaled positions may have come together: the scale is that of all points there ever were.
+    let position = |v: Vertex| solid.sites.exact_position(v);
+    let curve = Curve::new(vertices.iter().map(|&v| position(v)));
+    let mut keyed = parallel::map(vertices.len(), |k| (curve.place(position(vertices[k])), vertices[k]));
     parallel::sort_by(&mut keyed, |(p, v), (q, w)| p.cmp(q).then_with(|| solid.sites.compare(*v, *w)));
     let mut ranks = vec![0; solid.index.len()];
     for (rank, (_, v)) in (1..).zip(keyed) {

@@ -228,6 +228,12 @@ impl Sites {
         self.at[v.slot()].p
     }
 
+    /// The same without what scaling may lose: as given where it does, else scaled.
+    #[inline]
+    pub(super) fn exact_position(&self, v: Vertex) -> DVec3 {
+        if self.exact == Exact::Wide { self.given[v.slot()] } else { self.position(v) }
+    }
+
     /// Whether positions are those given, up to the scale.
     pub(super) fn are_positions_exact(&self) -> bool {
         self.exact != Exact::Wide
@@ -248,9 +254,7 @@ impl Sites {
 
     /// Lexicographic order of positions: the same for scaled ones as for those given.
     pub(super) fn compare(&self, v: Vertex, w: Vertex) -> Ordering {
-        let of =
-            |v: Vertex| if self.exact == Exact::Wide { self.given[v.slot()] } else { self.at[v.slot()].p };
-        let (a, b) = (of(v), of(w));
+        let (a, b) = (self.exact_position(v), self.exact_position(w));
         a.to_array().partial_cmp(&b.to_array()).expect("positions are finite")
     }
 
