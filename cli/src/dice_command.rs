@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, Write};
 
-use crate::json_lines::JsonLinesError;
+use crate::json_lines::{JsonLinesError, shorten, strip_place};
 use glam::{DVec2, dvec2};
 use pointillist_dice::{Accumulator, DiceError, Grid, accumulate, split};
 use serde::{Deserialize, Serialize};
@@ -212,22 +212,6 @@ fn way_out(error: DiceError) -> &'static str {
         DiceError::TooManyCells { .. } => "use a larger grid.cell, or clip the polygon first",
         DiceError::OutOfRange { .. } => "move grid.origin to the polygon, or use a larger grid.cell",
         _ => "coordinates must be finite numbers",
-    }
-}
-
-/// The message with the column; every request is on line 1 as far as the parser knows, so its line would mislead.
-fn strip_place(error: &serde_json::Error) -> String {
-    let message = error.to_string();
-    let end = message.rfind(" at line ").unwrap_or(message.len());
-    format!("{}, column {}", &message[..end], error.column())
-}
-
-/// Lines of any length make a message of one line.
-fn shorten(text: &str) -> String {
-    const LENGTH: usize = 100;
-    match text.char_indices().nth(LENGTH) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
     }
 }
 

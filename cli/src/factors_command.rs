@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, Write};
 
-use crate::json_lines::JsonLinesError;
+use crate::json_lines::{JsonLinesError, shorten, strip_place};
 use glam::DVec3;
 use pointillist_radiosity::{FactorOptions, Polygon, PolygonError, form_factor};
 use rayon::prelude::*;
@@ -106,20 +106,4 @@ fn polygon(field: &str, ring: &[[f64; 3]]) -> Result<Polygon, (String, String)> 
         };
         (format!("{field}: {error}"), way_out.to_owned())
     })
-}
-
-/// The message with the column; every request is on line 1 as far as the parser knows, so its line would mislead.
-fn strip_place(error: &serde_json::Error) -> String {
-    let message = error.to_string();
-    let end = message.rfind(" at line ").unwrap_or(message.len());
-    format!("{}, column {}", &message[..end], error.column())
-}
-
-/// Lines of any length make a message of one line.
-fn shorten(text: &str) -> String {
-    const LENGTH: usize = 100;
-    match text.char_indices().nth(LENGTH) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
 }

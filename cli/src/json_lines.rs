@@ -1,4 +1,4 @@
-//! What can go wrong where JSON lines are answered.
+//! What can go wrong where JSON lines are answered, and how it is said.
 
 /// Why it stopped.
 #[derive(Debug, thiserror::Error)]
@@ -32,4 +32,20 @@ pub enum JsonLinesError {
     /// The output could not be written.
     #[error("writing the result: {0}")]
     Write(#[source] std::io::Error),
+}
+
+/// The message with the column; every request is on line 1 as far as the parser knows, so its line would mislead.
+pub(crate) fn strip_place(error: &serde_json::Error) -> String {
+    let message = error.to_string();
+    let end = message.rfind(" at line ").unwrap_or(message.len());
+    format!("{}, column {}", &message[..end], error.column())
+}
+
+/// Lines of any length make a message of one line.
+pub(crate) fn shorten(text: &str) -> String {
+    const LENGTH: usize = 100;
+    match text.char_indices().nth(LENGTH) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
 }

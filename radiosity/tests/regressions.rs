@@ -37,6 +37,17 @@ fn overshooting_does_not_brighten() {
     assert!((solved.radiosity[0][0] - 2.0).abs() <= solved.bound, "{solved:?}");
 }
 
+/// A patch that owed what it had sent ahead was shot again and again, because its debt was the largest: nothing else ever was.
+#[test]
+fn debts_are_not_shot_for_ever() {
+    let options = SceneOptions::DEFAULT.with_patch(0.3);
+    let surfaces = room(DVec3::ONE, DQuat::IDENTITY, 0.999, 1.0);
+    let (transport, direct) =
+        Scene::new(&surfaces, &options).expect("a room").transport(&[]).expect("a room");
+    let solved = transport.progressive(&direct, &[], &SolveOptions::DEFAULT).expect("solved");
+    assert!(solved.converged, "{} steps for {} patches", solved.steps, transport.patch_count());
+}
+
 /// With importance, overshooting sent the same debt back and forth for ever.
 #[test]
 fn shooting_by_importance_ends() {

@@ -28,8 +28,9 @@ pub(super) fn solve(
     let (mut bound, mut steps, mut converged) = (0.0, 0, shooter.state.power == 0.0);
     let units = shooter.units.len();
     while !converged && steps < options.max_sweeps.saturating_mul(units) {
-        let unit = shooter.next();
-        shooter.shoot(unit);
+        let ambient = shooter.ambient();
+        let unit = shooter.next(ambient);
+        shooter.shoot(unit, ambient);
         steps += 1;
         if steps % units == 0 {
             history.push(shooter.state.power_of(&shooter.unshot) / shooter.state.power);
@@ -82,21 +83,27 @@ impl<'t> Shooter<'t> {
         Self { state, unshot, units, weight: of_leaf, mean_reflectance, area, overshoot, flat }
     }
 
-    fn power_below(&self, unit: ElementId) -> f64 {
+    /// What a leaf sends when it is shot: what it has not sent yet, and what it will have to send of light that is still to come.
+    fn light(&self, leaf: ElementId, ambient: Rgb) -> Rgb {
+        add(self.unshot[leaf as usize], 1.0, times(self.state.reflectance(leaf), ambient))
+    }
+
+    /// The power that a unit sends, weighted by importance. Debts count as far as they would be paid now: a patch that has just sent
+    /// ahead owes what it would send ahead again, and by its debt alone would be shot for ever.
+    fn power_below(&self, unit: ElementId, ambient: Rgb) -> f64 {
         let mut power = 0.0;
         self.state.transport.scene.tree.leaves_below(unit, &mut |leaf| {
-            let i = leaf as usize;
-            let light: f64 = self.unshot[i].iter().map(|v| v.abs()).sum();
-            power += self.state.area(leaf) * light * self.weight[i];
+            let light: f64 = self.light(leaf, ambient).iter().map(|v| v.abs()).sum();
+            power += self.state.area(leaf) * light * self.weight[leaf as usize];
         });
         power
     }
 
-    /// The unit with the most unshot power, weighted by importance.
-    fn next(&self) -> ElementId {
+    /// The unit that sends the most power, weighted by importance.
+    fn next(&self, ambient: Rgb) -> ElementId {
         let mut best = (self.units[0], -1.0);
         for &unit in &self.units {
-            let power = self.power_below(unit);
+            let power = self.power_below(unit, ambient);
             if power > best.1 {
                 best = (unit, power);
             }
@@ -104,8 +111,11 @@ impl<'t> Shooter<'t> {
         best.0
     }
 
-    /// Even ambient radiosity that is still to come: unshot power, reflected on and on (\[2\], eq. 8).
+    /// Even ambient radiosity that is still to come, if it is sent ahead: unshot power, reflected on and on (\[2\], eq. 8).
     fn ambient(&self) -> Rgb {
+        if !self.overshoot {
+            return [0.0; 3];
+        }
         let leaves = self.state.transport.leaves.iter();
         let power =
             leaves.fold([0.0; 3], |sum, &leaf| add(sum, self.state.area(leaf), self.unshot[leaf as usize]));
@@ -117,18 +127,14 @@ impl<'t> Shooter<'t> {
         ambient
     }
 
-    fn shoot(&mut self, unit: ElementId) {
+    fn shoot(&mut self, unit: ElementId, ambient: Rgb) {
         let transport = self.state.transport;
         let tree = &transport.scene.tree;
-        let ambient = if self.overshoot { self.ambient() } else { [0.0; 3] };
         let mut sent = vec![];
         tree.leaves_below(unit, &mut |leaf| {
-            let i = leaf as usize;
+            sent.push((leaf, self.light(leaf, ambient)));
             // Sending more than there is leaves a debt, which what arrives later pays.
-            let extra = times(self.state.reflectance(leaf), ambient);
-            let light = add(self.unshot[i], 1.0, extra);
-            self.unshot[i] = extra.map(|e| -e);
-            sent.push((leaf, light));
+            self.unshot[leaf as usize] = times(self.state.reflectance(leaf), ambient).map(|e| -e);
         });
         if self.flat {
             for (leaf, light) in sent {
