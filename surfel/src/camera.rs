@@ -11,9 +11,10 @@ use glam::{DVec3, Vec3};
 /// then has one depth in a pixel, and belongs to one layer. Found by experiment.
 const BLURRED_PLANE: f32 = 2.0;
 
-/// How far behind the nearest one a disc may lie and still belong to the same surface: so many radii, and what a slanted
-/// surface gains over so many pixels and blur radii. Found by experiment.
+/// How far behind the nearest one a disc may lie and still belong to the same surface: so many radii of the disc and of its
+/// blur, and what a slanted surface gains over so many pixels and blur radii. Found by experiment.
 const THICKNESS: f32 = 1.5;
+const BLURRED_DISC_THICKNESS: f32 = 1.0;
 const SLANTED_THICKNESS: f32 = 1.5;
 const BLURRED_THICKNESS: f32 = 0.7;
 
@@ -137,6 +138,7 @@ impl Camera {
     #[inline(always)]
     pub(crate) fn thickness<R: Real>(&self, radius: R, slope: R, pixel: R, blur_radius: R) -> R {
         let slanted = pixel * SLANTED_THICKNESS + blur_radius * BLURRED_THICKNESS;
-        radius * THICKNESS + slope.at_most(STEEPEST) * slanted
+        let upright = radius * THICKNESS + blur_radius * BLURRED_DISC_THICKNESS;
+        upright + slope.at_most(STEEPEST) * slanted
     }
 }

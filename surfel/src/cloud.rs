@@ -6,7 +6,7 @@ use crate::links::{self, Link, Links};
 use crate::neighbours::Places;
 use crate::octree::{self, Cube};
 use crate::points::Points;
-use crate::{areas, normals, parallel, radius};
+use crate::{areas, normals, pairs, parallel, radius};
 use glam::{DVec3, Vec3};
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -17,7 +17,7 @@ const SMALLEST: f32 = 1.164_153_2e-10;
 /// Steps of a packed coordinate on either side of 0.
 const STEPS: f32 = 32767.0;
 
-/// What points are, in Morton order.
+/// What points are: those of a leaf follow one another.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Attributes {
     pub(crate) cells: [Vec<u32>; 3],
@@ -39,10 +39,28 @@ impl Attributes {
         Vec3::from_array([0, 1, 2].map(|axis| self.normals[axis][point]))
     }
 
+    /// Puts the point that was at `places[i]` at place i.
+    pub(crate) fn reorder(&mut self, places: &[u32]) {
+        fn reordered<T: Copy>(list: &mut Vec<T>, places: &[u32]) {
+            *list = places.iter().map(|&old| list[old as usize]).collect();
+        }
+        self.cells.iter_mut().for_each(|list| reordered(list, places));
+        self.normals.iter_mut().for_each(|list| reordered(list, places));
+        reordered(&mut self.radii, places);
+        reordered(&mut self.areas, places);
+        self.colours.iter_mut().for_each(|list| reordered(list, places));
+    }
+
     /// The point as a link that stands for itself.
     pub(crate) fn link(&self, point: usize) -> Link {
         let colour = self.colours.as_ref().map_or(Vec3::ZERO, |all| Vec3::from_array(all[point]));
-        Link { point: point as u32, area: self.areas[point], normal: self.normal(point), colour }
+        Link {
+            point: point as u32,
+            cell: self.cell(point),
+            area: self.areas[point],
+            normal: self.normal(point),
+            colour,
+        }
     }
 }
 
@@ -66,14 +84,31 @@ pub(crate) struct Node {
     pub(crate) spacing: f32,
     /// Largest radius of what is drawn for it, units.
     pub(crate) widest: f32,
-    /// What is drawn for it: links, or for a leaf points.
+    /// What is drawn for it: links, or for a leaf points. Pairs of neighbours first, then those that have none.
     pub(crate) items: Range<u32>,
+    pub(crate) pairs: u32,
     pub(crate) children: Range<u32>,
 }
 
 impl Node {
     pub(crate) fn is_leaf(&self) -> bool {
         self.children.is_empty()
+    }
+
+    /// What is drawn for it with one disc for every pair.
+    pub(crate) fn count_in_pairs(&self) -> usize {
+        self.items.len() - self.pairs as usize
+    }
+
+    /// As `spacing`, with one disc for every pair.
+    pub(crate) fn spacing_of_pairs(&self) -> f32 {
+        self.spacing * (self.items.len() as f32 / self.count_in_pairs() as f32).sqrt()
+    }
+
+    /// A bound of radii with one disc for every pair: kernels have half of that for a standard deviation, and the places of a
+    /// pair up to half of what they are apart.
+    pub(crate) fn widest_of_pairs(&self) -> f32 {
+        self.widest * (1.0 + pairs::FARTHEST * pairs::FARTHEST).sqrt()
     }
 
     /// A coordinate of a cell of its box in steps of half a side over [`STEPS`], from the middle.
@@ -118,12 +153,14 @@ impl Cloud {
     pub fn new(points: &Points<'_>) -> Result<Self, SurfelError> {
         points.check()?;
         let lattice = Lattice::around(points.positions);
-        let (attributes, codes) = in_order(points, &lattice);
+        let (mut attributes, codes) = in_order(points, &lattice);
         let (cubes, generations) = octree::divide(&codes);
-        let links = links::make(&cubes, &generations, &attributes);
+        let mut links = links::make(&cubes, &generations, &attributes);
+        let pairs = pairs::arrange(&cubes, &mut attributes, &mut links);
         let two_sided = points.normals.is_none();
-        let nodes = nodes(&cubes, &generations, &links, &attributes, two_sided);
-        let links = Links::pack(&links, &nodes, &attributes);
+        let mut nodes = nodes(&cubes, &generations, &links, &attributes, two_sided);
+        nodes.iter_mut().zip(pairs).for_each(|(node, pairs)| node.pairs = pairs);
+        let links = Links::pack(&links, &nodes, points.colours.is_some());
         Ok(Self { lattice, points: attributes, nodes, links, two_sided })
     }
 
@@ -288,6 +325,7 @@ fn leaf(cube: &Cube, points: &Attributes, two_sided: bool) -> Node {
         spacing: spacing(points.areas[range.clone()].iter().sum(), range.len()),
         widest: points.radii[range.clone()].iter().copied().fold(0.0, f32::max),
         items: range.start as u32..range.end as u32,
+        pairs: 0,
         children: 0..0,
     }
 }
@@ -319,6 +357,7 @@ fn inner(cube: &Cube, children: &[&Node], links: &[Link], first_link: u32) -> No
         spacing: spacing(area, links.len()),
         widest: links.iter().map(|l| radius_of_area(l.area)).fold(0.0, f32::max),
         items: first_link..first_link + links.len() as u32,
+        pairs: 0,
         children: cube.children.start as u32..cube.children.end as u32,
     }
 }

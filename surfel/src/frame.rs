@@ -128,6 +128,11 @@ impl Band<'_> {
         tile * tile::WIDTH..((tile + 1) * tile::WIDTH).min(self.width)
     }
 
+    /// All tiles as one.
+    pub(crate) fn whole(&self) -> Place {
+        Place { x: 0, y: self.first_row, width: self.width, height: self.rows() }
+    }
+
     /// Where a tile lies.
     pub(crate) fn place(&self, tile: usize) -> Place {
         let columns = self.columns(tile);

@@ -1,18 +1,19 @@
 //! Discs into a tile: nearest depths, then weighted sums.
 
-use crate::layer::{Depths, LANES, Layer, Normals, PITCH, RAMP, Sums};
+use crate::layer::{Depths, LANES, Layer, Normals, Open, PITCH, RAMP, Sums};
 use crate::splat::Splat;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Keeps the nearest depth of all `splats`; of those behind the floor unless this is the `FIRST` layer.
-pub(crate) fn nearest<const FIRST: bool>(layer: &mut Layer, splats: &[Splat]) {
-    Arch::new().dispatch(Nearest::<FIRST, _> { depths: &mut layer.depths, splats: splats.iter() });
+/// Keeps the nearest depth of all `splats` in the first layer.
+pub(crate) fn nearest(layer: &mut Layer, splats: &[Splat]) {
+    let (depths, splats) = (&mut layer.depths[..], splats.iter());
+    Arch::new().dispatch(Nearest::<true, _> { depths, splats, open: &Open::NOWHERE });
 }
 
-/// As [`nearest`] behind the floor, of the splats with these numbers.
-pub(crate) fn nearest_of(layer: &mut Layer, splats: &[Splat], numbers: &[u32]) {
+/// Keeps the nearest depth behind the floor, in blocks that are `open`, of the splats with these numbers.
+pub(crate) fn nearest_behind(layer: &mut Layer, splats: &[Splat], numbers: &[u32], open: &Open) {
     let splats = numbers.iter().map(|&i| &splats[i as usize]);
-    Arch::new().dispatch(Nearest::<false, _> { depths: &mut layer.depths, splats });
+    Arch::new().dispatch(Nearest::<false, _> { depths: &mut layer.depths, splats, open });
 }
 
 /// Puts the sharpness of the disc that is nearest into the first of the sums; the largest of those that are equally near.
@@ -21,7 +22,7 @@ pub(crate) fn sharpness_of_nearest(layer: &mut Layer, splats: &[Splat]) {
     Arch::new().dispatch(SharpnessOfNearest { layer, splats });
 }
 
-/// Adds up the splats with these numbers that belong to the nearest surface; `behind` gets the numbers of those that have
+/// Adds up the splats with these numbers that belong to the nearest surface, in the `FIRST` layer or else in blocks that are `open`; `behind` gets the numbers of those that have
 /// parts behind it. Discs may lie behind a surface by `slack` more than their thickness (bent depth). Normals are added up if
 /// they are `WANTED`.
 pub(crate) fn add<const FIRST: bool, const WANTED: bool>(
@@ -29,9 +30,9 @@ pub(crate) fn add<const FIRST: bool, const WANTED: bool>(
     splats: &[Splat],
     numbers: impl Iterator<Item = u32>,
     behind: &mut Vec<u32>,
-    slack: f32,
+    (open, slack): (&Open, f32),
 ) {
-    Arch::new().dispatch(Add::<FIRST, WANTED, _> { layer, splats, numbers, behind, slack });
+    Arch::new().dispatch(Add::<FIRST, WANTED, _> { layer, splats, numbers, behind, open, slack });
 }
 
 /// Within a kernel h is at most 1/(1 − √½) = 3.4; rounding could make it anything where planes are edge-on.
@@ -40,6 +41,7 @@ const LARGEST_H: f32 = 4.0;
 struct Nearest<'a, const FIRST: bool, I> {
     depths: &'a mut [Depths],
     splats: I,
+    open: &'a Open,
 }
 
 impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<'_, FIRST, I> {
@@ -54,6 +56,10 @@ impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<
                 for (i, ramp) in S::as_simd_f32s(&RAMP).0.iter().enumerate() {
                     let mut strip = Strip::new(simd, s, column, *ramp);
                     for row in s.rows() {
+                        if !FIRST && !self.open.has(column, row) {
+                            strip.step(simd);
+                            continue;
+                        }
                         let block = &mut self.depths[row * PITCH + column];
                         let floor = S::as_simd_f32s(&block.floor).0[i];
                         let (rest, depth) = strip.at::<FIRST>(simd, s, floor);
@@ -109,6 +115,7 @@ struct Add<'a, const FIRST: bool, const WANTED: bool, I> {
     splats: &'a [Splat],
     numbers: I,
     behind: &'a mut Vec<u32>,
+    open: &'a Open,
     slack: f32,
 }
 
@@ -129,6 +136,10 @@ impl<const FIRST: bool, const WANTED: bool, I: Iterator<Item = u32>> WithSimd fo
                 for (i, ramp) in S::as_simd_f32s(&RAMP).0.iter().enumerate() {
                     let mut strip = Strip::new(simd, s, column, *ramp);
                     for row in s.rows() {
+                        if !FIRST && !self.open.has(column, row) {
+                            strip.step(simd);
+                            continue;
+                        }
                         let block = &depths[row * PITCH + column];
                         let near = S::as_simd_f32s(&block.near).0[i];
                         let floor = S::as_simd_f32s(&block.floor).0[i];

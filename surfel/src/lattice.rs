@@ -55,6 +55,12 @@ pub(crate) fn between(from: [u32; 3], to: [u32; 3]) -> Vec3 {
     Vec3::from_array([0, 1, 2].map(|i| offset(from[i], to[i])))
 }
 
+/// The cell that is so many units away from one.
+pub(crate) fn moved(from: [u32; 3], way: Vec3) -> [u32; 3] {
+    let place = |i: usize| f64::from(from[i]) + f64::from(way[i]) * CELLS;
+    [0, 1, 2].map(|i| place(i).round().clamp(0.0, CELLS - 1.0) as u32)
+}
+
 /// One coordinate of [`between`], for cells less than half the lattice apart.
 #[inline(always)]
 pub(crate) fn offset(from: u32, to: u32) -> f32 {

@@ -1,6 +1,6 @@
 //! Working memory of a tile, in blocks of pixels that are computed together.
 
-use crate::tile::{HEIGHT, WIDTH};
+use crate::tile::{HEIGHT, SQUARE, WIDTH};
 use std::ops::Range;
 
 /// Pixels of a block, next to one another in a row: a whole number of vectors of any processor.
@@ -87,11 +87,46 @@ impl Layer {
         }
     }
 
+    /// Opens blocks that no disc touches.
+    pub(crate) fn open(&mut self, blocks: Range<usize>) {
+        self.depths[blocks].iter_mut().for_each(|d| d.floor = [0.0; LANES]);
+    }
+
     /// Makes these blocks of depths empty.
     pub(crate) fn clear_near(&mut self, touched: &Touched) {
         for row in touched.rows() {
             self.depths[touched.blocks(row)].iter_mut().for_each(|d| d.near = [f32::INFINITY; LANES]);
         }
+    }
+}
+
+/// Blocks of a tile with pixels that let light through: a bit for each column of blocks, in each row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Open([u16; HEIGHT]);
+
+impl Open {
+    pub(crate) const NOWHERE: Self = Self([0; HEIGHT]);
+
+    /// Adds a block.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, column: usize, row: usize) {
+        self.0[row] |= 1 << column;
+    }
+
+    #[inline(always)]
+    pub(crate) fn has(&self, column: usize, row: usize) -> bool {
+        self.0[row] >> column & 1 != 0
+    }
+
+    pub(crate) fn is_nowhere(&self) -> bool {
+        self.0.iter().all(|columns| *columns == 0)
+    }
+
+    /// Whether any of these blocks is open.
+    #[inline(always)]
+    pub(crate) fn meets(&self, columns: Range<usize>, rows: Range<usize>) -> bool {
+        let bits = ((1u32 << columns.end) - (1u32 << columns.start)) as u16;
+        self.0[rows].iter().fold(0, |all, open| all | open) & bits != 0
     }
 }
 
@@ -122,6 +157,25 @@ impl Touched {
     /// Columns of blocks.
     pub(crate) fn columns(&self) -> Range<usize> {
         self.columns[0]..self.columns[1]
+    }
+
+    /// These and what else is in the squares that they touch.
+    pub(crate) fn in_squares(&self) -> Self {
+        let outwards = |[first, last]: [usize; 2], side: usize| {
+            [first / side * side, last.next_multiple_of(side).max(first / side * side)]
+        };
+        Self { columns: outwards(self.columns, SQUARE / LANES), rows: outwards(self.rows, SQUARE) }
+    }
+
+    /// Indices of all other blocks of the first `height` rows of a tile.
+    pub(crate) fn others(&self, height: usize) -> impl Iterator<Item = Range<usize>> {
+        let Self { columns: [left, right], rows } = *self;
+        let of_row = move |row: usize| {
+            let (start, end) = (row * PITCH, (row + 1) * PITCH);
+            let is_beside = (rows[0]..rows[1]).contains(&row);
+            if is_beside { [start..start + left, start + right..end] } else { [start..end, end..end] }
+        };
+        (0..height).flat_map(of_row)
     }
 
     /// Indices of a row's blocks.

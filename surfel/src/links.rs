@@ -1,10 +1,10 @@
 //! Coarser levels: links to a few of a cube's points, each of which stands for its surroundings.
 //!
-//! A link names the point that it is drawn at; area, normal and colour are the means of what it stands for, as the
-//! prefiltered textures of \[1\] are, so that a coarse level is not a noisy one.
+//! A link names the point that is nearest to the middle of what it stands for; place, normal and colour are the means of that, and the
+//! area is the sum, as the prefiltered textures of \[1\] are, so that a coarse level is not a noisy one.
 
 use crate::cloud::{Attributes, Node};
-use crate::lattice::{CODE_BITS, between, morton};
+use crate::lattice::{CODE_BITS, between, morton, moved};
 use crate::octree::Cube;
 use crate::packed;
 use crate::parallel;
@@ -18,6 +18,8 @@ const DIVISIONS: u32 = 3;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link {
     pub(crate) point: u32,
+    /// Where it is drawn.
+    pub(crate) cell: [u32; 3],
     /// Area of all that it stands for, square units.
     pub(crate) area: f32,
     pub(crate) normal: Vec3,
@@ -28,8 +30,7 @@ pub(crate) struct Link {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Links {
     pub(crate) points: Vec<u32>,
-    /// Where these points are in the boxes of their nodes, see [`Node::offset`]: to look them up would wait for memory at
-    /// every link.
+    /// Where they are drawn in the boxes of their nodes, see [`Node::offset`].
     pub(crate) places: [Vec<i16>; 3],
     pub(crate) areas: Vec<f32>,
     pub(crate) normals: Vec<u32>,
@@ -38,15 +39,12 @@ pub(crate) struct Links {
 
 impl Links {
     /// `nodes` are those of the cubes.
-    pub(crate) fn pack(links: &[Vec<Link>], nodes: &[Node], points: &Attributes) -> Self {
+    pub(crate) fn pack(links: &[Vec<Link>], nodes: &[Node], coloured: bool) -> Self {
         let all = || links.iter().flatten();
-        let coloured = points.colours.is_some();
         let with_nodes =
             || nodes.iter().zip(links).flat_map(|(node, list)| list.iter().map(move |l| (node, l)));
         let place = |axis: usize| {
-            let packed =
-                |(node, link): (&Node, &Link)| node.place(axis, points.cells[axis][link.point as usize]);
-            with_nodes().map(packed).collect()
+            with_nodes().map(|(node, link): (&Node, &Link)| node.place(axis, link.cell[axis])).collect()
         };
         Self {
             points: all().map(|l| l.point).collect(),
@@ -92,9 +90,9 @@ fn links_of(cube: &Cube, cubes: &[Cube], links: &[Vec<Link>], points: &Attribute
     let cell = |link: &Link| morton(points.cell(link.point as usize)) >> (3 * below);
     let mut made = vec![];
     for of_cell in finer.chunk_by_mut(|a, b| cell(a) == cell(b)) {
-        stand_for(of_cell, points, &mut made);
+        stand_for(of_cell, &mut made);
     }
-    absorb_slivers(&mut made, points);
+    absorb_slivers(&mut made);
     // In the order of points, and so in that of cells for the next level.
     made.sort_unstable_by_key(|l| l.point);
     made
@@ -104,36 +102,32 @@ fn links_of(cube: &Cube, cubes: &[Cube], links: &[Vec<Link>], points: &Attribute
 const SLIVER: f32 = 0.4;
 
 /// Surfaces cut corners off cells: links for those would lie close to others and leave gaps elsewhere.
-fn absorb_slivers(links: &mut Vec<Link>, points: &Attributes) {
+fn absorb_slivers(links: &mut Vec<Link>) {
     let least = SLIVER * links.iter().map(|l| l.area).sum::<f32>() / links.len() as f32;
     // The smallest first, so that several small ones may make a large one.
     links.sort_unstable_by(|a, b| a.area.total_cmp(&b.area).then(a.point.cmp(&b.point)));
     let mut kept = std::mem::take(links);
     for i in 0..kept.len() {
         let sliver = kept[i];
-        let origin = points.cell(sliver.point as usize);
-        let distance2 = |l: &Link| between(origin, points.cell(l.point as usize)).length_squared();
+        let distance2 = |l: &Link| between(sliver.cell, l.cell).length_squared();
         let nearest = (i + 1..kept.len())
             .filter(|&j| kept[j].normal.dot(sliver.normal) > 0.5)
             .min_by(|&a, &b| distance2(&kept[a]).total_cmp(&distance2(&kept[b])).then(a.cmp(&b)))
             .filter(|_| sliver.area < least);
         match nearest {
-            Some(j) => {
-                let place = kept[j].point;
-                kept[j] = Link { point: place, ..merged(&[kept[j], sliver], points) };
-            }
+            Some(j) => kept[j] = Link { point: kept[j].point, ..merged(&[kept[j], sliver]) },
             None => links.push(sliver),
         }
     }
 }
 
 /// One link for each side that the surface has among `links`: the sides of a thin sheet stay apart.
-fn stand_for(mut links: &mut [Link], points: &Attributes, made: &mut Vec<Link>) {
+fn stand_for(mut links: &mut [Link], made: &mut Vec<Link>) {
     while let Some(first) = links.first() {
         let facing = first.normal;
         let count = partition(links, |l| l.normal.dot(facing) > 0.0);
         let (side, rest) = links.split_at_mut(count);
-        made.push(merged(side, points));
+        made.push(merged(side));
         links = rest;
     }
 }
@@ -151,10 +145,10 @@ fn partition(links: &mut [Link], passes: impl Fn(&Link) -> bool) -> usize {
     count
 }
 
-/// What `links` stand for, at the one nearest to their middle.
-fn merged(links: &[Link], points: &Attributes) -> Link {
-    let origin = points.cell(links[0].point as usize);
-    let place = |l: &Link| between(origin, points.cell(l.point as usize));
+/// What `links` stand for together.
+fn merged(links: &[Link]) -> Link {
+    let origin = links[0].cell;
+    let place = |l: &Link| between(origin, l.cell);
     let area: f32 = links.iter().map(|l| l.area).sum();
     let mean = links.iter().map(|l| place(l) * (l.area / area)).sum::<Vec3>();
     let normal = links.iter().map(|l| l.normal * (l.area / area)).sum::<Vec3>();
@@ -164,5 +158,11 @@ fn merged(links: &[Link], points: &Attributes) -> Link {
         .iter()
         .min_by(|a, b| distance2(a).total_cmp(&distance2(b)).then(a.point.cmp(&b.point)))
         .expect("a cell is made of at least one link");
-    Link { point: nearest.point, area, normal: normal.try_normalize().unwrap_or(nearest.normal), colour }
+    Link {
+        point: nearest.point,
+        cell: moved(origin, mean),
+        area,
+        normal: normal.try_normalize().unwrap_or(nearest.normal),
+        colour,
+    }
 }

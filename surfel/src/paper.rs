@@ -13,9 +13,10 @@ use crate::camera::Camera;
 use crate::frame::Band;
 use crate::kernel;
 use crate::layer::{LANES, Layer, PITCH, Touched};
-use crate::project::{Items, Projector};
+use crate::project::Projector;
 use crate::select::Selected;
 use crate::splat::{Shape, Splat};
+use crate::splats::Splats;
 use crate::tile::{self, Place, Scene};
 use glam::Vec3;
 
@@ -65,13 +66,13 @@ impl Cell {
 /// Working memory for tiles.
 pub(crate) struct PaperTile {
     projector: Box<Projector>,
-    splats: Vec<Splat>,
+    splats: Splats,
     layer: Layer,
 }
 
 impl Default for PaperTile {
     fn default() -> Self {
-        Self { projector: Projector::new(), splats: vec![], layer: Layer::new() }
+        Self { projector: Projector::new(), splats: Splats::default(), layer: Layer::new() }
     }
 }
 
@@ -93,13 +94,11 @@ impl PaperTile {
         for (k, shape) in [Some(Shape::DISC), second].into_iter().flatten().enumerate() {
             self.splats.clear();
             for selected in nodes {
-                let node = &scene.cloud.nodes[selected.node as usize];
-                let items = Items::new(node, selected);
-                self.projector.project(scene, &items, &shape, place, &mut self.splats);
+                self.projector.project(scene, selected, &shape, place, &mut self.splats);
             }
             self.layer.clear_near(&Touched::ALL);
-            kernel::nearest::<true>(&mut self.layer, &self.splats);
-            kernel::sharpness_of_nearest(&mut self.layer, &self.splats);
+            kernel::nearest(&mut self.layer, self.splats.as_slice());
+            kernel::sharpness_of_nearest(&mut self.layer, self.splats.as_slice());
             for row in 0..place.height {
                 for column in 0..place.width {
                     let cell = &mut cells[at(row, column)];
@@ -110,7 +109,7 @@ impl PaperTile {
             }
         }
         // The splats are those with r: a link knows its filter.
-        for s in &self.splats {
+        for s in self.splats.as_slice() {
             let (x, y) = (s.x.floor(), s.y.floor());
             let inside = x >= 0.0 && y >= 0.0 && x < place.width as f32 && y < place.height as f32;
             if !inside {

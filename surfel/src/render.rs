@@ -71,11 +71,12 @@ impl Renderer {
 
     fn blend(&self, scene: &Scene<'_>, frame: &mut Frame) {
         parallel::for_each_mut(&mut frame.bands(), |band| {
+            let of_band: Vec<Selected> = nodes_in(&self.selected, &band.whole()).collect();
             self.tiles.with(|tile| {
                 for number in 0..band.drawn.len() {
                     let place = band.place(number);
-                    let mut nodes = nodes_in(&self.selected, &place).peekable();
-                    if nodes.peek().is_none() {
+                    let nodes = nodes_in(&of_band, &place);
+                    if nodes.clone().next().is_none() {
                         band.clear(number);
                     } else {
                         tile.draw(scene, &place, nodes, band);
@@ -104,8 +105,8 @@ impl Renderer {
     }
 }
 
-/// The nodes with parts in a tile.
-fn nodes_in(selected: &[Selected], place: &Place) -> impl Iterator<Item = Selected> {
+/// The nodes with parts in some of the pixels.
+fn nodes_in(selected: &[Selected], place: &Place) -> impl Iterator<Item = Selected> + Clone {
     let (x, y) = (place.x..place.x + place.width, place.y..place.y + place.height);
     let meets = |ends: [u16; 2], range: &Range<usize>| {
         usize::from(ends[0]) < range.end && usize::from(ends[1]) >= range.start

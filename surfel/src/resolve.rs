@@ -1,12 +1,11 @@
 //! From the sums of a layer to the colours of its pixels, a block at a time.
 
 use crate::frame::Band;
-use crate::layer::{LANES, Lanes, Layer, PITCH, Pixels, Sums, Touched};
+use crate::layer::{LANES, Lanes, Layer, Open, PITCH, Pixels, Touched};
 use crate::shade::{INDEPENDENT, LEAST_LIGHT, Shader, opacity};
 use crate::tile::{Place, WIDTH};
 use crate::vector::Vector;
 use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
-use std::ops::Range;
 
 /// Less weight is none: its inverse would not be a number that can be used.
 const LEAST_WEIGHT: f32 = 1e-30;
@@ -14,14 +13,14 @@ const LEAST_WEIGHT: f32 = 1e-30;
 /// Beside a pixel with less weight than this there is an edge.
 const LEAST_INSIDE: f32 = 0.25;
 
-/// Lays a layer under what is in `pixels`, which are empty before the `FIRST`, and clears its sums; whether any pixel that it
-/// touched lets light through. Normals are kept if they are `WANTED`.
+/// Lays a layer under what is in `pixels`, which are empty before the `FIRST`, and clears its sums; where pixels that it
+/// touched let light through. Normals are kept if they are `WANTED`.
 pub(crate) fn resolve<const FIRST: bool, const WANTED: bool>(
     layer: &mut Layer,
     pixels: &mut [Pixels],
     place: &Place,
     touched: &Touched,
-) -> bool {
+) -> Open {
     Arch::new().dispatch(Resolve::<FIRST, WANTED> { layer, pixels, place, touched })
 }
 
@@ -39,15 +38,15 @@ struct Resolve<'a, const FIRST: bool, const WANTED: bool> {
 }
 
 impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANTED> {
-    type Output = bool;
+    type Output = Open;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> bool {
+    fn with_simd<S: Simd>(self, simd: S) -> Open {
         let Self { layer, pixels, place, touched } = self;
         let mut lines = Lines::new();
-        let mut open = simd.splat_f32s(0.0);
+        let mut open = Open::NOWHERE;
         for row in touched.rows() {
-            lines.take(simd, &layer.sums, place, touched.columns(), row);
+            lines.take::<S, FIRST>(simd, layer, place, touched, row);
             if row > touched.rows().start {
                 // Rows below need it no more.
                 layer.clear_sums::<WANTED>(touched.blocks(row - 1));
@@ -63,7 +62,7 @@ impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANT
                     let is_there = weight.exceeds(LEAST_WEIGHT);
                     let inverse = weight.if_set(is_there, 1.0).inverse();
                     let mean = |sums: &Lanes| vector(sums) * inverse;
-                    let alpha = opacity(lines.evened(weight, column, i), mean(sharpness));
+                    let alpha = opacity(lines.evened::<S, FIRST>(weight, column, i), mean(sharpness));
                     let under = Under { alpha, is_there, i };
                     let colour = [mean(&colour[0]), mean(&colour[1]), mean(&colour[2])];
                     let pixels = &mut pixels[index];
@@ -79,14 +78,16 @@ impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANT
                     let is_open = simd.and_m32s(is_there, light.exceeds(LEAST_LIGHT));
                     let floor = vector(&depths.near).if_set(is_open, f32::INFINITY);
                     S::as_mut_simd_f32s(&mut depths.floor).0[i] = floor.lanes;
-                    open = simd.select_f32s(is_open, simd.splat_f32s(1.0), open);
+                    if simd.first_true_m32s(is_open) < S::F32_LANES {
+                        open.add(column, row);
+                    }
                 }
             }
         }
         if let Some(last) = touched.rows().next_back() {
             layer.clear_sums::<WANTED>(touched.blocks(last));
         }
-        simd.reduce_max_f32s(open) > 0.0
+        open
     }
 }
 
@@ -133,35 +134,64 @@ fn keep<S: Simd, const FIRST: bool>(new: Vector<S>, mask: S::m32s, empty: f32, k
     *kept = if FIRST { new.if_set(mask, empty) } else { new.or_where_unset(mask, *kept) }.lanes;
 }
 
-/// Sums and minima of three pixels above one another, for a row. With a block of room on either side.
+/// A value of each pixel of a row. With a block of room on either side.
+type Line = [f32; WIDTH + 2 * LANES];
+
+/// Three pixels above one another, for a row: of those that were open before this layer. What others would have shown of it is
+/// not known; they are no edge of it.
 struct Lines {
-    sums: [f32; WIDTH + 2 * LANES],
-    least: [f32; WIDTH + 2 * LANES],
+    sums: Line,
+    least: Line,
+    /// How many were open.
+    counts: Line,
+    /// 1 where the row before was open: its floors are new already.
+    above: Line,
 }
 
 impl Lines {
     #[inline(always)]
     fn new() -> Self {
-        Self { sums: [0.0; WIDTH + 2 * LANES], least: [0.0; WIDTH + 2 * LANES] }
+        let zero = [0.0; WIDTH + 2 * LANES];
+        Self { sums: zero, least: zero, counts: zero, above: zero }
     }
 
-    /// Takes the weights of a row and its neighbours. Beyond the tile they are those of its outermost pixels.
+    /// Takes the weights of a row and its neighbours, one row after the other. Beyond the tile they are those of its
+    /// outermost pixels.
     #[inline(always)]
-    fn take<S: Simd>(&mut self, simd: S, sums: &[Sums], place: &Place, columns: Range<usize>, row: usize) {
+    fn take<S: Simd, const FIRST: bool>(
+        &mut self,
+        simd: S,
+        layer: &Layer,
+        place: &Place,
+        touched: &Touched,
+        row: usize,
+    ) {
         let rows = [row.saturating_sub(1), row, (row + 1).min(place.height - 1)];
+        let is_first = row == 0 || row == touched.rows().start;
+        let columns = touched.columns();
         let first = columns.start.saturating_sub(1);
         let last = (columns.end + 1).min(place.width.div_ceil(LANES));
         for column in first..last {
-            let [above, own, below] = rows.map(|row| S::as_simd_f32s(&sums[row * PITCH + column].0[0]).0);
-            let lanes = (column + 1) * LANES..(column + 2) * LANES;
-            let line = S::as_mut_simd_f32s(&mut self.sums[lanes.clone()]).0;
-            let least = S::as_mut_simd_f32s(&mut self.least[lanes]).0;
-            for i in 0..own.len() {
-                line[i] = simd.add_f32s(simd.add_f32s(above[i], below[i]), own[i]);
-                least[i] = simd.min_f32s(simd.min_f32s(above[i], below[i]), own[i]);
+            for i in 0..LANES / S::F32_LANES {
+                // No closures: what is compiled on its own stays narrow.
+                let above = Weights::<S>::new::<FIRST>(simd, layer, rows[0] * PITCH + column, i);
+                let own = Weights::<S>::new::<FIRST>(simd, layer, rows[1] * PITCH + column, i);
+                let below = Weights::<S>::new::<FIRST>(simd, layer, rows[2] * PITCH + column, i);
+                let sum = above.weight + below.weight + own.weight;
+                lanes_mut::<S>(&mut self.sums, column)[i] = sum.lanes;
+                let mut least = above.weight.min(below.weight).min(own.weight);
+                if !FIRST {
+                    let above_open =
+                        if is_first { above.open } else { own.open.with(lanes::<S>(&self.above, column)[i]) };
+                    least = own.least(own.open).min(above.least(above_open)).min(below.least(below.open));
+                    let count = above_open + own.open + below.open;
+                    lanes_mut::<S>(&mut self.counts, column)[i] = count.lanes;
+                    lanes_mut::<S>(&mut self.above, column)[i] = own.open.lanes;
+                }
+                lanes_mut::<S>(&mut self.least, column)[i] = least.lanes;
             }
         }
-        for line in [&mut self.sums, &mut self.least] {
+        for line in [&mut self.sums, &mut self.least, &mut self.counts] {
             line[LANES - 1] = line[LANES];
             line[LANES + place.width] = line[LANES + place.width - 1];
         }
@@ -171,15 +201,79 @@ impl Lines {
     ///
     /// Weights vary between points. Over an edge that is blurred they fall evenly: there the mean is that of the middle.
     #[inline(always)]
-    fn evened<S: Simd>(&self, own: Vector<S>, column: usize, i: usize) -> Vector<S> {
-        let first = (column + 1) * LANES;
-        let at = |line: &[f32], from: usize| own.with(S::as_simd_f32s(&line[from..from + LANES]).0[i]);
-        let around = |line: &[f32]| [at(line, first - 1), at(line, first), at(line, first + 1)];
-        let [left, middle, right] = around(&self.sums);
-        let mean = (left + right + middle) * (1.0 / 9.0);
-        let [left, middle, right] = around(&self.least);
+    fn evened<S: Simd, const FIRST: bool>(&self, own: Vector<S>, column: usize, i: usize) -> Vector<S> {
+        let [left, middle, right] = around(&self.sums, own, column, i);
+        let sum = left + right + middle;
+        let mean = if FIRST {
+            sum * (1.0 / 9.0)
+        } else {
+            let [left, middle, right] = around(&self.counts, own, column, i);
+            sum / (left + right + middle).at_least(1.0)
+        };
+        let [left, middle, right] = around(&self.least, own, column, i);
         let least = left.min(right).min(middle);
         mean.max(own).or_where_unset(least.exceeds(LEAST_INSIDE), own.lanes)
+    }
+}
+
+/// The vectors of a block in a line.
+#[inline(always)]
+fn lanes<S: Simd>(line: &Line, column: usize) -> &[S::f32s] {
+    S::as_simd_f32s(&line[(column + 1) * LANES..(column + 2) * LANES]).0
+}
+
+#[inline(always)]
+fn lanes_mut<S: Simd>(line: &mut Line, column: usize) -> &mut [S::f32s] {
+    S::as_mut_simd_f32s(&mut line[(column + 1) * LANES..(column + 2) * LANES]).0
+}
+
+/// Vector `i` of a block, and those of the pixels to its left and right around it.
+#[inline(always)]
+fn around<S: Simd>(line: &Line, own: Vector<S>, column: usize, i: usize) -> [Vector<S>; 3] {
+    let first = (column + 1) * LANES;
+    [
+        own.with(S::as_simd_f32s(&line[first - 1..first - 1 + LANES]).0[i]),
+        own.with(S::as_simd_f32s(&line[first..first + LANES]).0[i]),
+        own.with(S::as_simd_f32s(&line[first + 1..first + 1 + LANES]).0[i]),
+    ]
+}
+
+/// Weights of a vector of pixels, and 1 where they were open before this layer.
+struct Weights<S: Simd> {
+    weight: Vector<S>,
+    open: Vector<S>,
+}
+
+impl<S: Simd> Weights<S> {
+    /// Vector `i` of a block.
+    #[inline(always)]
+    fn new<const FIRST: bool>(simd: S, layer: &Layer, block: usize, i: usize) -> Self {
+        let weight = Vector::new(simd, S::as_simd_f32s(&layer.sums[block].0[0]).0[i]);
+        let mut open = Vector::all(simd, 1.0);
+        if !FIRST {
+            let floor = Vector::new(simd, S::as_simd_f32s(&layer.depths[block].floor).0[i]);
+            open = Vector::all(simd, 0.0).if_set(floor.exceeds(f32::MAX), 1.0);
+        }
+        Self { weight, open }
+    }
+
+    /// The weight, +∞ where pixels were not open.
+    #[inline(always)]
+    fn least(&self, open: Vector<S>) -> Vector<S> {
+        self.weight.if_set(open.exceeds(0.5), f32::INFINITY)
+    }
+}
+
+impl Pixels {
+    #[inline(always)]
+    fn write(&self, shader: &Shader, colours: &mut [[f32; 4]], depths: &mut [f32]) {
+        let [red, green, blue, alpha] = &self.colour;
+        for (i, colour) in colours.iter_mut().enumerate() {
+            *colour = [red[i], green[i], blue[i], alpha[i]];
+        }
+        for (depth, &bent) in depths.iter_mut().zip(&self.depth) {
+            *depth = shader.depth(bent);
+        }
     }
 }
 
@@ -202,10 +296,12 @@ impl NullaryFnOnce for Write<'_, '_> {
             let colours = band.colour[to.clone()].chunks_mut(LANES);
             let depths = band.depth[to.clone()].chunks_mut(LANES);
             for ((pixels, colours), depths) in from.iter().zip(colours).zip(depths) {
-                let [red, green, blue, alpha] = &pixels.colour;
-                let block: [[f32; 4]; LANES] = std::array::from_fn(|i| [red[i], green[i], blue[i], alpha[i]]);
-                colours.copy_from_slice(&block[..colours.len()]);
-                depths.copy_from_slice(&pixels.depth.map(|bent| shader.depth(bent))[..depths.len()]);
+                // Whole blocks by themselves: what has a length known beforehand needs no call to copy.
+                match (<&mut [_; LANES]>::try_from(&mut *colours), <&mut [_; LANES]>::try_from(&mut *depths))
+                {
+                    (Ok(colours), Ok(depths)) => pixels.write(shader, colours, depths),
+                    _ => pixels.write(shader, colours, depths),
+                }
             }
             let Some(normals) = &mut band.normal else { continue };
             for (pixels, normals) in from.iter().zip(normals[to].chunks_mut(LANES)) {

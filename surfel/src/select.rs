@@ -7,14 +7,11 @@ use crate::options::Options;
 use crate::splat::{DEVIATION_PER_RADIUS, PIXEL_DEVIATION};
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// Points with a blur of radius R may be 1.3 + 0.4·R apart (pixels), but never more than 0.5·R. Found by experiment: wider apart
+/// Points with a blur of radius R may be 3 + 0.3·R apart (pixels), but never more than 1.2·R. Found by experiment: wider apart
 /// they show as dots.
-const BLURRED_START: f32 = 1.3;
-const BLURRED_SLOPE: f32 = 0.4;
-const BLURRED_MOST: f32 = 0.5;
-
-/// Between the levels of the tree, of blurred points down to a fourth is drawn, for all.
-const MOST_THINNING: f32 = 4.0;
+const BLURRED_START: f32 = 3.0;
+const BLURRED_SLOPE: f32 = 0.3;
+const BLURRED_MOST: f32 = 1.2;
 
 /// A node to draw.
 #[derive(Clone, Copy, Debug)]
@@ -27,13 +24,16 @@ pub(crate) struct Selected {
     pub(crate) y: [u16; 2],
     /// How far from its centre any disc of it may touch pixels.
     pub(crate) margin: f32,
-    /// How many of its items are drawn, for all.
-    pub(crate) drawn: u32,
+    /// Whether pairs of its items are drawn as one.
+    pub(crate) in_pairs: bool,
     /// Nothing of it has a smaller bent depth.
     pub(crate) nearest: f32,
     /// Nor does anything belong to a surface farther before it than this.
     pub(crate) thickness: f32,
 }
+
+/// For boxes in the axes of the picture.
+const REACH_ROUNDED_UP: f32 = 1.0 + 1e-5;
 
 /// Walks the tree from its root. The nearest nodes come first.
 pub(crate) fn select(
@@ -49,7 +49,11 @@ pub(crate) fn select(
     stack.push(0);
     while let Some(number) = stack.pop() {
         let node = &cloud.nodes[number as usize];
-        let Some(seen) = Seen::of(node, camera) else {
+        let depths = Depths::of(node, camera);
+        let spacing = depths.largest_spacing(camera, options.level);
+        let in_pairs = node.pairs > 0 && node.spacing_of_pairs() <= spacing;
+        let widest = if in_pairs { node.widest_of_pairs() } else { node.widest };
+        let Some(seen) = Seen::of(node, &depths, widest, camera) else {
             counts.nodes_outside += 1;
             continue;
         };
@@ -57,33 +61,47 @@ pub(crate) fn select(
             counts.nodes_facing_away += 1;
             continue;
         }
-        let spacing_px = node.spacing * camera.pixels_per_unit(seen.depths[0].max(camera.near));
-        let blurred_px = seen.blurred_spacing_px(camera, options.level);
-        if !node.is_leaf() && spacing_px > options.level.max(blurred_px) {
+        if !node.is_leaf() && node.spacing > spacing {
             stack.extend(node.children.clone());
             continue;
         }
-        let thinning = (blurred_px / spacing_px).powi(2);
-        // Not `clamp`, which keeps NaN: points that have no extent on the picture, and no blur.
-        let thinning = if thinning > 1.0 { thinning.min(MOST_THINNING) } else { 1.0 };
-        let drawn = (node.items.len() as f32 / thinning).ceil() as usize;
+        let drawn = if in_pairs { node.count_in_pairs() } else { node.items.len() };
         counts.nodes += 1;
         counts.points += drawn;
         counts.links += if node.is_leaf() { 0 } else { drawn };
         let Seen { x, y, margin, nearest, thickness, .. } = seen;
-        selected.push(Selected {
-            node: number,
-            place: 0,
-            x,
-            y,
-            margin,
-            drawn: drawn as u32,
-            nearest,
-            thickness,
-        });
+        selected.push(Selected { node: number, place: 0, x, y, margin, in_pairs, nearest, thickness });
     }
     selected.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.node.cmp(&b.node)));
     selected.iter_mut().zip(0..).for_each(|(s, place)| s.place = place);
+}
+
+/// Relative depths of a node: of its nearest point and of its farthest.
+struct Depths([f32; 2]);
+
+impl Depths {
+    fn of(node: &Node, camera: &Camera) -> Self {
+        let middle = (camera.local(node).z - camera.reference) as f32;
+        let reach = camera.axes[2].abs().dot(node.half) * REACH_ROUNDED_UP;
+        Self([middle - reach, middle + reach])
+    }
+
+    /// How far apart points of the node may be, units.
+    fn largest_spacing(&self, camera: &Camera, level: f32) -> f32 {
+        level.max(self.blurred_spacing_px(camera, level)) / camera.pixels_per_unit(self.0[0].max(camera.near))
+    }
+
+    /// How far apart, in pixels, points may be for their blur.
+    fn blurred_spacing_px(&self, camera: &Camera, level: f32) -> f32 {
+        let [nearest, farthest] = self.0;
+        if nearest <= camera.focus && camera.focus <= farthest {
+            return 0.0;
+        }
+        let px = |depth: f32| camera.blur_radius(depth) * camera.pixels_per_unit(depth);
+        let least_blur = px(nearest.max(camera.near)).min(px(farthest));
+        let apart = (BLURRED_START + BLURRED_SLOPE * least_blur).min(BLURRED_MOST * least_blur);
+        apart * level.min(1.0)
+    }
 }
 
 /// A node on the picture.
@@ -93,25 +111,21 @@ struct Seen {
     margin: f32,
     nearest: f32,
     thickness: f32,
-    /// Relative depths of its points.
-    depths: [f32; 2],
 }
 
 impl Seen {
-    /// `None` if nothing of it falls onto the picture.
-    fn of(node: &Node, camera: &Camera) -> Option<Self> {
-        let middle = camera.local(node);
-        let half = node.half;
-        let reach = camera.axes.map(|axis| axis.abs().dot(half) * (1.0 + 1e-5));
-        let middle_depth = (middle.z - camera.reference) as f32;
-        let depths = [middle_depth - reach[2], middle_depth + reach[2]];
+    /// `None` if nothing of it, with discs up to a radius of `widest`, falls onto the picture.
+    fn of(node: &Node, &Depths(depths): &Depths, widest: f32, camera: &Camera) -> Option<Self> {
         if depths[1] <= camera.near {
             return None;
         }
+        let middle = camera.local(node);
+        let half = node.half;
+        let reach = camera.axes.map(|axis| axis.abs().dot(half) * REACH_ROUNDED_UP);
         let nearest_point = depths[0].max(camera.near);
         let blur_radius = camera.blur_radius(nearest_point).max(camera.blur_radius(depths[1]));
         let scale = camera.pixels_per_unit(nearest_point);
-        let deviation = DEVIATION_PER_RADIUS * node.widest;
+        let deviation = DEVIATION_PER_RADIUS * widest;
         let axis = |i: usize| {
             let [low, high] = interval(middle[i] as f32, reach[i], depths, camera);
             // Discs off the axis look longer than they are.
@@ -130,28 +144,10 @@ impl Seen {
         let before = (nearest_point - camera.plane_reach(deviation, blur_radius)).max(camera.near);
         let inverse = 1.0 / (nearest_point + camera.reference as f32);
         let thickness =
-            camera.thickness(node.widest, f32::INFINITY, 1.0 / scale, blur_radius) * camera.bending(inverse);
+            camera.thickness(widest, f32::INFINITY, 1.0 / scale, blur_radius) * camera.bending(inverse);
         // Rounding of what is drawn, relative to its largest number.
         let slack = 1e-5 * (before.abs() + camera.bent(before).abs());
-        Some(Self {
-            x,
-            y,
-            margin,
-            nearest: camera.bent(before) - slack,
-            thickness: thickness + slack,
-            depths,
-        })
-    }
-
-    /// How far apart, in pixels, points may be for their blur.
-    fn blurred_spacing_px(&self, camera: &Camera, level: f32) -> f32 {
-        if self.depths[0] <= camera.focus && camera.focus <= self.depths[1] {
-            return 0.0;
-        }
-        let px = |depth: f32| camera.blur_radius(depth) * camera.pixels_per_unit(depth);
-        let least_blur = px(self.depths[0].max(camera.near)).min(px(self.depths[1]));
-        let apart = (BLURRED_START + BLURRED_SLOPE * least_blur).min(BLURRED_MOST * least_blur);
-        apart * level.min(1.0)
+        Some(Self { x, y, margin, nearest: camera.bent(before) - slack, thickness: thickness + slack })
     }
 }
 

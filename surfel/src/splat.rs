@@ -10,11 +10,11 @@
 //! conic of its perspective image, evaluated about the image's own centre, and 1/h scales a depth that is affine in d.
 
 use crate::camera::Camera;
+use crate::cloud::Node;
 use crate::layer;
-use crate::project::Items;
 use crate::tile;
 use crate::vector::{Real, Vector};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use pulp::Simd;
 use std::ops::Range;
 
@@ -35,6 +35,9 @@ const FLAT_REACH2: f32 = 5.0;
 /// The paper's discs have hard edges. In quadrature with this radius, half the diagonal of a pixel, each covers a pixel's
 /// centre.
 const LEAST_RADIUS2: f32 = 0.5;
+
+/// The ellipse of these discs covers both of a pair, where they are a radius apart.
+const DISC_SPREAD: f32 = 2.236;
 
 /// Edges of this variance (in pixels) are as sharp as a pixel shows them: Gaussian with the slope of a box.
 const EDGE_VARIANCE: f32 = 0.16;
@@ -119,8 +122,9 @@ impl Splat {
 /// How discs are drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shape {
-    /// Standard deviation of the kernel over the radius.
+    /// Standard deviation of the kernel over the radius, and what it gains from the spread of a pair.
     deviation: f32,
+    spread: f32,
     /// What is added for the pixel.
     pixel_variance: f32,
     reach2: f32,
@@ -136,6 +140,7 @@ impl Shape {
     /// Kernels, blurred by the lens.
     pub(crate) const BLENDED: Self = Self {
         deviation: DEVIATION_PER_RADIUS,
+        spread: 1.0,
         pixel_variance: PIXEL_VARIANCE,
         reach2: REACH2,
         flat_reach2: FLAT_REACH2,
@@ -147,6 +152,7 @@ impl Shape {
     /// Discs with hard edges.
     pub(crate) const DISC: Self = Self {
         deviation: 1.0,
+        spread: DISC_SPREAD,
         pixel_variance: LEAST_RADIUS2,
         reach2: 1.0,
         flat_reach2: 1.0,
@@ -200,8 +206,14 @@ impl Projected {
     pub(crate) const NOTHING: Self = Self([[0.0; LANES]; Value::Kept as usize + 1]);
 
     #[inline(always)]
-    pub(crate) fn get(&self, item: usize, value: Value) -> f32 {
+    fn get(&self, item: usize, value: Value) -> f32 {
         self.0[value as usize][item]
+    }
+
+    /// Whether an item has a disc that may touch pixels.
+    #[inline(always)]
+    pub(crate) fn is_kept(&self, item: usize) -> bool {
+        self.get(item, Value::Kept) > 0.0
     }
 
     /// Sets a vector of items.
@@ -227,8 +239,8 @@ impl Projected {
             weight: get(Value::Weight),
             thickness: get(Value::Thickness),
             flat: get(Value::Flat) > 0.0,
-            columns: [get(Value::Left) as u8, get(Value::Right) as u8],
-            rows: [get(Value::Top) as u8, get(Value::Bottom) as u8],
+            columns: [whole(get(Value::Left)), whole(get(Value::Right))],
+            rows: [whole(get(Value::Top)), whole(get(Value::Bottom))],
             sharpness: get(Value::Sharpness),
             colour: [get(Value::Red), get(Value::Green), get(Value::Blue)],
             normal: [get(Value::NormalX), get(Value::NormalY), get(Value::NormalZ)],
@@ -251,8 +263,14 @@ pub(crate) struct Map {
 }
 
 impl Map {
-    pub(crate) fn new(camera: &Camera, drawn: &Items<'_>, tile: &tile::Place, two_sided: bool) -> Self {
-        let Items { node, margin, .. } = *drawn;
+    /// `margin` is how far from its centre any disc of `node` may touch pixels.
+    pub(crate) fn new(
+        camera: &Camera,
+        node: &Node,
+        margin: f32,
+        tile: &tile::Place,
+        two_sided: bool,
+    ) -> Self {
         let f = f64::from(camera.focal);
         let v = &camera.view;
         let origin = camera.local(node);
@@ -287,6 +305,8 @@ pub(crate) struct Placed<S: Simd> {
     /// The way from the eye, for one along the view axis.
     way: [Vector<S>; 2],
     pub(crate) normal: [Vector<S>; 3],
+    /// See [`crate::items::Items::spreads`].
+    spread: [Vector<S>; 3],
     /// Below 0 towards the eye.
     facing: Vector<S>,
 }
@@ -300,6 +320,7 @@ impl<S: Simd> Placed<S> {
         map: &Map,
         offset: [Vector<S>; 3],
         normal: [Vector<S>; 3],
+        spread: [Vector<S>; 3],
     ) -> Self {
         // 1
         let rows = map.rows;
@@ -311,11 +332,10 @@ impl<S: Simd> Placed<S> {
         // 2
         let slope = if camera.is_perspective { 1.0 / camera.focal } else { 0.0 };
         let way = [(x - map.centre[0]) * slope, (y - map.centre[1]) * slope];
-        let [a, b, c] = camera.axes;
-        let normal = [row(normal, a.to_array()), row(normal, b.to_array()), row(normal, c.to_array())];
+        let (normal, spread) = (turned(normal, &camera.axes), turned(spread, &camera.axes));
         let facing = normal[0] * way[0] + normal[1] * way[1] + normal[2];
         let scale = w * camera.focal;
-        let mut placed = Self { x, y, depth, inverse, scale, way, normal, facing };
+        let mut placed = Self { x, y, depth, inverse, scale, way, normal, spread, facing };
         if map.two_sided {
             let flip = Vector::all(simd, -1.0).if_set(facing.exceeds(0.0), 1.0);
             placed.facing = facing * flip;
@@ -341,6 +361,11 @@ fn row<S: Simd>(v: [Vector<S>; 3], row: [f32; 3]) -> Vector<S> {
     v[0] * row[0] + v[1] * row[1] + v[2] * row[2]
 }
 
+#[inline(always)]
+fn turned<S: Simd>(v: [Vector<S>; 3], [a, b, c]: &[Vec3; 3]) -> [Vector<S>; 3] {
+    [row(v, a.to_array()), row(v, b.to_array()), row(v, c.to_array())]
+}
+
 /// kᵀ·V·k, V as its three different entries.
 #[inline(always)]
 fn along<S: Simd>([kx, ky]: [Vector<S>; 2], v: [Vector<S>; 3]) -> Vector<S> {
@@ -357,7 +382,8 @@ pub(crate) fn project<S: Simd>(
     out: &mut Projected,
     place: usize,
 ) {
-    let Placed { x, y, depth, inverse, scale, way: [ux, uy], normal: [a, b, c], facing } = *placed;
+    let Placed { x, y, depth, inverse, scale, way: [ux, uy], normal: [a, b, c], spread: [p, q, r], facing } =
+        *placed;
     let (focal, reference) = (camera.focal, camera.reference as f32);
     let constant = |value: f32| Vector::all(simd, value);
     // 3
@@ -369,7 +395,13 @@ pub(crate) fn project<S: Simd>(
     let blur_deviation = blur_radius * scale * (0.5 * shape.lens);
     let blur = blur_deviation * blur_deviation;
     let (mx, my) = (a - ux * c, b - uy * c);
-    let disc = [s2 * (ux * ux - mx * mx + 1.0), s2 * (ux * uy - mx * my), s2 * (uy * uy - my * my + 1.0)];
+    let apart = scale * shape.spread;
+    let (px, py) = ((p - ux * r) * apart, (q - uy * r) * apart);
+    let disc = [
+        s2 * (ux * ux - mx * mx + 1.0) + px * px,
+        s2 * (ux * uy - mx * my) + px * py,
+        s2 * (uy * uy - my * my + 1.0) + py * py,
+    ];
     let added = blur + shape.pixel_variance;
     let v = [disc[0] + added, disc[1], disc[2] + added];
     let determinant = v[0] * v[2] - v[1] * v[1];
@@ -377,8 +409,10 @@ pub(crate) fn project<S: Simd>(
     let edge_on = (facing.at_most(-1e-6) * focal).inverse();
     let (kx, ky) = (a * edge_on, b * edge_on);
     let slope_of_disc = (kx * kx + ky * ky).sqrt() * focal;
+    // Of a disc as wide as a pair.
+    let whole_radius = (disc_radius * disc_radius + (p * p + q * q + r * r) * 4.0).sqrt();
     // What the pixel adds to the disc must not make its plane longer, nor may it come too near to the eye.
-    let reach = camera.plane_reach(deviation, blur_radius) * (scale * (1.0 / focal));
+    let reach = camera.plane_reach(whole_radius * shape.deviation, blur_radius) * (scale * (1.0 / focal));
     let longest = (reach * reach).at_most(NEAREST_PLANE2) * (1.0 / shape.reach2);
     let long = along([kx, ky], [disc[0] + blur, disc[1], disc[2] + blur]).min(longest);
     let shrink = (long / along([kx, ky], v).at_least(f32::MIN_POSITIVE)).at_most(1.0).sqrt();
@@ -403,7 +437,7 @@ pub(crate) fn project<S: Simd>(
     let is_kept = simd.and_m32s(depth.exceeds(camera.near), (-facing).exceeds(0.0));
     let is_kept = simd.and_m32s(is_kept, simd.and_m32s(right.is_above(left), bottom.is_above(top)));
     let bent = if camera.is_perspective { depth * (inverse * reference) } else { depth };
-    let thickness = camera.thickness(disc_radius, slope_of_disc, scale.inverse(), blur_radius);
+    let thickness = camera.thickness(whole_radius, slope_of_disc, scale.inverse(), blur_radius);
     let sharpness = if shape.is_paper { (radius * scale).at_most(1e6) } else { edge };
     for (value, result) in [
         (Value::X, x),
@@ -434,8 +468,16 @@ pub(crate) fn project<S: Simd>(
     }
 }
 
-/// First column, last column (not included), first row and last row of the box around q ≤ R, within a tile. Not whole
-/// numbers: their integral parts.
+/// Added to a number of pixels, it leaves no bits for fractions: the sum is that of the nearest whole number, which is in its last bits.
+const WHOLE: f32 = 8_388_608.0;
+
+/// The whole number to which [`WHOLE`] was added.
+#[inline(always)]
+fn whole(sum: f32) -> u8 {
+    sum.to_bits() as u8
+}
+
+/// First column, last column (not included), first row and last row of the box around q ≤ R, within a tile, with [`WHOLE`].
 ///
 /// With t = V·k and τ = R·k·t < 1, q ≤ R is an ellipse about R·t/(1 − τ) with the covariance V + R·t·tᵀ/(1 − τ), to the
 /// reach R/(1 − τ).
@@ -451,7 +493,7 @@ fn ends<S: Simd>(
     let reach = reach2 / -((reach2 * (kx * tx + ky * ty)).at_most(0.75) - 1.0);
     let half = |v: Vector<S>, t: Vector<S>| (reach * (v + reach * t * t)).sqrt();
     let (hx, hy) = (half(v[0], tx), half(v[2], ty));
-    let (x, y) = (x + reach * tx + 0.5, y + reach * ty + 0.5);
-    let end = |v: Vector<S>, size: f32| v.at_least(0.0).at_most(size);
+    let (x, y) = (x + reach * tx, y + reach * ty);
+    let end = |v: Vector<S>, size: f32| v.at_least(0.0).at_most(size) + WHOLE;
     [end(x - hx, size[0]), end(x + hx, size[0]), end(y - hy, size[1]), end(y + hy, size[1])]
 }

@@ -8,12 +8,13 @@ use crate::camera::Camera;
 use crate::cloud::Cloud;
 use crate::frame::Band;
 use crate::kernel;
-use crate::layer::{LANES, Layer, PITCH, Pixels, Touched};
-use crate::project::{Items, Projector};
+use crate::layer::{LANES, Layer, Open, PITCH, Pixels, Touched};
+use crate::project::Projector;
 use crate::resolve::{resolve, write};
 use crate::select::Selected;
 use crate::shade::Shader;
-use crate::splat::{Shape, Splat};
+use crate::splat::Shape;
+use crate::splats::Splats;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -25,7 +26,7 @@ pub(crate) const HEIGHT: usize = 64;
 const MOST_LAYERS: usize = 4;
 
 /// Side of the squares for which the farthest depth is kept, to skip what is hidden.
-const SQUARE: usize = 16;
+pub(crate) const SQUARE: usize = 16;
 const SQUARES: [usize; 2] = [WIDTH / SQUARE, HEIGHT / SQUARE];
 
 /// Where a tile lies in the picture, in pixels.
@@ -40,7 +41,7 @@ pub(crate) struct Place {
 /// Working memory for tiles.
 pub(crate) struct Tile {
     projector: Box<Projector>,
-    splats: Vec<Splat>,
+    splats: Splats,
     /// Numbers of splats that the next layer may show.
     behind: Vec<u32>,
     layer: Layer,
@@ -55,7 +56,7 @@ impl Default for Tile {
     fn default() -> Self {
         Self {
             projector: Projector::new(),
-            splats: vec![],
+            splats: Splats::default(),
             behind: vec![],
             layer: Layer::new(),
             pixels: vec![Pixels::EMPTY; PITCH * HEIGHT],
@@ -83,26 +84,26 @@ impl Tile {
         &mut self,
         scene: &Scene<'_>,
         place: &Place,
-        nodes: impl Iterator<Item = Selected>,
+        nodes: impl Iterator<Item = Selected> + Clone,
         band: &mut Band<'_>,
     ) {
         self.splats.clear();
         self.hidden.clear();
-        self.layer.clear_near(&Touched::ALL);
-        self.farthest = [[Some(f32::INFINITY); SQUARES[0]]; SQUARES[1]];
         let mut touched = Touched::NOTHING;
+        nodes.clone().for_each(|s| touched.add(columns_of(&s, place), rows_of(&s, place)));
+        self.layer.clear_near(&touched.in_squares());
+        self.farthest = [[Some(f32::INFINITY); SQUARES[0]]; SQUARES[1]];
         for selected in nodes {
             if scene.culling && self.hides(&selected, place) {
                 self.hidden.push(selected);
                 continue;
             }
-            let first = self.splats.len();
+            let first = self.splats.as_slice().len();
             self.project(scene, place, &selected);
-            kernel::nearest::<true>(&mut self.layer, &self.splats[first..]);
-            touched.add(columns_of(&selected, place), rows_of(&selected, place));
+            kernel::nearest(&mut self.layer, &self.splats.as_slice()[first..]);
             self.forget_farthest(&selected, place);
         }
-        if self.splats.is_empty() {
+        if self.splats.as_slice().is_empty() {
             band.clear(place.x / WIDTH);
             return;
         }
@@ -116,59 +117,85 @@ impl Tile {
 
     /// From the splats of the first layer, which touch these pixels, to the colours of all, with normals if they are `WANTED`.
     fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, place: &Place, mut touched: Touched) {
-        self.pixels[..PITCH * place.height].fill(Pixels::EMPTY);
+        for blocks in touched.others(place.height) {
+            self.pixels[blocks.clone()].fill(Pixels::EMPTY);
+            self.layer.open(blocks);
+        }
         self.behind.clear();
-        let all = 0..self.splats.len() as u32;
-        kernel::add::<true, WANTED>(&mut self.layer, &self.splats, all, &mut self.behind, 0.0);
-        let mut open = resolve::<true, WANTED>(&mut self.layer, &mut self.pixels, place, &touched);
+        let mut open = Open::NOWHERE;
+        let all = 0..self.splats.as_slice().len() as u32;
+        kernel::add::<true, WANTED>(
+            &mut self.layer,
+            self.splats.as_slice(),
+            all,
+            &mut self.behind,
+            (&open, 0.0),
+        );
+        open = resolve::<true, WANTED>(&mut self.layer, &mut self.pixels, place, &touched);
         for number in 1..MOST_LAYERS {
-            if !open {
+            if open.is_nowhere() {
                 break;
             }
-            touched = self.add_hidden(scene, place);
+            touched = self.add_hidden(scene, place, &open);
             if self.behind.is_empty() {
                 break;
             }
             let slack = if number + 1 == MOST_LAYERS { f32::INFINITY } else { 0.0 };
-            open = self.next_layer::<WANTED>(place, touched, slack);
+            open = self.next_layer::<WANTED>(place, touched, (&open, slack));
         }
     }
 
     fn project(&mut self, scene: &Scene<'_>, place: &Place, selected: &Selected) {
-        let node = &scene.cloud.nodes[selected.node as usize];
         scene.shown[selected.place as usize].store(true, Ordering::Relaxed);
-        let items = Items::new(node, selected);
-        self.projector.project(scene, &items, &Shape::BLENDED, place, &mut self.splats);
+        self.projector.project(scene, selected, &Shape::BLENDED, place, &mut self.splats);
     }
 
-    /// Projects those of the hidden nodes that may be seen through pixels that are not done; what all discs that are left may
-    /// touch.
-    fn add_hidden(&mut self, scene: &Scene<'_>, place: &Place) -> Touched {
+    /// Leaves those of the discs behind that may be seen through `open` pixels, and adds those of hidden nodes; all that they
+    /// may touch.
+    fn add_hidden(&mut self, scene: &Scene<'_>, place: &Place, open: &Open) -> Touched {
         let mut hidden = std::mem::take(&mut self.hidden);
         hidden.retain(|selected| {
-            if !self.is_open_in(selected, place) {
+            let mut touched = Touched::NOTHING;
+            touched.add(columns_of(selected, place), rows_of(selected, place));
+            if !open.meets(touched.columns(), touched.rows()) {
                 return true;
             }
-            let first = self.splats.len() as u32;
+            let first = self.splats.as_slice().len() as u32;
             self.project(scene, place, selected);
-            self.behind.extend(first..self.splats.len() as u32);
+            self.behind.extend(first..self.splats.as_slice().len() as u32);
             false
         });
         self.hidden = hidden;
         let mut touched = Touched::NOTHING;
-        for &i in &self.behind {
-            let Splat { columns, rows, .. } = self.splats[i as usize];
-            touched.add(columns.map(usize::from), rows.map(usize::from));
-        }
+        let splats = self.splats.as_slice();
+        self.behind.retain(|&i| {
+            let splat = &splats[i as usize];
+            let is_seen = open.meets(splat.blocks(), splat.rows());
+            if is_seen {
+                touched.add(splat.columns.map(usize::from), splat.rows.map(usize::from));
+            }
+            is_seen
+        });
         touched
     }
 
-    fn next_layer<const WANTED: bool>(&mut self, place: &Place, touched: Touched, slack: f32) -> bool {
+    fn next_layer<const WANTED: bool>(
+        &mut self,
+        place: &Place,
+        touched: Touched,
+        limits: (&Open, f32),
+    ) -> Open {
         self.layer.clear_near(&touched);
-        kernel::nearest_of(&mut self.layer, &self.splats, &self.behind);
+        kernel::nearest_behind(&mut self.layer, self.splats.as_slice(), &self.behind, limits.0);
         let candidates = std::mem::take(&mut self.behind);
         let numbers = candidates.iter().copied();
-        kernel::add::<false, WANTED>(&mut self.layer, &self.splats, numbers, &mut self.behind, slack);
+        kernel::add::<false, WANTED>(
+            &mut self.layer,
+            self.splats.as_slice(),
+            numbers,
+            &mut self.behind,
+            limits,
+        );
         resolve::<false, WANTED>(&mut self.layer, &mut self.pixels, place, &touched)
     }
 
@@ -185,13 +212,6 @@ impl Tile {
     fn forget_farthest(&mut self, selected: &Selected, place: &Place) {
         let [columns, rows] = squares_of(selected, place);
         self.farthest[rows].iter_mut().for_each(|row| row[columns.clone()].fill(None));
-    }
-
-    fn is_open_in(&self, selected: &Selected, place: &Place) -> bool {
-        let mut touched = Touched::NOTHING;
-        touched.add(columns_of(selected, place), rows_of(selected, place));
-        let is_open = |i: usize| self.layer.depths[i].floor.iter().any(|f| *f < f32::INFINITY);
-        touched.rows().any(|row| touched.blocks(row).any(is_open))
     }
 }
 

@@ -1,0 +1,178 @@
+//! What a node draws, in the node's own frame: its points or links, one by one or in pairs.
+
+use crate::cloud::{Attributes, Cloud, Node, radius_of_area};
+use crate::lattice::offset;
+use crate::links::Links;
+use crate::packed;
+use crate::splat::LANES;
+use pulp::{Arch, NullaryFnOnce};
+use std::ops::Range;
+
+/// One value of each disc; twice as many before pairs become one disc each.
+pub(crate) type Values = [f32; 2 * LANES];
+
+/// Discs in the frame of their node.
+pub(crate) struct Items {
+    pub(crate) offsets: [Values; 3],
+    pub(crate) normals: [Values; 3],
+    pub(crate) radii: Values,
+    pub(crate) areas: Values,
+    /// The way between the places of a pair, times their standard deviation in shares of it; 0 for one item.
+    pub(crate) spreads: [Values; 3],
+    /// Colours without light, if points have any.
+    pub(crate) paint: [Values; 3],
+}
+
+impl Items {
+    pub(crate) const NOTHING: Self = Self {
+        offsets: [[0.0; 2 * LANES]; 3],
+        normals: [[0.0; 2 * LANES]; 3],
+        radii: [0.0; 2 * LANES],
+        areas: [0.0; 2 * LANES],
+        spreads: [[0.0; 2 * LANES]; 3],
+        paint: [[0.0; 2 * LANES]; 3],
+    };
+
+    /// Takes items of a node, at most [`LANES`] discs.
+    pub(crate) fn take(&mut self, cloud: &Cloud, node: &Node, run: &Run) {
+        Arch::new().dispatch(Take { discs: self, cloud, node, run });
+    }
+}
+
+/// Items that follow one another.
+#[derive(Clone, Debug)]
+pub(crate) struct Run {
+    items: Range<usize>,
+    in_pairs: bool,
+}
+
+impl Run {
+    /// All of a node.
+    pub(crate) fn all(node: &Node, in_pairs: bool) -> impl Iterator<Item = Self> {
+        let (start, end) = (node.items.start as usize, node.items.end as usize);
+        let middle = if in_pairs { start + 2 * node.pairs as usize } else { start };
+        let parts = move |items: Range<usize>, in_pairs: bool| {
+            let step = if in_pairs { 2 * LANES } else { LANES };
+            let end = items.end;
+            items.step_by(step).map(move |first| Self { items: first..(first + step).min(end), in_pairs })
+        };
+        parts(start..middle, true).chain(parts(middle..end, false))
+    }
+
+    /// The number of its discs.
+    pub(crate) fn discs(&self) -> usize {
+        self.items.len() / if self.in_pairs { 2 } else { 1 }
+    }
+}
+
+struct Take<'a> {
+    discs: &'a mut Items,
+    cloud: &'a Cloud,
+    node: &'a Node,
+    run: &'a Run,
+}
+
+impl NullaryFnOnce for Take<'_> {
+    type Output = ();
+
+    // Everything is inlined: what is compiled on its own stays narrow.
+    #[inline(always)]
+    fn call(self) {
+        let Self { discs, cloud, node, run } = self;
+        if node.is_leaf() {
+            discs.take_points(&cloud.points, node, run.items.clone());
+        } else {
+            discs.take_links(&cloud.links, node, run.items.clone());
+        }
+        if run.in_pairs {
+            discs.unite();
+        } else {
+            discs.spreads.iter_mut().for_each(|s| s[..LANES].fill(0.0));
+        }
+    }
+}
+
+impl Items {
+    #[inline(always)]
+    fn take_points(&mut self, points: &Attributes, node: &Node, items: Range<usize>) {
+        let count = items.len();
+        for axis in 0..3 {
+            let cells = &points.cells[axis][items.clone()];
+            for (to, &cell) in self.offsets[axis].iter_mut().zip(cells) {
+                *to = offset(node.origin[axis], cell);
+            }
+            self.normals[axis][..count].copy_from_slice(&points.normals[axis][items.clone()]);
+        }
+        self.radii[..count].copy_from_slice(&points.radii[items.clone()]);
+        self.areas[..count].copy_from_slice(&points.areas[items.clone()]);
+        if let Some(colours) = &points.colours {
+            self.take_colours(colours[items].iter().copied());
+        }
+    }
+
+    #[inline(always)]
+    fn take_links(&mut self, links: &Links, node: &Node, items: Range<usize>) {
+        let count = items.len();
+        for axis in 0..3 {
+            for (to, &place) in self.offsets[axis].iter_mut().zip(&links.places[axis][items.clone()]) {
+                *to = node.offset(axis, place);
+            }
+        }
+        for (lane, &normal) in links.normals[items.clone()].iter().enumerate() {
+            let way = packed::unpack_way(normal);
+            (self.normals[0][lane], self.normals[1][lane], self.normals[2][lane]) = (way.x, way.y, way.z);
+        }
+        normalise(&mut self.normals, count);
+        let areas = &links.areas[items.clone()];
+        for ((radius, to), &area) in self.radii.iter_mut().zip(&mut self.areas).zip(areas) {
+            (*radius, *to) = (radius_of_area(area), area);
+        }
+        if let Some(colours) = &links.colours {
+            self.take_colours(colours[items].iter().map(|&c| packed::unpack_colour(c)));
+        }
+    }
+
+    #[inline(always)]
+    fn take_colours(&mut self, colours: impl Iterator<Item = [f32; 3]>) {
+        let [red, green, blue] = &mut self.paint;
+        for (((red, green), blue), colour) in red.iter_mut().zip(green).zip(blue).zip(colours) {
+            [*red, *green, *blue] = colour;
+        }
+    }
+
+    /// Makes one disc of two that follow one another: with the sum of their areas, the means by area of all else, and the
+    /// covariance that both have together. All that there is room for: a number known beforehand makes vectors of the loops.
+    #[inline(always)]
+    fn unite(&mut self) {
+        let (mut shares, mut deviations) = ([0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            let (first, second) = (self.areas[2 * i], self.areas[2 * i + 1]);
+            let (r, q) = (self.radii[2 * i], self.radii[2 * i + 1]);
+            let share = second / (first + second);
+            (shares[i], deviations[i]) = (share, (share - share * share).sqrt());
+            self.areas[i] = first + second;
+            self.radii[i] = (r * r + (q * q - r * r) * share).sqrt();
+        }
+        for (offsets, spreads) in self.offsets.iter().zip(&mut self.spreads) {
+            for i in 0..LANES {
+                spreads[i] = (offsets[2 * i + 1] - offsets[2 * i]) * deviations[i];
+            }
+        }
+        for values in self.offsets.iter_mut().chain(&mut self.normals).chain(&mut self.paint) {
+            for i in 0..LANES {
+                let (first, second) = (values[2 * i], values[2 * i + 1]);
+                values[i] = first + (second - first) * shares[i];
+            }
+        }
+        normalise(&mut self.normals, LANES);
+    }
+}
+
+/// Makes vectors unit vectors. Roots for all of them at once, as vectors.
+#[inline(always)]
+fn normalise([x, y, z]: &mut [Values; 3], count: usize) {
+    for (((x, y), z), _) in x.iter_mut().zip(y).zip(z).zip(0..count) {
+        let inverse = 1.0 / (*x * *x + *y * *y + *z * *z).sqrt();
+        (*x, *y, *z) = (*x * inverse, *y * inverse, *z * inverse);
+    }
+}
