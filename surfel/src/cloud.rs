@@ -137,7 +137,7 @@ pub struct Cloud {
 }
 
 /// Radius of a disc for its share of the surface: half the diagonal of a square.
-const RADIUS_PER_ROOT_AREA: f32 = 0.9;
+const RADIUS_PER_ROOT_AREA: f32 = 0.75;
 
 /// The radius that a link is drawn with.
 pub(crate) fn radius_of_area(area: f32) -> f32 {

@@ -2,7 +2,9 @@
 
 use crate::layer::{Depths, LANES, Layer, Normals, Open, PITCH, RAMP, Sums};
 use crate::splat::Splat;
+use crate::tile::SQUARE;
 use pulp::{Arch, Simd, WithSimd};
+use std::ops::Range;
 
 /// Keeps the nearest depth of all `splats` in the first layer.
 pub(crate) fn nearest(layer: &mut Layer, splats: &[Splat]) {
@@ -33,6 +35,11 @@ pub(crate) fn add<const FIRST: bool, const WANTED: bool>(
     (open, slack): (&Open, f32),
 ) {
     Arch::new().dispatch(Add::<FIRST, WANTED, _> { layer, splats, numbers, behind, open, slack });
+}
+
+/// The farthest of the nearest depths in some rows of a square: +∞ if a pixel has none, or lies beyond the picture.
+pub(crate) fn farthest(layer: &Layer, column: usize, rows: Range<usize>) -> f32 {
+    Arch::new().dispatch(Farthest { depths: &layer.depths, column, rows })
 }
 
 /// Within a kernel h is at most 1/(1 − √½) = 3.4; rounding could make it anything where planes are edge-on.
@@ -73,6 +80,30 @@ impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<
                 }
             }
         }
+    }
+}
+
+struct Farthest<'a> {
+    depths: &'a [Depths],
+    column: usize,
+    rows: Range<usize>,
+}
+
+impl WithSimd for Farthest<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f32 {
+        let mut farthest = simd.splat_f32s(f32::NEG_INFINITY);
+        for row in self.rows {
+            let first = row * PITCH + self.column * SQUARE / LANES;
+            for block in &self.depths[first..first + SQUARE / LANES] {
+                for near in S::as_simd_f32s(&block.near).0 {
+                    farthest = simd.max_f32s(*near, farthest);
+                }
+            }
+        }
+        simd.reduce_max_f32s(farthest)
     }
 }
 

@@ -38,8 +38,8 @@
 //!
 //! * [`Cloud`]: an octree whose leaves hold the points and whose inner nodes hold links to a few of them, each with the mean area,
 //!   normal and colour of what it stands for.
-//! * [`Renderer`] takes each part of the cloud from the coarsest level on which points are a pixel apart, or, out of focus, a part of the
-//!   blur. Discs become ellipses with exact perspective and are lit; in each pixel those of the nearest surface are averaged and laid over
+//! * [`Renderer`] takes each part of the cloud from the coarsest level on which about one point falls on a pixel, or, out of focus,
+//!   points are as far apart as the blur is wide. Between two levels it draws pairs of neighbours as one disc. Discs become ellipses with exact perspective and are lit; in each pixel those of the nearest surface are averaged and laid over
 //!   what is behind.
 //! * [`Focus`]: the paper's parameter d (\[3\], §3), or a thin lens, of which d = aperture/focus is the same.
 //! * [`Procedure::Paper`]: what the paper does (\[3\]), for comparison.
@@ -96,6 +96,7 @@ mod rows;
 mod sample;
 mod select;
 mod shade;
+mod spacing;
 mod splat;
 mod splats;
 mod tile;

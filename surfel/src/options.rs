@@ -33,8 +33,9 @@ pub struct Options {
     pub focus: Focus,
     /// Default: [`Procedure::Blended`].
     pub procedure: Procedure,
-    /// Level of detail: points are taken from the coarsest level on which they are at most this many pixels apart;
-    /// 0 always takes all points. Default: 1.
+    /// Level of detail: points are taken from the coarsest level on which they are at most this many pixels apart, up to √2 times
+    /// as far where the surface is seen at an angle; 0 always takes all points. Default: 1.4, with which about one point falls on a
+    /// pixel, and never less than half a one.
     pub level: f32,
     /// Whether nodes that face away or are hidden are skipped; they never show. Default: true.
     pub culling: bool,
@@ -53,7 +54,7 @@ impl Default for Options {
         Self {
             focus: Focus::Everywhere,
             procedure: Procedure::Blended,
-            level: 1.0,
+            level: 1.4,
             culling: true,
             light: Light::Eye,
             ambient: 0.1,

@@ -4,14 +4,9 @@ use crate::camera::{Camera, REACH};
 use crate::cloud::{Cloud, Node};
 use crate::frame::FrameCounts;
 use crate::options::Options;
+use crate::spacing::{Angles, Depths, REACH_ROUNDED_UP, largest_spacing};
 use crate::splat::{DEVIATION_PER_RADIUS, PIXEL_DEVIATION};
-use std::f32::consts::{FRAC_PI_2, PI};
-
-/// Points with a blur of radius R may be 3 + 0.3·R apart (pixels), but never more than 1.2·R. Found by experiment: wider apart
-/// they show as dots.
-const BLURRED_START: f32 = 3.0;
-const BLURRED_SLOPE: f32 = 0.3;
-const BLURRED_MOST: f32 = 1.2;
+use std::f32::consts::FRAC_PI_2;
 
 /// A node to draw.
 #[derive(Clone, Copy, Debug)]
@@ -32,9 +27,6 @@ pub(crate) struct Selected {
     pub(crate) thickness: f32,
 }
 
-/// For boxes in the axes of the picture.
-const REACH_ROUNDED_UP: f32 = 1.0 + 1e-5;
-
 /// Walks the tree from its root. The nearest nodes come first.
 pub(crate) fn select(
     cloud: &Cloud,
@@ -50,14 +42,15 @@ pub(crate) fn select(
     while let Some(number) = stack.pop() {
         let node = &cloud.nodes[number as usize];
         let depths = Depths::of(node, camera);
-        let spacing = depths.largest_spacing(camera, options.level);
+        let angles = Angles::of(node, camera);
+        let spacing = largest_spacing(&depths, &angles, camera, options.level);
         let in_pairs = node.pairs > 0 && node.spacing_of_pairs() <= spacing;
         let widest = if in_pairs { node.widest_of_pairs() } else { node.widest };
         let Some(seen) = Seen::of(node, &depths, widest, camera) else {
             counts.nodes_outside += 1;
             continue;
         };
-        if options.culling && faces_away(node, camera) {
+        if options.culling && angles.least_rad > FRAC_PI_2 {
             counts.nodes_facing_away += 1;
             continue;
         }
@@ -74,34 +67,6 @@ pub(crate) fn select(
     }
     selected.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.node.cmp(&b.node)));
     selected.iter_mut().zip(0..).for_each(|(s, place)| s.place = place);
-}
-
-/// Relative depths of a node: of its nearest point and of its farthest.
-struct Depths([f32; 2]);
-
-impl Depths {
-    fn of(node: &Node, camera: &Camera) -> Self {
-        let middle = (camera.local(node).z - camera.reference) as f32;
-        let reach = camera.axes[2].abs().dot(node.half) * REACH_ROUNDED_UP;
-        Self([middle - reach, middle + reach])
-    }
-
-    /// How far apart points of the node may be, units.
-    fn largest_spacing(&self, camera: &Camera, level: f32) -> f32 {
-        level.max(self.blurred_spacing_px(camera, level)) / camera.pixels_per_unit(self.0[0].max(camera.near))
-    }
-
-    /// How far apart, in pixels, points may be for their blur.
-    fn blurred_spacing_px(&self, camera: &Camera, level: f32) -> f32 {
-        let [nearest, farthest] = self.0;
-        if nearest <= camera.focus && camera.focus <= farthest {
-            return 0.0;
-        }
-        let px = |depth: f32| camera.blur_radius(depth) * camera.pixels_per_unit(depth);
-        let least_blur = px(nearest.max(camera.near)).min(px(farthest));
-        let apart = (BLURRED_START + BLURRED_SLOPE * least_blur).min(BLURRED_MOST * least_blur);
-        apart * level.min(1.0)
-    }
 }
 
 /// A node on the picture.
@@ -163,21 +128,4 @@ fn interval(middle: f32, reach: f32, depths: [f32; 2], camera: &Camera) -> [f32;
     let [near, far] = depths.map(|d| camera.focal / (d + camera.reference as f32));
     let (low, high) = (middle - reach, middle + reach);
     [low * if low < 0.0 { near } else { far }, high * if high > 0.0 { near } else { far }]
-}
-
-/// Whether every point of a node faces away from the eye.
-fn faces_away(node: &Node, camera: &Camera) -> bool {
-    let Some(cone) = node.cone else { return false };
-    let axis = glam::Vec3::from_array(camera.axes.map(|a| a.dot(cone.axis)));
-    let (towards_eye, spread) = if camera.is_perspective {
-        let to_eye = -camera.local(node).as_vec3();
-        let (distance, radius) = (to_eye.length(), node.half.length());
-        // An eye inside the box sees it from everywhere.
-        let spread = if distance > radius { (radius / distance).asin() } else { PI };
-        (to_eye / distance.max(f32::MIN_POSITIVE), spread)
-    } else {
-        (glam::Vec3::NEG_Z, 0.0)
-    };
-    let angle = axis.dot(towards_eye).clamp(-1.0, 1.0).acos();
-    angle > FRAC_PI_2 + cone.half_angle_rad + spread + 1e-3
 }

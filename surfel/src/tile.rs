@@ -8,7 +8,7 @@ use crate::camera::Camera;
 use crate::cloud::Cloud;
 use crate::frame::Band;
 use crate::kernel;
-use crate::layer::{LANES, Layer, Open, PITCH, Pixels, Touched};
+use crate::layer::{Layer, Open, PITCH, Pixels, Touched};
 use crate::project::Projector;
 use crate::resolve::{resolve, write};
 use crate::select::Selected;
@@ -206,29 +206,13 @@ impl Tile {
     }
 
     fn farthest(&mut self, place: &Place, column: usize, row: usize) -> f32 {
-        *self.farthest[row][column].get_or_insert_with(|| self.layer.farthest(place, column, row))
+        *self.farthest[row][column]
+            .get_or_insert_with(|| kernel::farthest(&self.layer, column, rows_of_square(place, row)))
     }
 
     fn forget_farthest(&mut self, selected: &Selected, place: &Place) {
         let [columns, rows] = squares_of(selected, place);
         self.farthest[rows].iter_mut().for_each(|row| row[columns.clone()].fill(None));
-    }
-}
-
-impl Layer {
-    /// The farthest depth in a square.
-    fn farthest(&self, place: &Place, column: usize, row: usize) -> f32 {
-        let farther = |far: f32, depth: f32| if depth > far { depth } else { far };
-        let lines = row * SQUARE..((row + 1) * SQUARE).min(place.height);
-        let width = SQUARE.min(place.width - column * SQUARE);
-        let mut all = [f32::NEG_INFINITY; SQUARE];
-        for line in lines {
-            let blocks = &self.depths[line * PITCH + column * (SQUARE / LANES)..][..SQUARE / LANES];
-            for (far, depth) in all.iter_mut().zip(blocks.iter().flat_map(|b| &b.near)) {
-                *far = farther(*far, *depth);
-            }
-        }
-        all[..width].iter().copied().fold(f32::NEG_INFINITY, farther)
     }
 }
 
@@ -244,6 +228,11 @@ fn rows_of(selected: &Selected, place: &Place) -> [usize; 2] {
 fn within([first, last]: [u16; 2], start: usize, size: usize) -> [usize; 2] {
     let end = |v: u16| usize::from(v).saturating_sub(start).min(size - 1);
     [end(first), end(last) + 1]
+}
+
+/// Rows of pixels.
+fn rows_of_square(place: &Place, row: usize) -> Range<usize> {
+    row * SQUARE..((row + 1) * SQUARE).min(place.height)
 }
 
 /// The squares of a tile that a node touches.

@@ -150,7 +150,7 @@ fn holes(cloud: &Cloud, procedure: Procedure) -> Vec<String> {
         (height, look_at(eye * 5.0, DVec3::ZERO, camera, SIZE, SIZE).unwrap())
     });
     let mut found = vec![];
-    for level in [0.0, 1.0] {
+    for level in [0.0, 1.0, 1.4] {
         let options = with(|o| (o.procedure, o.level) = (procedure, level));
         for (zoom, view) in near.iter().chain(&flat) {
             let holes = sphere_has_no_holes(cloud, view, &options, DVec3::ZERO, 1.0, 1.5);
@@ -214,7 +214,7 @@ fn coarser_levels_come_near_to_all_points() {
     // About a point per pixel, and fewer pixels than points.
     for distance in [4.0, 9.0] {
         let view = perspective(DVec3::Z * distance, DVec3::ZERO, 0.7);
-        let levels = [(0.25, 0.01), (0.5, 0.015), (1.0, 0.03)];
+        let levels = [(0.25, 0.01), (0.5, 0.015), (1.0, 0.03), (1.4, 0.03)];
         level_of_detail_converges(&cloud, &view, &with(|_| {}), &levels).unwrap();
     }
 }
@@ -381,7 +381,7 @@ fn a_plane_has_its_depth_and_colour() {
     let points = points.moved(|p| dvec3(p.x, p.y, 0.5 * p.x - 0.3 * p.y));
     let normal = Vec3::new(-0.5, 0.3, 1.0).normalize();
     let points = OwnedPoints { normals: Some(vec![normal; points.positions.len()]), radii: None, ..points };
-    for (procedure, most) in [(Procedure::Blended, 0.02), (Procedure::Paper, 1.0)] {
+    for (procedure, most) in [(Procedure::Blended, 0.03), (Procedure::Paper, 1.0)] {
         let drawn = frame(&points, &flat_view(), &with(|o| o.procedure = procedure)).unwrap();
         for i in 0..drawn.depth().len() {
             let (x, y) = centre(&drawn, i);
