@@ -298,9 +298,10 @@ fn nodes(
     nodes.into_iter().flatten().collect()
 }
 
-/// The middle of a box of cells, and half its sides in units, rounded up.
+/// The middle of a box of cells, and half its sides in units, rounded up. The middle is rounded up too: from it, no cell of the
+/// lattice is more than 2³¹ cells down or 2³¹ − 1 up, as [`offset`] wants it.
 fn middle_and_half(low: [u32; 3], high: [u32; 3]) -> ([u32; 3], Vec3) {
-    let middle = [0, 1, 2].map(|i| low[i] + (high[i] - low[i]) / 2);
+    let middle = [0, 1, 2].map(|i| low[i] + (high[i] - low[i]).div_ceil(2));
     let half = between(middle, high).max(between(low, middle)) * (1.0 + 1e-6) + SMALLEST;
     (middle, half)
 }

@@ -50,9 +50,9 @@ impl Lattice {
 }
 
 /// The way from one cell to another in units. Rounded once per coordinate.
-#[inline(always)]
 pub(crate) fn between(from: [u32; 3], to: [u32; 3]) -> Vec3 {
-    Vec3::from_array([0, 1, 2].map(|i| offset(from[i], to[i])))
+    let coordinate = |i: usize| (i64::from(to[i]) - i64::from(from[i])) as f32 * (1.0 / CELLS as f32);
+    Vec3::from_array([0, 1, 2].map(coordinate))
 }
 
 /// The cell that is so many units away from one.
