@@ -5,7 +5,7 @@ use crate::cloud::{Cloud, Node};
 use crate::frame::FrameCounts;
 use crate::options::Options;
 use crate::spacing::{Angles, Depths, REACH_ROUNDED_UP, largest_spacing};
-use crate::splat::{DEVIATION_PER_RADIUS, PIXEL_DEVIATION};
+use crate::splat::{DEVIATION_PER_RADIUS, NEAREST_PLANE2, PIXEL_DEVIATION};
 use std::f32::consts::FRAC_PI_2;
 
 /// A node to draw.
@@ -91,13 +91,17 @@ impl Seen {
         let blur_radius = camera.blur_radius(nearest_point).max(camera.blur_radius(depths[1]));
         let scale = camera.pixels_per_unit(nearest_point);
         let deviation = DEVIATION_PER_RADIUS * widest;
+        // Planes that come towards the eye look longer there: see `ends` in `splat.rs`, where this is 1/(1 − √τ).
+        let towards_eye = camera.plane_reach(widest, blur_radius) * scale / camera.focal;
+        let growth =
+            if camera.is_perspective { 1.0 / (1.0 - towards_eye.min(NEAREST_PLANE2.sqrt())) } else { 1.0 };
         let axis = |i: usize| {
             let [low, high] = interval(middle[i] as f32, reach[i], depths, camera);
             // Discs off the axis look longer than they are.
             let slope = low.abs().max(high.abs()) / camera.focal;
             let stretch = if camera.is_perspective { (1.0 + slope * slope).sqrt() } else { 1.0 };
             let blur = 0.5 * REACH * blur_radius * scale;
-            let margin = REACH * (deviation * scale * stretch + PIXEL_DEVIATION) + blur + 1.0;
+            let margin = (REACH * (deviation * scale * stretch + PIXEL_DEVIATION) + blur) * growth + 1.0;
             let size = if i == 0 { camera.view.width } else { camera.view.height };
             let centre = camera.centre[i] as f32;
             let (first, last) = (low + centre - margin, high + centre + margin);

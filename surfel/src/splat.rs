@@ -43,7 +43,7 @@ const DISC_SPREAD: f32 = 2.236;
 const EDGE_VARIANCE: f32 = 0.16;
 
 /// Planes are followed no nearer to the eye than their disc's centre by this factor, squared.
-const NEAREST_PLANE2: f32 = 0.5;
+pub(crate) const NEAREST_PLANE2: f32 = 0.5;
 
 /// A disc in a tile.
 #[derive(Clone, Copy, Debug)]

@@ -381,7 +381,7 @@ fn a_plane_has_its_depth_and_colour() {
     let points = points.moved(|p| dvec3(p.x, p.y, 0.5 * p.x - 0.3 * p.y));
     let normal = Vec3::new(-0.5, 0.3, 1.0).normalize();
     let points = OwnedPoints { normals: Some(vec![normal; points.positions.len()]), radii: None, ..points };
-    for (procedure, most) in [(Procedure::Blended, 0.03), (Procedure::Paper, 1.0)] {
+    for (procedure, most) in [(Procedure::Blended, 0.05), (Procedure::Paper, 1.0)] {
         let drawn = frame(&points, &flat_view(), &with(|o| o.procedure = procedure)).unwrap();
         for i in 0..drawn.depth().len() {
             let (x, y) = centre(&drawn, i);

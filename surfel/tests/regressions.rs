@@ -117,7 +117,8 @@ fn nodes_behind_a_wall_are_counted_as_hidden() {
 fn the_ends_of_a_small_cloud_are_where_they_are() {
     let (left, right) = (disc(-DVec3::X, Vec3::Z, 0.2), disc(DVec3::X, Vec3::Z, 0.2));
     let points = left.painted(|_| [1.0, 0.0, 0.0]).and(&right.painted(|_| [0.0, 1.0, 0.0]));
-    let view = look_at(DVec3::Z * 2.0, DVec3::ZERO, Projection::Orthographic { height: 4.0 }, 40, 40).unwrap();
+    let view =
+        look_at(DVec3::Z * 2.0, DVec3::ZERO, Projection::Orthographic { height: 4.0 }, 40, 40).unwrap();
     let drawn = frame(&points, &view, &Options::default()).unwrap();
     let [red, green] = [drawn.colour()[40 * 20 + 10], drawn.colour()[40 * 20 + 30]];
     assert!(red[0] > 0.5 && red[1] == 0.0 && green[1] > 0.5 && green[0] == 0.0, "{red:?} and {green:?}");
