@@ -9,7 +9,10 @@ const OVERSAMPLING: usize = 5;
 
 /// No point of a smooth surface is farther than this many [`lattice_spacing`]s from the nearest sample. Found by
 /// experiment: corners of cubes are the worst, where points of other faces take the place (`discs_of_blue_noise_leave_no_gap` in `tests/properties.rs`).
-pub(crate) const COVER: f64 = 2.0;
+pub(crate) const COVER: f64 = 3.0;
+
+/// Radius on a border, in the same unit: so far reaches the surface there at most.
+pub(crate) const ON_BORDER: f64 = 2.0;
 
 /// Area that a point has to itself in a hexagonal lattice of unit spacing: √3/2.
 const HEXAGON: f64 = 0.866_025_403_784_438_6;

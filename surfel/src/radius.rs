@@ -21,17 +21,21 @@ const ROUNDING: f64 = 1e-9;
 /// surface has a crease between them: each side has to be covered by its own discs, but only up to the crease.
 const SAME_SURFACE: f64 = 0.5;
 
+/// Parts of the reach that are tried first.
+const PARTS: [f64; 2] = [1.0 / 3.0, 0.5];
+
 /// Gives every point its radius, at most `reach`: no place of the surface is farther from its nearest point. Points on a
-/// border get radii up to that.
-pub(crate) fn assign(points: &mut [SurfacePoint], reach: f64) {
+/// border, where no neighbours close their cells, get another.
+pub(crate) fn assign(points: &mut [SurfacePoint], reach: f64, on_border: f64) {
     let rows = Rows::new(points.len(), reach, |i| points[i].position);
     let normals: Vec<DVec3> = rows.order().iter().map(|&i| rows.turned(points[i as usize].normal)).collect();
     let radii = parallel::map(points.len(), |place| {
-        // Most cells are small: half the reach finds all that cuts them, at a quarter of the time.
-        let near = Cell::in_rows(&rows, &normals, place, 0.5 * reach).farthest2();
-        let is_closed = near <= 0.25 * reach * reach;
-        let cell2 = if is_closed { near } else { Cell::in_rows(&rows, &normals, place, reach).farthest2() };
-        cell2.sqrt().min(reach)
+        // Most cells are small: a part of the reach finds all that cuts them, in a part of the time.
+        let cell2 = |part: f64| Cell::in_rows(&rows, &normals, place, part * reach).farthest2();
+        let is_closed = |part: f64, cell2: f64| cell2 <= (part * reach).powi(2);
+        let early = PARTS.into_iter().map(|part| (part, cell2(part))).find(|&(part, c)| is_closed(part, c));
+        let (part, cell2) = early.unwrap_or_else(|| (1.0, cell2(1.0)));
+        if is_closed(part, cell2) { cell2.sqrt() } else { on_border }
     });
     for (place, radius) in radii.into_iter().enumerate() {
         points[rows.order()[place] as usize].radius = rounded_up(radius);

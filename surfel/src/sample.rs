@@ -99,14 +99,14 @@ pub fn sample(
         _ => {}
     }
     let mesh = Mesh::new(positions, triangles)?;
-    let (mut points, reach) = match options.method {
+    let (mut points, reach, on_border) = match options.method {
         Method::Ldi => {
             let spacing = match options.amount {
                 Amount::Count(count) => ldi::spacing_for(&mesh, within_limit(count as f64)?),
                 Amount::Spacing(spacing) => spacing,
             };
             within_limit(ldi::expected_count(&mesh, spacing))?;
-            (ldi::points(&mesh, spacing)?, ldi::COVER * spacing)
+            (ldi::points(&mesh, spacing)?, ldi::COVER * spacing, ldi::COVER * spacing)
         }
         Method::Poisson => {
             let count = match options.amount {
@@ -114,11 +114,12 @@ pub fn sample(
                 Amount::Spacing(spacing) => blue_noise::count_for(mesh.area(), spacing),
             };
             let count = within_limit(count)? as usize;
-            let reach = blue_noise::COVER * blue_noise::lattice_spacing(mesh.area(), count);
-            (blue_noise::points(&mesh, count, options.seed), reach)
+            let lattice = blue_noise::lattice_spacing(mesh.area(), count);
+            let points = blue_noise::points(&mesh, count, options.seed);
+            (points, blue_noise::COVER * lattice, blue_noise::ON_BORDER * lattice)
         }
     };
-    radius::assign(&mut points, reach);
+    radius::assign(&mut points, reach, on_border);
     Ok(points)
 }
 
