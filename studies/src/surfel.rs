@@ -25,7 +25,9 @@ const PAPERS_SIZE: u32 = 400;
 const SIZE: u32 = 512;
 const LARGE_SIZE: u32 = 1024;
 
-const LEVELS: [f32; 7] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0];
+/// Pixels between points, with the default in the middle.
+const LEVELS: [f32; 7] = [0.0, 0.5, 1.0, DEFAULT_LEVEL, 2.0, 3.0, 4.0];
+const DEFAULT_LEVEL: f32 = 1.4;
 
 /// How far away the eye is, in distances of the front view, and how large the object looks then.
 const SIZES: [(f64, &str); 4] = [(1.0, "full size"), (2.0, "1/2 size"), (4.0, "1/4 size"), (8.0, "1/8 size")];
@@ -251,7 +253,7 @@ fn by_both(stage: &Stage, cloud: &Cloud, setting: &str) -> Result<Vec<Measured>,
 
 /// Levels are of the octree, not of the procedure: one of them has to do, except at the default.
 fn procedures_at(level: f32) -> impl Iterator<Item = Procedure> {
-    PROCEDURES.into_iter().take(if level == 1.0 { 2 } else { 1 })
+    PROCEDURES.into_iter().take(if level == DEFAULT_LEVEL { 2 } else { 1 })
 }
 
 /// Sets each row's ratio to the first row that it is compared with.
