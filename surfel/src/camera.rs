@@ -14,7 +14,7 @@ const BLURRED_PLANE: f32 = 2.0;
 /// How far behind the nearest one a disc may lie and still belong to the same surface: so many radii of the disc and of its
 /// blur, and what a slanted surface gains over so many pixels and blur radii. Found by experiment.
 const THICKNESS: f32 = 1.5;
-const BLURRED_DISC_THICKNESS: f32 = 1.5;
+const BLURRED_DISC_THICKNESS: f32 = 1.75;
 const SLANTED_THICKNESS: f32 = 1.5;
 const BLURRED_THICKNESS: f32 = 0.7;
 

@@ -5,9 +5,9 @@ use crate::cloud::Node;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// Points with a blur of radius R may be 3 + 0.4·R apart (pixels), but never more than 1.2·R. Found by experiment: wider apart
+/// Points with a blur of radius R may be 3.5 + 0.4·R apart (pixels), but never more than 1.2·R. Found by experiment: wider apart
 /// they show as dots.
-const BLURRED_START: f32 = 3.0;
+const BLURRED_START: f32 = 3.5;
 const BLURRED_SLOPE: f32 = 0.4;
 const BLURRED_MOST: f32 = 1.2;
 
