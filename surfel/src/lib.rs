@@ -36,8 +36,8 @@
 //!
 //! # Drawing
 //!
-//! * [`Cloud`]: an octree whose leaves hold the points and whose inner nodes hold links to a few of them, each with the mean area,
-//!   normal and colour of what it stands for.
+//! * [`Cloud`]: an octree whose leaves hold the points and whose inner nodes hold links to a few of them, each with the area
+//!   and the mean place, normal and colour of what it stands for.
 //! * [`Renderer`] takes each part of the cloud from the coarsest level on which about one point falls on a pixel, or, out of focus,
 //!   points are as far apart as the blur is wide. Between two levels it draws pairs of neighbours as one disc. Discs become ellipses with exact perspective and are lit; in each pixel those of the nearest surface are averaged and laid over
 //!   what is behind.
