@@ -62,8 +62,9 @@ pub struct Regions {
 }
 
 impl Regions {
-    /// Begins with a polygon that nothing hides. Parts of at most `negligible` area are not worth a
-    /// region: an overlap that small is taken for a touch, a remainder that small for nothing.
+    /// Begins with a polygon that nothing hides. Parts of at most `negligible` area are not cut off: an overlap
+    /// that small counts as outside of the occluder, a remainder that small as inside. So no area is lost: what is
+    /// left behind sheets of one opacity has the whole polygon's area to rounding, however the sheets divide it.
     pub fn start(&mut self, polygon: ConvexPolygon, negligible: f64) {
         self.list.clear();
         self.base = 0;
@@ -112,8 +113,12 @@ impl Regions {
         let wide = high.x - low.x >= high.y - low.y;
         let normal = if wide { DVec2::X } else { DVec2::Y };
         let (above, below) = polygon.divided(&HalfPlane { anchor: middle, normal, offset: 0.0 });
+        if above.area().min(below.area()) <= self.negligible {
+            // Nothing that small is cut off: it would be lost.
+            return self.hide_part(polygon, first, MOST_HALVINGS, occluders);
+        }
         for half in [below, above] {
-            if half.area() > self.negligible && self.push_blockers_of(&half, first..end, occluders) {
+            if self.push_blockers_of(&half, first..end, occluders) {
                 let few = 4 * (self.stack.len() - end) <= 3 * count;
                 self.hide_part(half, end, halvings + if few { 1 } else { 4 }, occluders);
             }
@@ -191,8 +196,7 @@ impl Regions {
                 continue;
             }
             self.list.swap_remove(i);
-            let negligible = self.negligible;
-            let outside = self.outside.drain(..).filter(|p| p.area() > negligible);
+            let outside = self.outside.drain(..);
             self.list.extend(outside.map(|polygon| Region { polygon, transmittance }));
             let passed = transmittance * (1.0 - opacity);
             if passed > FAINT {
@@ -217,9 +221,9 @@ impl Regions {
             if kept.is_empty() {
                 return None;
             }
-            inside = kept;
-            if !cut_off.is_empty() {
+            if cut_off.area() > self.negligible {
                 self.outside.push(cut_off);
+                inside = kept;
             }
         }
         (inside.area() > self.negligible).then_some(inside)
@@ -381,6 +385,26 @@ mod tests {
         let cell = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
         regions.hide(cell, 1e-12, &blockers, &Tiles(tiles));
         assert!((area(&regions) - 0.5 / f64::from(n)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn slivers_too_small_to_cut_off_are_not_lost() {
+        // Two sheets of one opacity that meet in a line through the cell, a sliver of less than `negligible` away
+        // from its corner: whatever side the sliver is counted to, the sheets take the same light from all of the cell.
+        let cell = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
+        for offset in [0.0, 1e-7, 1e-6, 1e-5, 3.2e-5, 1e-4, 1e-3] {
+            let (a, b) = (dvec2(3.0 - offset, -1.0), dvec2(-1.0 - offset, 3.0));
+            let sheets = [[a, b, dvec2(-9.0, -9.0)], [b, a, dvec2(9.0, 9.0)]];
+            for sheets in [sheets, [sheets[1], sheets[0]]] {
+                let mut regions = Regions::default();
+                regions.start(cell, 1e-9);
+                for sheet in &sheets {
+                    let positive = if convex::area(sheet) > 0.0 { *sheet } else { [sheet[1], sheet[0], sheet[2]] };
+                    regions.attenuate(&positive, None, |_| 0.25);
+                }
+                assert!((area(&regions) - 0.75).abs() < 1e-15, "{offset}: {}", area(&regions));
+            }
+        }
     }
 
     #[test]

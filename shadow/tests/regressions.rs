@@ -76,3 +76,26 @@ fn a_light_in_the_plane_of_a_wall_does_not_shine_through_the_lid() {
     assert!(picture.iter().flatten().all(|p| p.lit == 0.0), "{picture:?}");
     tiles_do_not_matter(&s, view, emitter, ShadowOptions::default()).unwrap();
 }
+
+/// The seam between the two triangles of a translucent sheet passed 3e-5 of a pixel from a pixel's corner: the sliver beyond it, below a
+/// billionth of the pixel, was lost when the pixel was cut, and 6e-10 of the light with it.
+#[test]
+fn a_seam_of_a_translucent_sheet_close_to_a_corner_takes_no_light() {
+    let mut s = Soup::default();
+    let alpha = 0.148_555_41_f32;
+    let (ground, sheet) = (s.surface(1.0), s.surface(alpha));
+    let square = |half: f64, y: f64| {
+        [dvec3(-half, y, half), dvec3(half, y, half), dvec3(half, y, -half), dvec3(-half, y, -half)]
+    };
+    s.polygon(&square(20.0, 0.0), ground);
+    s.polygon(&square(100.0, 1.0), sheet);
+    let camera = Projection::Orthographic { height: 2.0 };
+    let view = View::look_at(DVec3::Y * 0.5, DVec3::ZERO, DVec3::NEG_Z, camera, 4, 4).unwrap();
+    let position = dvec3(0.449_142_830_747_038_8, 5.0, -0.449_218_082_410_036_8);
+    let direction = dvec3(position.x, -1.0, position.z);
+    for emitter in [Emitter::Point { position, axis: DVec3::NEG_Y }, Emitter::Directional { direction }] {
+        for lit in light_on(&lit_picture(&s, view, emitter, ShadowOptions::default()).unwrap(), ground) {
+            assert!((lit - (1.0 - f64::from(alpha))).abs() < 1e-12, "{lit}");
+        }
+    }
+}
