@@ -168,6 +168,8 @@ fn rows() -> impl Strategy<Value = Vec<Row>> {
 }
 
 proptest! {
+    #![proptest_config(testkit::config(256))]
+
     #[test]
     fn every_ply_gives_back_its_points(rows in rows(), double in any::<bool>(), block in 1usize..40) {
         let options = CloudOptions::DEFAULT.with_block_points(block);

@@ -260,7 +260,7 @@ fn broken_files_name_the_element() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(testkit::config(200))]
 
     #[test]
     fn any_change_of_a_byte_is_a_model_or_an_error(at in any::<prop::sample::Index>(), byte in any::<u8>(), cut in prop::option::weighted(0.2, any::<prop::sample::Index>())) {

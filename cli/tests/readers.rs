@@ -185,6 +185,8 @@ fn check_mesh(mesh: &pointillist_cli::mesh_io::FileMesh) {
 }
 
 proptest! {
+    #![proptest_config(testkit::config(256))]
+
     #[test]
     fn any_obj_is_a_mesh_or_an_error(text in obj_text()) {
         if let Ok(mesh) = read_obj("fuzz", text.as_bytes()) {

@@ -113,7 +113,7 @@ macro_rules! holds {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
+    #![proptest_config(testkit::config(512))]
 
     #[test]
     fn area_and_moments_are_conserved(p in convex(), g in grid()) {

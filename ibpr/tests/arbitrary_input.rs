@@ -7,7 +7,6 @@ use pointillist_ibpr::{
     Translucency, View, Weighting,
 };
 use proptest::prelude::*;
-use proptest::test_runner::FileFailurePersistence;
 
 fn number() -> BoxedStrategy<f64> {
     prop_oneof![
@@ -76,14 +75,8 @@ fn options() -> impl Strategy<Value = Options> {
     })
 }
 
-/// Seeds of failures are kept beside this file.
-fn cases(cases: u32) -> ProptestConfig {
-    let file = FileFailurePersistence::WithSource("proptest-regressions");
-    ProptestConfig { cases, failure_persistence: Some(Box::new(file)), ..ProptestConfig::default() }
-}
-
 proptest! {
-    #![proptest_config(cases(512))]
+    #![proptest_config(testkit::config(512))]
 
     #[test]
     fn scans_become_a_cloud_or_are_refused(

@@ -9,7 +9,6 @@ use pointillist_ibpr::{
     View, Weighting,
 };
 use proptest::prelude::*;
-use proptest::test_runner::FileFailurePersistence;
 
 /// Any number, or one on a coarse grid.
 fn coordinate() -> BoxedStrategy<f64> {
@@ -117,12 +116,6 @@ fn options() -> impl Strategy<Value = Options> {
     })
 }
 
-/// Seeds of failures are kept beside this file.
-fn config(cases: u32) -> ProptestConfig {
-    let file = FileFailurePersistence::WithSource("proptest-regressions");
-    ProptestConfig { cases, failure_persistence: Some(Box::new(file)), ..ProptestConfig::default() }
-}
-
 macro_rules! holds {
     ($fact:expr) => {
         $fact.map_err(TestCaseError::fail)?
@@ -130,7 +123,7 @@ macro_rules! holds {
 }
 
 proptest! {
-    #![proptest_config(config(192))]
+    #![proptest_config(testkit::config(192))]
 
     #[test]
     fn frames_are_sound(s in scans(), v in view(), o in options()) {
@@ -225,7 +218,7 @@ fn only_the_rim_differs(all: &Frame, culled: &Frame) -> Result<(), String> {
 }
 
 proptest! {
-    #![proptest_config(config(40))]
+    #![proptest_config(testkit::config(40))]
 
     #[test]
     fn culling_what_faces_away_never_changes_a_smooth_closed_surface(

@@ -399,7 +399,8 @@ mod tests {
                 let mut regions = Regions::default();
                 regions.start(cell, 1e-9);
                 for sheet in &sheets {
-                    let positive = if convex::area(sheet) > 0.0 { *sheet } else { [sheet[1], sheet[0], sheet[2]] };
+                    let positive =
+                        if convex::area(sheet) > 0.0 { *sheet } else { [sheet[1], sheet[0], sheet[2]] };
                     regions.attenuate(&positive, None, |_| 0.25);
                 }
                 assert!((area(&regions) - 0.75).abs() < 1e-15, "{offset}: {}", area(&regions));

@@ -46,12 +46,8 @@ fn opacity() -> impl Strategy<Value = f32> {
     prop_oneof![4 => Just(1.0f32), 2 => 0.0..=1.0f32, 1 => any::<f32>()]
 }
 
-fn cases(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
-}
-
 proptest! {
-    #![proptest_config(cases(512))]
+    #![proptest_config(testkit::config(512))]
 
     #[test]
     fn geometry_is_prepared_or_refused(

@@ -119,10 +119,6 @@ fn options() -> impl Strategy<Value = MicropointOptions> {
 }
 
 /// Failures become tests in `regressions.rs`; seeds are not kept.
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
-}
-
 macro_rules! holds {
     ($fact:expr) => {
         $fact.map_err(TestCaseError::fail)?
@@ -130,7 +126,7 @@ macro_rules! holds {
 }
 
 proptest! {
-    #![proptest_config(config(96))]
+    #![proptest_config(testkit::config(96))]
 
     #[test]
     fn weights_and_transmittance_sum_to_one(s in soup(), v in view(), o in options()) {
@@ -156,7 +152,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(64))]
+    #![proptest_config(testkit::config(64))]
 
     #[test]
     fn every_pixel_shows_the_exact_share_of_every_surface(s in few_triangles(), v in view()) {

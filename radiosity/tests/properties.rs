@@ -47,7 +47,7 @@ fn fails(message: String) -> TestCaseError {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 128, max_shrink_iters: 100, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { max_shrink_iters: 100, ..testkit::config(128) })]
 
     #[test]
     fn a_form_factor_is_a_share((a, b) in pair(), occluders in prop::collection::vec(polygon(), 0..3)) {
@@ -81,7 +81,7 @@ proptest! {
 
 proptest! {
     // The slow integral takes some milliseconds.
-    #![proptest_config(ProptestConfig { cases: 24, max_shrink_iters: 50, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { max_shrink_iters: 50, ..testkit::config(24) })]
 
     #[test]
     fn bounds_hold_against_the_slow_integral((a, b) in pair(), digits in 4.0_f64..13.0) {

@@ -190,7 +190,7 @@ fn wrong_tables_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2))]
+    #![proptest_config(testkit::config(2))]
 
     #[test]
     fn any_pattern_is_a_table_or_refused(pattern in prop::collection::vec(any::<u8>(), 0..40), x in -1.0f32..1.0, y in -1.0f32..1.0) {
@@ -202,7 +202,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(16))]
+    #![proptest_config(testkit::config(16))]
 
     #[test]
     fn ggx_of_any_parameters_keeps_its_energy(f0 in 0.0f32..=1.0, roughness in 0.0f32..=1.0, diffuse in 0.0f32..=1.0, degrees in 0.0f32..89.0) {

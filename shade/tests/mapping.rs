@@ -159,6 +159,8 @@ fn box_sides_are_not_mirrored() {
 }
 
 proptest! {
+    #![proptest_config(testkit::config(256))]
+
     #[test]
     fn no_triangle_jumps_at_the_seam(d in direction(), e in direction(), f in direction(), size in 0.0f64..0.3) {
         // A small triangle on a sphere, away from the poles by more than its size.

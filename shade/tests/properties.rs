@@ -104,6 +104,8 @@ fn real_material() -> impl Strategy<Value = Material> {
 }
 
 proptest! {
+    #![proptest_config(testkit::config(256))]
+
     #[test]
     fn finite_input_gives_finite_light(light in light(), sample in any::<u32>(), at in point(), m in material(), n in unit(), v in unit()) {
         let incident = light.illuminate(sample, at);

@@ -23,7 +23,7 @@ fn vector() -> BoxedStrategy<DVec3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(testkit::config(512))]
 
     #[test]
     fn any_light_on_any_receivers_gives_fractions_or_an_error(

@@ -95,10 +95,6 @@ fn options() -> BoxedStrategy<ShadowOptions> {
     prop_oneof![3 => Just(exact()), 1 => Just(paper(Resolution::Auto)), 1 => Just(paper(Resolution::Cells(256)))].boxed()
 }
 
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
-}
-
 macro_rules! holds {
     ($fact:expr) => {
         $fact.map_err(TestCaseError::fail)?
@@ -126,7 +122,7 @@ fn areas(polygon: &[DVec3], height: f64, pixels: u32) -> Vec<f64> {
 }
 
 proptest! {
-    #![proptest_config(config(64))]
+    #![proptest_config(testkit::config(64))]
 
     #[test]
     fn fractions_are_between_zero_and_one(s in soup(), v in view(), e in emitter(), o in options()) {

@@ -93,7 +93,7 @@ fn points(max: usize) -> impl Strategy<Value = Vec<DVec3>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(testkit::config(64))]
 
     #[test]
     fn any_points_are_divided_as_delaunay_demands(points in points(40)) {

@@ -36,7 +36,7 @@ fn fail(message: String) -> TestCaseError {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(testkit::config(96))]
 
     #[test]
     fn weights_reproduce_linear_functions_and_hold_the_light_beyond_the_hull(

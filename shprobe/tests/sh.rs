@@ -60,7 +60,7 @@ fn hold(result: Result<(), String>) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(testkit::config(64))]
 
     #[test]
     fn rotation_keeps_band_power_and_turns_the_function(sh in sh(), q in rotation(), d in direction()) {
@@ -163,7 +163,7 @@ proptest! {
 
 proptest! {
     // A search in debug builds takes its time.
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(testkit::config(12))]
 
     #[test]
     fn minimum_of_any_order_is_least(sh in sh(), d in direction()) {

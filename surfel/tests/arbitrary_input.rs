@@ -7,7 +7,6 @@ use pointillist_surfel::{
     Focus, Light, Options, Procedure, Projection, SurfelError, View, field_of_view_rad,
 };
 use proptest::prelude::*;
-use proptest::test_runner::FileFailurePersistence;
 use std::time::{Duration, Instant};
 
 fn number() -> BoxedStrategy<f64> {
@@ -94,12 +93,6 @@ fn options() -> BoxedStrategy<Options> {
         .boxed()
 }
 
-/// Seeds of failures are kept beside this file.
-fn config(cases: u32) -> ProptestConfig {
-    let file = FileFailurePersistence::WithSource("proptest-regressions");
-    ProptestConfig { cases, failure_persistence: Some(Box::new(file)), ..ProptestConfig::default() }
-}
-
 /// No frame here has 500 pixels or 50 points.
 const MOST_TIME: Duration = Duration::from_secs(5);
 
@@ -111,7 +104,7 @@ fn frames_are_sound(points: &OwnedPoints, view: &View, o: &Options) -> Result<()
 }
 
 proptest! {
-    #![proptest_config(config(512))]
+    #![proptest_config(testkit::config(512))]
 
     #[test]
     fn points_become_a_cloud_or_are_refused(

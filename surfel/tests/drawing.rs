@@ -6,7 +6,6 @@ use pointillist_surfel::invariants::{
 };
 use pointillist_surfel::{Cloud, Focus, Light, Options, Procedure, Projection, View};
 use proptest::prelude::*;
-use proptest::test_runner::FileFailurePersistence;
 use std::sync::LazyLock;
 
 /// Any number, or one on a coarse grid.
@@ -102,12 +101,6 @@ fn with(mut options: Options, change: impl Fn(&mut Options)) -> Options {
     options
 }
 
-/// Seeds of failures are kept beside this file.
-fn config(cases: u32) -> ProptestConfig {
-    let file = FileFailurePersistence::WithSource("proptest-regressions");
-    ProptestConfig { cases, failure_persistence: Some(Box::new(file)), ..ProptestConfig::default() }
-}
-
 macro_rules! holds {
     ($fact:expr) => {
         $fact.map_err(TestCaseError::fail)?
@@ -115,7 +108,7 @@ macro_rules! holds {
 }
 
 proptest! {
-    #![proptest_config(config(28))]
+    #![proptest_config(testkit::config(28))]
 
     #[test]
     fn frames_are_sound(p in points(), v in view(), o in options()) {
@@ -211,7 +204,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(24))]
+    #![proptest_config(testkit::config(24))]
 
     #[test]
     fn culling_of_solids_does_not_change_a_bit(v in view_of_sphere(), o in options(), level in 0.5..3.0f32, depth in 0.0..0.03f64, which in 0..2usize) {

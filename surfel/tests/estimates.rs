@@ -103,7 +103,7 @@ fn radius() -> BoxedStrategy<f32> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 128, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(testkit::config(128))]
 
     #[test]
     fn any_cloud_has_estimates(cloud in cloud()) {

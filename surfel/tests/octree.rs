@@ -3,7 +3,6 @@
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_surfel::invariants::{self, MOST_OVERHEAD, OwnedPoints, cloud};
 use proptest::prelude::*;
-use proptest::test_runner::FileFailurePersistence;
 
 /// Coordinates with trouble: equal, on lines, 1e-30 apart, far from 0, huge.
 fn coordinate() -> BoxedStrategy<f64> {
@@ -72,14 +71,8 @@ fn points() -> BoxedStrategy<OwnedPoints> {
         .boxed()
 }
 
-/// Seeds of failures are kept beside this file.
-fn config(cases: u32) -> ProptestConfig {
-    let file = FileFailurePersistence::WithSource("proptest-regressions");
-    ProptestConfig { cases, failure_persistence: Some(Box::new(file)), ..ProptestConfig::default() }
-}
-
 proptest! {
-    #![proptest_config(config(24))]
+    #![proptest_config(testkit::config(24))]
 
     #[test]
     fn any_points_have_a_sound_octree(points in points()) {

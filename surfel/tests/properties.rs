@@ -92,7 +92,7 @@ macro_rules! holds {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(testkit::config(48))]
 
     #[test]
     fn blue_noise_has_exactly_the_count(m in mesh(), count in 1..200usize, seed: u64) {
