@@ -3,6 +3,7 @@
 use crate::geometry::{HiddenSides, Surface, Triangle};
 use crate::lens::{Lens, LensKind, Plane};
 use glam::{DVec2, DVec3};
+use pointillist_dice::convex;
 use std::cmp::Ordering;
 
 /// A triangle in the frame of a lens.
@@ -96,6 +97,36 @@ pub struct PlainOpacity;
 impl TexturedOpacity for PlainOpacity {
     fn mean_opacity(&self, _triangle: u32, _polygon: &[SurfacePoint]) -> f32 {
         1.0
+    }
+}
+
+/// A mask's mean opacity this close to 0 or 1 counts as 0 or 1: the sums of texels behind it are rounded to about that, and a hole
+/// that is not quite empty would still be a part to compare with all others of its cell.
+const OPACITY_ROUNDING: f32 = 1e-6;
+
+impl Face {
+    /// Mean opacity, 0..=1, of the face over a polygon on it: the surface's own times its mask's. `outline` is relative to `corner`.
+    #[must_use]
+    pub fn mean_opacity(
+        &self,
+        lens: &Lens,
+        surface: &Surface,
+        mask: &dyn TexturedOpacity,
+        corner: DVec2,
+        outline: &[DVec2],
+    ) -> f32 {
+        let zero = SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO };
+        let mut points = [zero; convex::MAX_VERTICES];
+        for (to, &v) in points.iter_mut().zip(outline) {
+            *to = self.point(lens, v + corner);
+        }
+        let mean = mask.mean_opacity(self.id, &points[..outline.len()]);
+        let rounded = match mean {
+            m if m <= OPACITY_ROUNDING => 0.0,
+            m if m >= 1.0 - OPACITY_ROUNDING => 1.0,
+            m => m,
+        };
+        (rounded * surface.opacity).clamp(0.0, 1.0)
     }
 }
 
@@ -293,7 +324,7 @@ fn clip_outline(
     }
     outline.fill_bays();
     let len = outline.len;
-    let area = pointillist_dice::convex::area(outline.vertices());
+    let area = convex::area(outline.vertices());
     (len >= 3 && area > 0.0).then_some((outline, nearness))
 }
 

@@ -40,6 +40,8 @@ pub struct TexelSums<const N: usize> {
     wrap: TexelWrap,
     /// Value of one unit of the fixed point.
     unit: f64,
+    /// Smallest and largest texel of each channel: no mean lies beyond them.
+    range: [(f64, f64); N],
     /// `levels[k]`: rows of sums, each the mean of 4ᵏ rows of texels (fewer in the last).
     levels: Vec<Vec<[u32; N]>>,
     /// The same texture with half as many texels on a side, each the mean of four.
@@ -104,21 +106,22 @@ impl<const N: usize> TexelSums<N> {
         if width == 0 || height == 0 || width > 1 << 20 || height > 1 << 20 {
             return Err(MicropointError::BadTexture { width, height, texels: 0 });
         }
-        let mut most = 0.0_f32;
+        let mut range = [(f64::INFINITY, 0.0_f64); N];
         for y in 0..height {
             for x in 0..width {
-                for v in texel(x, y) {
+                for ((least, most), v) in range.iter_mut().zip(texel(x, y)) {
                     if !(v.is_finite() && v >= 0.0) {
                         let index = y as usize * width as usize + x as usize;
                         return Err(MicropointError::BadTexel { index });
                     }
-                    most = most.max(v);
+                    (*least, *most) = (least.min(f64::from(v)), most.max(f64::from(v)));
                 }
             }
         }
+        let most = range.iter().fold(0.0_f64, |m, r| m.max(r.1));
         // The sum of a whole row must fit, with half a unit of rounding for each texel.
         let steps = (f64::from(u32::MAX) - f64::from(width)) / f64::from(width);
-        let unit = if most > 0.0 { f64::from(most) / steps } else { 1.0 };
+        let unit = if most > 0.0 { most / steps } else { 1.0 };
         let mut rows = Vec::with_capacity((width as usize + 1) * height as usize);
         for y in 0..height {
             let mut sum = [0u32; N];
@@ -131,7 +134,8 @@ impl<const N: usize> TexelSums<N> {
             }
         }
         let (columns, lines) = (width as usize, height as usize);
-        let mut sums = Self { width: columns, height: lines, wrap, unit, levels: vec![rows], coarser: None };
+        let levels = vec![rows];
+        let mut sums = Self { width: columns, height: lines, wrap, unit, range, levels, coarser: None };
         sums.add_coarse_levels();
         if width.is_multiple_of(2) && height.is_multiple_of(2) && width.min(height) >= 8 {
             let coarse = Self::build(width / 2, height / 2, wrap, &|x, y| sums.mean_of_four(x, y))?;
@@ -188,15 +192,26 @@ impl<const N: usize> TexelSums<N> {
     pub fn texel(&self, x: f64, y: f64) -> [f64; N] {
         let band = self.band(0, y.floor() + 0.5);
         let (lo, hi) = (self.row_sum(0, band.row, x.floor()), self.row_sum(0, band.row, x.floor() + 1.0));
-        std::array::from_fn(|c| (hi[c] - lo[c]) * self.unit)
+        self.within_range(std::array::from_fn(|c| (hi[c] - lo[c]) * self.unit))
+    }
+
+    /// Rounding of a mean over a tiny or narrow polygon is relative to the row sums, not to the mean: without this, means
+    /// would be negative where a polygon sees nothing but black texels.
+    fn within_range(&self, mean: [f64; N]) -> [f64; N] {
+        std::array::from_fn(|c| mean[c].max(self.range[c].0).min(self.range[c].1))
     }
 
     /// The mean over a convex polygon, weighted by area in the grid.
     ///
     /// Exact up to rounding where the polygon sees few texels or little perspective; elsewhere it is cut
-    /// into strips of nearly equal depth. Corners that are not finite give the texel at the origin.
+    /// into strips of nearly equal depth. Never beyond the smallest and largest texel of a channel. Corners that are
+    /// not finite give the texel at the origin.
     #[must_use]
     pub fn mean(&self, corners: &[TexelCorner]) -> [f64; N] {
+        self.within_range(self.unbounded_mean(corners))
+    }
+
+    fn unbounded_mean(&self, corners: &[TexelCorner]) -> [f64; N] {
         let (low, high) = corners
             .iter()
             .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), c| (l.min(c.texel), h.max(c.texel)));
@@ -225,7 +240,8 @@ impl<const N: usize> TexelSums<N> {
     }
 
     /// The mean of all texels.
-    fn whole_mean(&self) -> [f64; N] {
+    #[must_use]
+    pub fn whole_mean(&self) -> [f64; N] {
         let mut sum = [0.0; N];
         for row in 0..self.height {
             let total = self.row_sum(0, row, self.width as f64);

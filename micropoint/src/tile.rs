@@ -1,11 +1,11 @@
 //! The bucket of cells that one thread finishes: faces diced into parts, nearest first.
 
-use crate::face::{Face, GridRect, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity, set_up_face};
+use crate::face::{Face, GridRect, ProjectedVertex, Setup, TexturedOpacity, set_up_face};
 use crate::geometry::{ClusterQueue, Geometry, HiddenSides};
 use crate::lens::{Lens, LensKind};
 use crate::occlude::are_disjoint;
 use crate::volume::ViewVolume;
-use glam::{DVec2, DVec3, IVec2, Vec2};
+use glam::{DVec2, IVec2, Vec2};
 use pointillist_dice::{CellWindow, ConvexPolygon, Cut, convex, cut};
 use std::cmp::Ordering;
 
@@ -338,6 +338,9 @@ impl Dicer {
             return;
         }
         let opacity = opacity.unwrap_or_else(|| mean_opacity(job, face, corner, &CELL));
+        if opacity <= 0.0 {
+            return;
+        }
         let part = Part {
             next: NONE,
             face: index,
@@ -380,6 +383,9 @@ impl Dicer {
             return;
         }
         let opacity = opacity.unwrap_or_else(|| mean_opacity(job, face, corner, local));
+        if opacity <= 0.0 {
+            return;
+        }
         let part = Part {
             next: NONE,
             face: index,
@@ -557,13 +563,6 @@ impl Dicer {
 }
 
 fn mean_opacity(job: &DiceJob<'_>, face: &Face, corner: DVec2, local: &[DVec2]) -> f32 {
-    let mut points =
-        [SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO };
-            convex::MAX_VERTICES];
-    for (to, &v) in points.iter_mut().zip(local) {
-        *to = face.point(job.lens, v + corner);
-    }
-    let mean = job.opacity.mean_opacity(face.id, &points[..local.len()]);
-    let surface = job.geometry.surfaces()[face.surface as usize];
-    (mean * surface.opacity).clamp(0.0, 1.0)
+    let surface = &job.geometry.surfaces()[face.surface as usize];
+    face.mean_opacity(job.lens, surface, job.opacity, corner, local)
 }

@@ -2,6 +2,7 @@
 
 use crate::error::RadiosityError;
 use crate::hemicube::{Hemicube, HemicubeKind};
+use crate::lamp::check_direct;
 use crate::parallel;
 use crate::polygon::Polygon;
 use crate::scene::Scene;
@@ -16,7 +17,7 @@ impl Scene {
     /// of the difference between both ends.
     ///
     /// # Errors
-    /// [`RadiosityError::CountMismatch`] for `direct`, [`RadiosityError::Option`] for a resolution outside 1 to 4096.
+    /// [`RadiosityError::CountMismatch`] and [`RadiosityError::DirectIrradiance`] for `direct`, [`RadiosityError::Option`] for a resolution outside 1 to 4096.
     pub fn transport_by_hemicubes(
         mut self,
         kind: HemicubeKind,
@@ -25,9 +26,7 @@ impl Scene {
     ) -> Result<(Transport, Vec<Rgb>), RadiosityError> {
         self.options.tolerance = None;
         let leaves = self.tree.leaves();
-        if !direct.is_empty() && direct.len() != leaves.len() {
-            return Err(RadiosityError::CountMismatch { patches: leaves.len(), given: direct.len() });
-        }
+        check_direct(leaves.len(), direct)?;
         if !(1..=4096).contains(&resolution) {
             let (name, expected) = ("resolution", "from 1 to 4096");
             return Err(RadiosityError::Option { name, value: resolution as f64, expected });

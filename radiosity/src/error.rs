@@ -65,8 +65,8 @@ pub enum RadiosityError {
         /// The value.
         value: f64,
     },
-    /// An emission that is NaN, infinite or negative.
-    #[error("surface {surface}: an emission of {value} is not a finite number from 0")]
+    /// An emission that is NaN, negative, or above 1e100.
+    #[error("surface {surface}: an emission of {value} is not from 0 to 1e100")]
     Emission {
         /// Which, from 0.
         surface: usize,
@@ -117,10 +117,42 @@ pub enum RadiosityError {
     /// A point or normal that is not finite, or a normal without length.
     #[error("the point or its normal is not finite, or the normal has no length")]
     BadPoint,
-    /// A lamp whose position or direction is not finite, or has no length.
-    #[error("lamp {lamp} has a position or direction that is not finite or has no length")]
+    /// A lamp whose position or direction is not finite, or has no length, or whose exitance is no light.
+    #[error(
+        "lamp {lamp} has a position, direction or exitance that is not finite, has no length, or is below 0"
+    )]
     BadLamp {
         /// Which, from 0.
         lamp: usize,
+    },
+    /// A lamp's irradiance of a patch is no light.
+    #[error(
+        "lamp {lamp} gives patch {patch}, about {centre:?}, an irradiance of {value}; it must be from 0 to 1e100"
+    )]
+    LampIrradiance {
+        /// Which lamp, from 0.
+        lamp: usize,
+        /// Which patch, from 0, in the order that patches have at that time: edges of shadows may have divided some before.
+        patch: usize,
+        /// Its centre, world space.
+        centre: [f64; 3],
+        /// Mean irradiance.
+        value: f64,
+    },
+    /// A direct irradiance that is no light.
+    #[error("the direct irradiance of patch {patch} is {value}; it must be from 0 to 1e100")]
+    DirectIrradiance {
+        /// Which patch, from 0.
+        patch: usize,
+        /// The value.
+        value: f64,
+    },
+    /// An importance that is NaN, infinite or negative.
+    #[error("the importance of patch {patch} is {value}; it must be from 0 to 1e100")]
+    Importance {
+        /// Which patch, from 0.
+        patch: usize,
+        /// The value.
+        value: f64,
     },
 }

@@ -6,7 +6,7 @@ use crate::error::RadiosityError;
 use crate::kernel::gauss;
 use crate::polygon::Polygon;
 use crate::scene::Scene;
-use crate::surface::Rgb;
+use crate::surface::{Rgb, is_light};
 use crate::tree::{Element, ElementId};
 use crate::visible::cubature;
 use crate::visible::parts::{Eye, Pieces, Source};
@@ -52,18 +52,37 @@ pub enum Lamp<'l> {
     },
 }
 
+/// A lamp's irradiance that is NaN, negative or too large.
+struct NoLight {
+    lamp: usize,
+    value: f64,
+}
+
+/// Checks what a caller says of the direct irradiance of patches: none, or one light for each.
+pub(crate) fn check_direct(patches: usize, direct: &[Rgb]) -> Result<(), RadiosityError> {
+    if !direct.is_empty() && direct.len() != patches {
+        return Err(RadiosityError::CountMismatch { patches, given: direct.len() });
+    }
+    for (patch, light) in direct.iter().enumerate() {
+        if let Some(&value) = light.iter().find(|&&l| !is_light(l)) {
+            return Err(RadiosityError::DirectIrradiance { patch, value });
+        }
+    }
+    Ok(())
+}
+
 impl Scene {
     /// Mean irradiance of every patch from lamps, shadows by exact clipping, in the order of patches. Patches on the edge of
     /// a shadow are divided down to [`SceneOptions::smallest_patch`](crate::SceneOptions::smallest_patch) first.
     ///
     /// # Errors
-    /// [`RadiosityError::BadLamp`], [`RadiosityError::TooManyPatches`].
+    /// [`RadiosityError::BadLamp`], [`RadiosityError::LampIrradiance`], [`RadiosityError::TooManyPatches`].
     pub fn direct(&mut self, lamps: &[Lamp<'_>]) -> Result<Vec<Rgb>, RadiosityError> {
         for (lamp, kind) in lamps.iter().enumerate() {
             let usable = match kind {
                 Lamp::Point { position, .. } => position.is_finite(),
                 Lamp::Directional { direction, .. } => direction.try_normalize().is_some(),
-                Lamp::Area { .. } => true,
+                Lamp::Area { exitance, .. } => exitance.iter().all(|&e| is_light(e)),
             };
             if !usable {
                 return Err(RadiosityError::BadLamp { lamp });
@@ -78,10 +97,11 @@ impl Scene {
             }
             let found =
                 parallel::map(open.len(), Pieces::default, |pieces, i| self.lit(open[i], lamps, pieces));
-            for (&leaf, (irradiance, edge)) in open.iter().zip(&found) {
-                of_element[leaf as usize] = Some(*irradiance);
+            for (&leaf, found) in open.iter().zip(found) {
+                let (irradiance, edge) = found.map_err(|problem| self.not_lit(leaf, problem))?;
+                of_element[leaf as usize] = Some(irradiance);
                 let size = self.tree.elements[leaf as usize].size;
-                if *edge && size > self.options.smallest_patch * self.scale {
+                if edge && size > self.options.smallest_patch * self.scale {
                     self.tree.divide(leaf);
                 }
             }
@@ -94,12 +114,19 @@ impl Scene {
         Ok(self.tree.leaves().into_iter().map(of).collect())
     }
 
+    /// Names the patch that a lamp gives no light but a number that is none.
+    fn not_lit(&self, leaf: ElementId, problem: NoLight) -> RadiosityError {
+        let patch = self.tree.leaves().iter().position(|&l| l == leaf).unwrap_or_default();
+        let centre = self.outward(self.tree.elements[leaf as usize].polygon.centre()).to_array();
+        RadiosityError::LampIrradiance { lamp: problem.lamp, patch, centre, value: problem.value }
+    }
+
     /// Mean irradiance of one leaf, and whether an edge of a shadow crosses it.
-    fn lit(&self, leaf: ElementId, lamps: &[Lamp<'_>], pieces: &mut Pieces) -> (Rgb, bool) {
+    fn lit(&self, leaf: ElementId, lamps: &[Lamp<'_>], pieces: &mut Pieces) -> Result<(Rgb, bool), NoLight> {
         let element = &self.tree.elements[leaf as usize];
         let mut sum = [0.0; 3];
         let mut edge = false;
-        for lamp in lamps {
+        for (number, lamp) in lamps.iter().enumerate() {
             let (light, cut) = match *lamp {
                 Lamp::Point { position, irradiance, shadow } => {
                     self.lit_from(element, Eye::Point(self.inward(position)), irradiance, shadow, pieces)
@@ -112,11 +139,14 @@ impl Scene {
                 }
             };
             edge |= cut;
+            if let Some(&value) = light.iter().find(|&&l| !is_light(l)) {
+                return Err(NoLight { lamp: number, value });
+            }
             for (s, l) in sum.iter_mut().zip(light) {
                 *s += l;
             }
         }
-        (sum, edge)
+        Ok((sum, edge))
     }
 
     fn lit_from(

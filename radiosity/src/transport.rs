@@ -6,6 +6,7 @@ use crate::error::RadiosityError;
 use crate::factor::{FactorOptions, of_mutual};
 use crate::kernel::lambert;
 use crate::kernel::pair::{self, Rule, facing_parts};
+use crate::lamp::check_direct;
 use crate::parallel;
 use crate::polygon::Polygon;
 use crate::scene::Scene;
@@ -152,12 +153,10 @@ impl Scene {
     /// linked as large as it permits (\[3\]), and divided down to the smallest size where it asks for that.
     ///
     /// # Errors
-    /// [`RadiosityError::CountMismatch`] for `direct`, [`RadiosityError::TooManyPatches`].
+    /// [`RadiosityError::CountMismatch`] and [`RadiosityError::DirectIrradiance`] for `direct`, [`RadiosityError::TooManyPatches`].
     pub fn transport(mut self, direct: &[Rgb]) -> Result<(Transport, Vec<Rgb>), RadiosityError> {
         let leaves = self.tree.leaves();
-        if !direct.is_empty() && direct.len() != leaves.len() {
-            return Err(RadiosityError::CountMismatch { patches: leaves.len(), given: direct.len() });
-        }
+        check_direct(leaves.len(), direct)?;
         let mut of_element = vec![[0.0; 3]; self.tree.elements.len()];
         for (&leaf, light) in leaves.iter().zip(direct) {
             of_element[leaf as usize] = *light;

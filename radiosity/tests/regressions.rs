@@ -5,7 +5,8 @@ mod common;
 use common::{cornell, quad, room};
 use glam::{DQuat, DVec3, dvec3};
 use pointillist_radiosity::{
-    FactorOptions, RadiosityError, Scene, SceneOptions, SolveOptions, Surface, form_factor,
+    FactorOptions, HemicubeKind, Lamp, RadiosityError, Scene, SceneOptions, SolveOptions, Surface,
+    form_factor,
 };
 
 /// Height and Jacobian alone need a point each: with the kernel's own order, far triangles were off by a thousandth.
@@ -157,4 +158,53 @@ fn impossible_scenes_are_refused_by_name() {
     let (transport, _) = Scene::new(&open[..4], &options).expect("a room").transport(&[]).expect("a room");
     let solved = transport.gauss_seidel(&[], &SolveOptions::DEFAULT).expect("light gets out");
     assert!(solved.converged && solved.contraction < 1.0, "{solved:?}");
+}
+
+/// A lamp that answered NaN or infinity was summed up, compared with the tolerance, and certified as `converged` with a bound of 0.
+#[test]
+fn lamps_that_give_no_light_are_refused_by_lamp_and_patch() {
+    let dark = |_: DVec3, _: DVec3| [1.0, 0.0, 2.0];
+    for bad in [f64::NAN, f64::INFINITY, -1e-9, 1e101] {
+        let broken = move |p: DVec3, _: DVec3| if p.y < 0.2 { [0.0, bad, 0.0] } else { [1.0; 3] };
+        let mut scene = Scene::new(&cornell(), &SceneOptions::DEFAULT.with_patch(0.6)).expect("a room");
+        let position = dvec3(0.5, 0.5, 0.5);
+        let lamps = [
+            Lamp::Point { position, irradiance: &dark, shadow: false },
+            Lamp::Point { position, irradiance: &broken, shadow: true },
+        ];
+        match scene.direct(&lamps) {
+            Err(RadiosityError::LampIrradiance { lamp: 1, centre, value, .. }) => {
+                assert!(!(0.0..=1e100).contains(&value) && centre[1] < 1.0, "{value} {centre:?}");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+/// Negative direct light was taken for light, and NaN as a weight of patches shot 210,000 times.
+#[test]
+fn direct_light_and_importance_that_are_none_are_refused_by_patch() {
+    let scene = || Scene::new(&cornell(), &SceneOptions::DEFAULT.with_patch(0.6)).expect("a room");
+    let (transport, direct) = scene().transport(&[]).expect("a room");
+    let options = SolveOptions::DEFAULT;
+    for bad in [f64::NAN, f64::INFINITY, -1.0, 1e200] {
+        let mut light = vec![[1.0; 3]; transport.patch_count()];
+        light[3][2] = bad;
+        let named = |e: RadiosityError| matches!(e, RadiosityError::DirectIrradiance { patch: 3, .. });
+        assert!(scene().transport(&light).is_err_and(named));
+        assert!(scene().transport_by_hemicubes(HemicubeKind::Exact, 8, &light).is_err_and(named));
+        assert!(transport.gauss_seidel(&light, &options).is_err_and(named));
+        assert!(transport.progressive(&light, &[], &options).is_err_and(named));
+        let mut weights = vec![1.0; transport.patch_count()];
+        weights[5] = bad;
+        let named = |e: RadiosityError| matches!(e, RadiosityError::Importance { patch: 5, .. });
+        assert!(transport.progressive(&direct, &weights, &options).is_err_and(named));
+        assert!(transport.importance(&weights, &options).is_err_and(named));
+    }
+    let mut bright = cornell();
+    bright[0].emission = [1e300; 3];
+    assert!(matches!(
+        Scene::new(&bright, &SceneOptions::DEFAULT),
+        Err(RadiosityError::Emission { surface: 0, .. })
+    ));
 }

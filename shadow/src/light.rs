@@ -7,10 +7,10 @@ use crate::receiver::{Receivers, Viewer};
 use crate::scratch::{Caster, LitFace, Nearby, ShadowScratch, Side, Sum, Target, Work};
 use crate::screen::{Emitter, Screens};
 use glam::{DVec2, DVec3};
-use pointillist_dice::{ConvexPolygon, convex};
+use pointillist_dice::ConvexPolygon;
 use pointillist_micropoint::{
-    Face, Geometry, GridRect, Lens, LensKind, Occlusion, ProjectedVertex, Setup, SurfacePoint,
-    TexturedOpacity, ViewVolume, set_up_face,
+    Face, Geometry, GridRect, Lens, LensKind, Occlusion, ProjectedVertex, Setup, TexturedOpacity, ViewVolume,
+    set_up_face,
 };
 
 /// How fine the light grid is.
@@ -347,15 +347,8 @@ impl Query<'_> {
     /// Opacity of a caster over a polygon of the light grid.
     pub(crate) fn opacity(&self, caster: &Caster, polygon: &[DVec2]) -> f64 {
         caster.opacity.unwrap_or_else(|| {
-            let zero =
-                SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO };
-            let mut points = [zero; convex::MAX_VERTICES];
-            for (to, &v) in points.iter_mut().zip(polygon) {
-                *to = caster.face.point(self.lens, v);
-            }
-            let mean = self.opacity.mean_opacity(caster.face.id, &points[..polygon.len()]);
-            let surface = self.geometry.surfaces()[caster.face.surface as usize];
-            f64::from((mean * surface.opacity).clamp(0.0, 1.0))
+            let surface = &self.geometry.surfaces()[caster.face.surface as usize];
+            f64::from(caster.face.mean_opacity(self.lens, surface, self.opacity, DVec2::ZERO, polygon))
         })
     }
 }

@@ -11,7 +11,7 @@ use super::surfaces::Surfaces;
 use crate::image_io::LayerKind;
 use crate::job::{Stats, ThreadClock};
 use crate::scene::{NONE, Scene};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 use pointillist_micropoint::{Face, Fragment, LensKind, Micropoint, SurfacePoint, Tile, View};
 use pointillist_shade::{Interpolation, Material, face_normal, interpolate_color, interpolate_normal};
 use pointillist_shadow::ShadowCounts;
@@ -229,12 +229,15 @@ impl<'a> Shader<'a> {
         if !self.surfaces.has_color(face.id) {
             return material;
         }
-        let (mut sum, mut total) = (Vec3::ZERO, 0.0);
+        let (mut sum, mut total) = (Vec4::ZERO, 0.0);
         self.for_outlines(tile, m, face, polygon, &mut |polygon, weight| {
-            sum += self.surfaces.color(face.id, polygon).color * weight;
+            sum += self.surfaces.premultiplied_color(face.id, polygon) * weight;
             total += weight;
         });
-        if total > 0.0 { material.with_diffuse(material.diffuse * (sum / total)) } else { material }
+        if total <= 0.0 {
+            return material;
+        }
+        material.with_diffuse(material.diffuse * self.surfaces.straight_color(face.id, sum / total))
     }
 
     /// What is seen of a micropoint, piece by piece, with the weight of each.

@@ -2,9 +2,9 @@
 
 use super::detail_maps::{DetailMaps, DetailTable, texel_wrap};
 use crate::scene::{Details, Material, NONE, Scene, Texture};
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3, Vec4};
 use pointillist_micropoint::{
-    Geometry, MicropointError, Surface, SurfacePoint, TexelCorner, TexelSums, TexturedOpacity,
+    Geometry, MicropointError, Surface, SurfacePoint, TexelCorner, TexelSums, TexelWrap, TexturedOpacity,
 };
 use pointillist_shade::Model;
 use std::collections::HashMap;
@@ -17,8 +17,56 @@ enum Textured {
     Nothing,
     Color(TexelSums<3>),
     Opacity(TexelSums<1>),
+    Masked(MaskedColor),
+}
+
+/// Colour under a mask of opacity.
+struct MaskedColor {
+    /// Colour × opacity, and opacity.
+    premultiplied: TexelSums<4>,
     /// Opacity once more by itself: shadows ask for it often, and for nothing else.
-    ColorAndOpacity(TexelSums<4>, TexelSums<1>),
+    opacity: TexelSums<1>,
+    /// Smallest and largest colour of a texel that is not empty.
+    range: (Vec3, Vec3),
+    /// Mean colour of the whole map by its mask.
+    mean: Vec3,
+}
+
+/// Opacity up to which a region sees nothing but holes: what its sums say of colour is rounding.
+const EMPTY: f32 = 1e-6;
+
+impl MaskedColor {
+    fn new(color: &Texture, mask: &Texture, wrap: TexelWrap) -> Result<Self, MicropointError> {
+        let (width, height) = (color.width.max(mask.width), color.height.max(mask.height));
+        let at = |t: &Texture, x: u32, y: u32| {
+            let scale = |v: u32, from: u32, to: u32| (u64::from(v) * u64::from(to) / u64::from(from)) as u32;
+            t.texel(scale(x, width, t.width), scale(y, height, t.height))
+        };
+        let mut range = (Vec3::INFINITY, Vec3::ZERO);
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            if at(mask, x, y).w > 0.0 {
+                let color = at(color, x, y).truncate();
+                range = (range.0.min(color), range.1.max(color));
+            }
+        }
+        let premultiplied = TexelSums::new(width, height, wrap, |x, y| {
+            let alpha = at(mask, x, y).w;
+            (at(color, x, y).truncate() * alpha).extend(alpha).to_array()
+        })?;
+        let whole = Vec4::from_array(premultiplied.whole_mean().map(|v| v as f32));
+        let mean = if whole.w > 0.0 { whole.truncate() / whole.w } else { Vec3::ZERO };
+        let opacity = TexelSums::new(mask.width, mask.height, wrap, |x, y| [mask.texel(x, y).w])?;
+        Ok(Self { premultiplied, opacity, range, mean })
+    }
+
+    /// The colour of a region from its sum of colour × opacity and of opacity.
+    fn straight(&self, sum: Vec4) -> Vec3 {
+        if sum.w <= EMPTY {
+            // Seen by the mean opacity of its part, whose other places are hidden: it has no colour of its own.
+            return self.mean;
+        }
+        (sum.truncate() / sum.w).max(self.range.0).min(self.range.1)
+    }
 }
 
 /// Materials ready to be looked up, and where their textures lie on the triangles.
@@ -30,13 +78,6 @@ pub(crate) struct Surfaces {
     material_of: Vec<u32>,
     /// For each material; `None` for one of colour and opacity alone.
     details: Vec<Option<DetailMaps>>,
-}
-
-/// What textures say of a visible piece.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Texel {
-    /// Factor on the diffuse albedo.
-    pub(crate) color: Vec3,
 }
 
 impl Surfaces {
@@ -92,21 +133,30 @@ impl Surfaces {
 
     /// Whether the colour of a triangle varies.
     pub(crate) fn has_color(&self, triangle: u32) -> bool {
-        matches!(self.textured(triangle), Textured::Color(_) | Textured::ColorAndOpacity(..))
+        matches!(self.textured(triangle), Textured::Color(_) | Textured::Masked(_))
     }
 
-    /// Mean colour over a polygon of a triangle.
-    pub(crate) fn color(&self, triangle: u32, polygon: &[SurfacePoint]) -> Texel {
-        let rgb = |m: &[f64]| Vec3::new(m[0] as f32, m[1] as f32, m[2] as f32);
-        let color = match self.textured(triangle) {
-            Textured::Nothing | Textured::Opacity(_) => Vec3::ONE,
-            Textured::Color(sums) => rgb(&sums.mean(self.corners(triangle, polygon, sums).as_slice())),
-            Textured::ColorAndOpacity(sums, _) => {
-                let mean = sums.mean(self.corners(triangle, polygon, sums).as_slice());
-                if mean[3] > 0.0 { rgb(&mean) / mean[3] as f32 } else { Vec3::ZERO }
+    /// Mean of colour × opacity and of opacity over a polygon of a triangle, to be added up over polygons; see
+    /// [`Surfaces::straight_color`].
+    pub(crate) fn premultiplied_color(&self, triangle: u32, polygon: &[SurfacePoint]) -> Vec4 {
+        match self.textured(triangle) {
+            Textured::Nothing | Textured::Opacity(_) => Vec4::ONE,
+            Textured::Color(sums) => {
+                let [r, g, b] = self.mean(triangle, polygon, sums).map(|v| v as f32);
+                Vec4::new(r, g, b, 1.0)
             }
-        };
-        Texel { color }
+            Textured::Masked(masked) => {
+                Vec4::from_array(self.mean(triangle, polygon, &masked.premultiplied).map(|v| v as f32))
+            }
+        }
+    }
+
+    /// The factor on a triangle's diffuse albedo, from a mean of [`Surfaces::premultiplied_color`].
+    pub(crate) fn straight_color(&self, triangle: u32, mean: Vec4) -> Vec3 {
+        match self.textured(triangle) {
+            Textured::Masked(masked) => masked.straight(mean),
+            _ => mean.truncate(),
+        }
     }
 
     fn corners<const N: usize>(
@@ -151,8 +201,8 @@ impl TexturedOpacity for Surfaces {
     fn mean_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
         match self.textured(triangle) {
             Textured::Nothing | Textured::Color(_) => 1.0,
-            Textured::Opacity(sums) | Textured::ColorAndOpacity(_, sums) => {
-                sums.mean(self.corners(triangle, polygon, sums).as_slice())[0] as f32
+            Textured::Opacity(sums) | Textured::Masked(MaskedColor { opacity: sums, .. }) => {
+                self.mean(triangle, polygon, sums)[0] as f32
             }
         }
     }
@@ -166,7 +216,7 @@ fn weighted(corners: &[DVec2; 3], b: DVec3) -> DVec2 {
 fn surfaces_by_material(scene: &Scene, textures: &[Arc<Textured>]) -> (Vec<Surface>, Vec<u32>) {
     let mut surfaces = Vec::with_capacity(2 * scene.materials.len());
     for (m, t) in scene.materials.iter().zip(textures) {
-        let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::ColorAndOpacity(..));
+        let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::Masked(_));
         let opacity = m.surface.opacity;
         surfaces.push(Surface { opacity, textured_opacity, two_sided: true });
         surfaces.push(Surface { opacity, textured_opacity, two_sided: false });
@@ -224,19 +274,6 @@ fn sum_up(material: &Material, textures: &[Texture]) -> Result<Textured, Micropo
         (None, Some(o)) => {
             Textured::Opacity(TexelSums::new(o.width, o.height, wrap, |x, y| [o.texel(x, y).w])?)
         }
-        (Some(c), Some(o)) => {
-            let (width, height) = (c.width.max(o.width), c.height.max(o.height));
-            let at = |t: &Texture, x: u32, y: u32| {
-                let scale =
-                    |v: u32, from: u32, to: u32| (u64::from(v) * u64::from(to) / u64::from(from)) as u32;
-                t.texel(scale(x, width, t.width), scale(y, height, t.height))
-            };
-            let both = TexelSums::new(width, height, wrap, |x, y| {
-                let alpha = at(o, x, y).w;
-                (at(c, x, y).truncate() * alpha).extend(alpha).to_array()
-            })?;
-            let opacity = TexelSums::new(o.width, o.height, wrap, |x, y| [o.texel(x, y).w])?;
-            Textured::ColorAndOpacity(both, opacity)
-        }
+        (Some(c), Some(o)) => Textured::Masked(MaskedColor::new(c, o, wrap)?),
     })
 }

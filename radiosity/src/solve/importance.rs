@@ -1,7 +1,7 @@
 //! The adjoint: how much what a patch emits adds to what is seen.
 
 use super::state::{State, add, times};
-use super::{SolveOptions, check};
+use super::{SolveOptions, check, check_importance};
 use crate::error::RadiosityError;
 use crate::surface::Rgb;
 use crate::transport::Transport;
@@ -13,10 +13,7 @@ pub(super) fn solve(
     options: &SolveOptions,
 ) -> Result<Vec<f64>, RadiosityError> {
     check(options)?;
-    let patches = transport.leaves.len();
-    if seen.len() != patches {
-        return Err(RadiosityError::CountMismatch { patches, given: seen.len() });
-    }
+    check_importance(transport.leaves.len(), seen)?;
     let state = State::new(transport, &[])?;
     let mut along: Vec<Rgb> = vec![[0.0; 3]; state.source.len()];
     for (&leaf, &value) in transport.leaves.iter().zip(seen) {

@@ -8,7 +8,7 @@ mod state;
 pub(crate) use state::{add, times};
 
 use crate::error::RadiosityError;
-use crate::surface::Rgb;
+use crate::surface::{Rgb, is_light};
 use crate::transport::Transport;
 
 /// How to solve, and how far.
@@ -93,7 +93,7 @@ impl Transport {
     /// The residual's power falls with every sweep, by the contraction or more.
     ///
     /// # Errors
-    /// [`RadiosityError::CountMismatch`] for `direct`, [`RadiosityError::NoEquilibrium`] where nothing bounds the error:
+    /// [`RadiosityError::CountMismatch`] and [`RadiosityError::DirectIrradiance`] for `direct`, [`RadiosityError::NoEquilibrium`] where nothing bounds the error:
     /// a closed scene that absorbs nothing. [`RadiosityError::Option`].
     pub fn gauss_seidel(&self, direct: &[Rgb], options: &SolveOptions) -> Result<Solution, RadiosityError> {
         gauss_seidel::solve(self, direct, options)
@@ -103,7 +103,7 @@ impl Transport {
     /// `importance` weighs the order, one entry for each patch, or is empty; [`Transport::importance`] gives it for a view.
     ///
     /// # Errors
-    /// As [`Transport::gauss_seidel`], and for the length of `importance`.
+    /// As [`Transport::gauss_seidel`], and [`RadiosityError::CountMismatch`] or [`RadiosityError::Importance`] for `importance`.
     pub fn progressive(
         &self,
         direct: &[Rgb],
@@ -117,7 +117,7 @@ impl Transport {
     /// how much of each patch the camera sees.
     ///
     /// # Errors
-    /// As [`Transport::gauss_seidel`].
+    /// [`RadiosityError::CountMismatch`] and [`RadiosityError::Importance`] for `seen`; else as [`Transport::gauss_seidel`].
     pub fn importance(&self, seen: &[f64], options: &SolveOptions) -> Result<Vec<f64>, RadiosityError> {
         importance::solve(self, seen, options)
     }
@@ -128,4 +128,15 @@ fn check(options: &SolveOptions) -> Result<(), RadiosityError> {
         return Ok(());
     }
     Err(RadiosityError::Option { name: "tolerance", value: options.tolerance, expected: "above 0" })
+}
+
+/// Checks weights of patches: one for each, all of them usable.
+fn check_importance(patches: usize, importance: &[f64]) -> Result<(), RadiosityError> {
+    if importance.len() != patches {
+        return Err(RadiosityError::CountMismatch { patches, given: importance.len() });
+    }
+    match importance.iter().position(|&value| !is_light(value)) {
+        Some(patch) => Err(RadiosityError::Importance { patch, value: importance[patch] }),
+        None => Ok(()),
+    }
 }

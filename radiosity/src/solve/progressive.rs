@@ -1,7 +1,7 @@
 //! Shooting, in the order of unshot power.
 
 use super::state::{State, add, times};
-use super::{Solution, SolveOptions, check};
+use super::{Solution, SolveOptions, check, check_importance};
 use crate::error::RadiosityError;
 use crate::surface::Rgb;
 use crate::transport::Transport;
@@ -17,9 +17,8 @@ pub(super) fn solve(
     options: &SolveOptions,
 ) -> Result<Solution, RadiosityError> {
     check(options)?;
-    let patches = transport.leaves.len();
-    if !importance.is_empty() && importance.len() != patches {
-        return Err(RadiosityError::CountMismatch { patches, given: importance.len() });
+    if !importance.is_empty() {
+        check_importance(transport.leaves.len(), importance)?;
     }
     // What matters most would send its debt back and forth while the rest never gets to pay it.
     let overshoot = options.overshoot && importance.is_empty();

@@ -1,6 +1,7 @@
 //! Radiosity on all levels, and the operator.
 
 use crate::error::RadiosityError;
+use crate::lamp::check_direct;
 use crate::surface::Rgb;
 use crate::transport::Transport;
 use crate::tree::ElementId;
@@ -37,10 +38,7 @@ pub(crate) struct State<'t> {
 
 impl<'t> State<'t> {
     pub(crate) fn new(transport: &'t Transport, direct: &[Rgb]) -> Result<Self, RadiosityError> {
-        let patches = transport.leaves.len();
-        if !direct.is_empty() && direct.len() != patches {
-            return Err(RadiosityError::CountMismatch { patches, given: direct.len() });
-        }
+        check_direct(transport.leaves.len(), direct)?;
         let mut source = vec![[0.0; 3]; transport.scene.tree.elements.len()];
         let mut reflectance = source.clone();
         let mut contraction = 0.0_f64;
