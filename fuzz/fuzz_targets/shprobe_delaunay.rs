@@ -34,7 +34,7 @@ fuzz_target!(|input: Input| {
         Points::Raw(list) => list.iter().take(40).map(|&p| DVec3::from_array(p)).collect(),
     };
     let Ok(mut delaunay) = Delaunay::new(&points) else { return };
-    let locator = Locator::new(&points, &delaunay.partition());
+    let locator = Locator::new(&points, &delaunay.partition()).expect("cells between these points");
     let queries: Vec<DVec3> =
         input.queries.iter().take(8).map(|q| dvec3(q[0].into(), q[1].into(), q[2].into())).collect();
     for &query in &queries {

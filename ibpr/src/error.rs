@@ -15,8 +15,8 @@ pub enum IbprError {
         /// Its coordinates.
         value: [f64; 3],
     },
-    /// A colour is NaN, infinite or negative.
-    #[error("the colour of point {index} of scan {scan} is not a finite number of at least 0: {value:?}")]
+    /// A colour is NaN, negative, or above [`Scan::BRIGHTEST`](crate::Scan::BRIGHTEST).
+    #[error("the colour of point {index} of scan {scan} is not from 0 to 1e28: {value:?}")]
     BadColour {
         /// Position of the scan in the slice.
         scan: usize,

@@ -1,6 +1,7 @@
 //! What a frame is made with.
 
 use crate::error::IbprError;
+use crate::scan::Scan;
 use glam::{DVec3, Vec3};
 
 /// Size of a buffer pixel in picture pixels (the paper's S).
@@ -130,7 +131,7 @@ pub struct Options {
     pub light: Light,
     /// Share of the light that comes from everywhere, 0 to 1. Default: 0.1.
     pub ambient: f32,
-    /// Colour of points that have none, linear RGB. Default: 0.8.
+    /// Colour of points that have none, linear RGB, each channel from 0 to [`Scan::BRIGHTEST`]. Default: 0.8.
     pub base: Vec3,
     /// Default: none.
     pub eye_dome: Option<EyeDome>,
@@ -201,7 +202,7 @@ impl Options {
             check("radius", e.radius as f32, (1..=64).contains(&e.radius), "it must be 1 to 64")?;
         }
         for c in self.base.to_array() {
-            check("base", c, c >= 0.0 && c.is_finite(), "it must be at least 0")?;
+            check("base", c, (0.0..=Scan::BRIGHTEST).contains(&c), "it must be 0 to 1e28")?;
         }
         if let Light::Towards(d) = self.light
             && !(d.is_finite() && d.length_squared() > 0.0)

@@ -13,6 +13,9 @@ pub struct Scan<'a> {
 }
 
 impl<'a> Scan<'a> {
+    /// Largest channel of a colour: sums over the 2³² points that a pixel may have are still numbers in single precision.
+    pub const BRIGHTEST: f32 = 1e28;
+
     /// Points without colour, whose spacing is estimated and whose scanner is unknown.
     #[must_use]
     pub fn new(positions: &'a [DVec3]) -> Self {
@@ -50,7 +53,7 @@ impl<'a> Scan<'a> {
                 let (colours, points) = (colours.len(), self.positions.len());
                 return Err(IbprError::LengthMismatch { scan, colours, points });
             }
-            let good = |c: &[f32; 3]| c.iter().all(|v| v.is_finite() && *v >= 0.0);
+            let good = |c: &[f32; 3]| c.iter().all(|v| (0.0..=Self::BRIGHTEST).contains(v));
             if let Some(index) = colours.iter().position(|c| !good(c)) {
                 return Err(IbprError::BadColour { scan, index, value: colours[index] });
             }

@@ -201,3 +201,32 @@ fn views_of_tiny_and_huge_scenes_have_unit_axes() {
         assert!((view.forward().length() - 1.0).abs() < 1e-12, "{k}: {view:?}");
     }
 }
+
+/// Sums of a finite base of 1e38 were infinite, and so were the pixels.
+#[test]
+fn colours_are_refused_above_what_can_be_summed_up_and_drawn_below() {
+    let points: Vec<DVec3> = (0..400)
+        .map(|i| dvec3(f64::from(i % 20), f64::from(i / 20), 0.0) * 0.1 - dvec3(1.0, 1.0, 0.0))
+        .collect();
+    let draw = |base: f32, colours: Option<&[[f32; 3]]>| {
+        let mut scan = Scan::new(&points).with_spacing(0.1);
+        if let Some(colours) = colours {
+            scan = scan.with_colours(colours);
+        }
+        let cloud = Cloud::new(&[scan], Vec3::ONE)?;
+        let mut options = Options::default();
+        options.base = Vec3::splat(base);
+        let mut frame = Frame::default();
+        Renderer::new().draw(&cloud, &view(PERSPECTIVE), &options, &mut frame).map(|_| frame)
+    };
+    for bad in [1e38, f32::INFINITY, f32::NAN] {
+        assert!(matches!(draw(bad, None), Err(IbprError::BadOption { name: "base", .. })));
+        let colours = vec![[0.1, bad, 0.1]; points.len()];
+        assert!(matches!(draw(0.5, Some(&colours)), Err(IbprError::BadColour { scan: 0, index: 0, .. })));
+    }
+    let bright = vec![[Scan::BRIGHTEST; 3]; points.len()];
+    for frame in [draw(Scan::BRIGHTEST, None).unwrap(), draw(0.5, Some(&bright)).unwrap()] {
+        assert!(frame.colour.iter().flatten().all(|v| v.is_finite() && *v >= 0.0));
+        assert!(frame.colour.iter().any(|c| c[0] > 1e27), "nothing was drawn");
+    }
+}

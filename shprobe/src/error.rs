@@ -21,6 +21,14 @@ pub enum ProbeError {
         /// How many there may be.
         limit: usize,
     },
+    /// A cell of a partition whose corners are no points given, or whose neighbours are no neighbours.
+    #[error("cell {cell} of the partition {problem}")]
+    BadCell {
+        /// Which, from 0; of a line, the place in its list; of a point, 0.
+        cell: usize,
+        /// What is wrong.
+        problem: &'static str,
+    },
     /// A position asked for has a coordinate that is NaN or infinite.
     #[error("query {index} is not finite")]
     QueryNotFinite {

@@ -67,7 +67,7 @@ impl Field {
         let irradiance = radiance.iter().flat_map(scaled).map(|c| c.as_vec3()).collect();
         let lights = radiance.iter().map(Irradiance::new).collect();
         let bias = BIAS * spacing(positions, &partition);
-        let locator = Locator::new(positions, &partition);
+        let locator = Locator::new(positions, &partition)?;
         Ok(Self {
             positions: positions.to_vec(),
             locator,

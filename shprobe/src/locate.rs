@@ -47,9 +47,13 @@ enum End {
 impl Locator {
     /// For points and the cells between them, as [`Delaunay::partition`](crate::Delaunay::partition) gives them.
     ///
-    /// # Panics
-    /// If a cell names a point that is not there.
-    pub fn new(positions: &[DVec3], partition: &Partition) -> Self {
+    /// # Errors
+    /// [`ProbeError::PositionNotFinite`], and [`ProbeError::BadCell`] for cells that are not between these points.
+    pub fn new(positions: &[DVec3], partition: &Partition) -> Result<Self, ProbeError> {
+        if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
+            return Err(ProbeError::PositionNotFinite { index });
+        }
+        partition.check(positions.len())?;
         let (low, high) = positions
             .iter()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
@@ -64,7 +68,7 @@ impl Locator {
         let only = if let Partition::Point(only) = partition { *only } else { 0 };
         let mut locator = Self { cells, points, hull, centre, scale, starts: Starts::default(), only };
         locator.starts = Starts::new(&locator);
-        locator
+        Ok(locator)
     }
 
     /// The blend at `p`, walking from where `hint` was left, which is moved along.

@@ -1,5 +1,7 @@
 //! How probes divide space: tetrahedra, or what is left of them where probes lie in a plane, on a line or in one place.
 
+use crate::ProbeError;
+
 /// In the place of a neighbour: beyond this side there is no cell.
 pub const OUTSIDE: u32 = u32::MAX;
 
@@ -46,4 +48,51 @@ impl Partition {
             Self::Tetrahedra(_) => 3,
         }
     }
+
+    /// Checks that every corner is one of `count` points, and that neighbours are mutual: what a walk from cell to cell relies on.
+    ///
+    /// # Errors
+    /// [`ProbeError::BadCell`] for the first cell that is not so.
+    pub fn check(&self, count: usize) -> Result<(), ProbeError> {
+        let missing = |cell| ProbeError::BadCell { cell, problem: "has a corner that is none of the points" };
+        match self {
+            Self::Point(only) if *only as usize >= count => Err(missing(0)),
+            Self::Point(_) => Ok(()),
+            Self::Line(line) => match line.iter().position(|&p| p as usize >= count) {
+                Some(place) => Err(missing(place)),
+                None if line.len() < 2 => {
+                    Err(ProbeError::BadCell { cell: 0, problem: "is a line of fewer than two points" })
+                }
+                None => Ok(()),
+            },
+            Self::Triangles(t) => check_cells(&t.corners, &t.neighbours, count),
+            Self::Tetrahedra(t) => check_cells(&t.corners, &t.neighbours, count),
+        }
+    }
+}
+
+fn check_cells<const N: usize>(
+    corners: &[[u32; N]],
+    neighbours: &[[u32; N]],
+    count: usize,
+) -> Result<(), ProbeError> {
+    let bad = |cell, problem| Err(ProbeError::BadCell { cell, problem });
+    if corners.len() != neighbours.len() {
+        return bad(corners.len().min(neighbours.len()), "has corners or neighbours, but not both");
+    }
+    if corners.is_empty() {
+        return bad(0, "is missing: a plane or a space has at least one");
+    }
+    for (cell, (points, next)) in corners.iter().zip(neighbours).enumerate() {
+        if points.iter().any(|&p| p as usize >= count) {
+            return bad(cell, "has a corner that is none of the points");
+        }
+        for &n in next.iter().filter(|&&n| n != OUTSIDE) {
+            let back = neighbours.get(n as usize).is_some_and(|list| list.contains(&(cell as u32)));
+            if !back {
+                return bad(cell, "has a neighbour that does not have it for a neighbour");
+            }
+        }
+    }
+    Ok(())
 }

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3, dvec3};
 use pointillist_shprobe::invariants::weights;
 use pointillist_shprobe::sh::Sh;
 use pointillist_shprobe::{
-    Delaunay, DistanceMap, Field, Hint, LitObject, Locator, Partition, ProbeError, place,
+    Delaunay, DistanceMap, Field, Hint, LitObject, Locator, OUTSIDE, Partition, ProbeError, Triangles, place,
 };
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
@@ -70,7 +70,7 @@ proptest! {
 
     #[test]
     fn location_ends_for_any_query(points in lattice_points(), raw in prop::array::uniform3(any::<f64>())) {
-        let locator = Locator::new(&points, &Delaunay::new(&points).unwrap().partition());
+        let locator = Locator::new(&points, &Delaunay::new(&points).unwrap().partition()).unwrap();
         let p = DVec3::from_array(raw);
         match locator.locate_anywhere(p) {
             Ok(blend) => prop_assert!((blend.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12),
@@ -344,10 +344,45 @@ fn the_nearest_point_is_found_from_very_far_away() {
 #[test]
 fn cells_that_are_flat_to_the_last_digit_have_weights() {
     let points = [dvec3(-2.2e-272, -1.1e-204, 0.0), DVec3::splat(-2.2e-272), dvec3(-1.8e267, -2.3e305, 0.0)];
-    let locator = Locator::new(&points, &Delaunay::new(&points).unwrap().partition());
+    let locator = Locator::new(&points, &Delaunay::new(&points).unwrap().partition()).unwrap();
     for query in [DVec3::ZERO, DVec3::Y, points[2] * 0.5] {
         let weights = locator.locate_anywhere(query).unwrap().weights;
         assert!(weights.iter().all(|w| (0.0..=1.0).contains(w)), "{weights:?}");
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-14, "{weights:?}");
     }
+}
+
+/// A partition with an index beyond the points used to panic, and one without mutual neighbours may send a walk in circles.
+#[test]
+fn a_partition_that_is_not_of_these_points_is_refused_by_cell() {
+    let points: Vec<DVec3> = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]]
+        .map(DVec3::from_array)
+        .to_vec();
+    let Partition::Tetrahedra(good) = Delaunay::new(&points).unwrap().partition() else { panic!("flat") };
+    assert!(Locator::new(&points, &Partition::Tetrahedra(good.clone())).is_ok());
+    let bad_cell = |partition: &Partition| match Locator::new(&points, partition) {
+        Err(ProbeError::BadCell { cell, .. }) => cell,
+        other => panic!("{other:?}"),
+    };
+    let mut beyond = good.clone();
+    beyond.corners[1][2] = 5;
+    assert_eq!(bad_cell(&Partition::Tetrahedra(beyond)), 1);
+    let mut one_way = good.clone();
+    let side = one_way.neighbours[0].iter().position(|&n| n != OUTSIDE).expect("two cells");
+    let other = one_way.neighbours[0][side] as usize;
+    for n in &mut one_way.neighbours[other] {
+        *n = OUTSIDE;
+    }
+    assert_eq!(bad_cell(&Partition::Tetrahedra(one_way)), 0);
+    let mut short = good;
+    short.neighbours.pop();
+    assert_eq!(bad_cell(&Partition::Tetrahedra(short.clone())), short.neighbours.len());
+    assert_eq!(bad_cell(&Partition::Point(9)), 0);
+    assert_eq!(bad_cell(&Partition::Line(vec![0, 1, 7])), 2);
+    assert_eq!(bad_cell(&Partition::Line(vec![0])), 0);
+    assert_eq!(bad_cell(&Partition::Triangles(Triangles::default())), 0);
+    let mut nowhere = points.clone();
+    nowhere[3].y = f64::NAN;
+    let refused = Locator::new(&nowhere, &Partition::Point(0));
+    assert!(matches!(refused, Err(ProbeError::PositionNotFinite { index: 3 })));
 }

@@ -188,7 +188,7 @@ fn path(count: usize) -> Vec<DVec3> {
 
 /// Millions of positions a processor second: anywhere, and along a path with a hint.
 fn found(points: &[DVec3], queries: &[DVec3], path: &[DVec3]) -> Result<[f64; 2], ProbeError> {
-    let locator = Locator::new(points, &Delaunay::new(points)?.partition());
+    let locator = Locator::new(points, &Delaunay::new(points)?.partition())?;
     let rate = |seconds: f64| queries.len() as f64 / seconds / 1e6;
     on_one_thread(|| {
         let anywhere = least_seconds(Clock::Processor, 3, 0.0, || {

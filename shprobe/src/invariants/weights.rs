@@ -6,7 +6,7 @@ use glam::DVec3;
 /// Probes, cells and all.
 fn locator(points: &[DVec3]) -> Result<Locator, String> {
     let delaunay = Delaunay::new(points).map_err(|error| error.to_string())?;
-    Ok(Locator::new(points, &delaunay.partition()))
+    Locator::new(points, &delaunay.partition()).map_err(|e| e.to_string())
 }
 
 fn mixed(points: &[DVec3], blend: &Blend) -> DVec3 {

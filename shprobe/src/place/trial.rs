@@ -115,7 +115,7 @@ impl<'a> Bench<'a> {
         let positions: Vec<DVec3> = chosen.iter().map(|&i| self.candidates.positions[i as usize]).collect();
         let partition = Delaunay::new(&positions)?.partition();
         let reach = if self.candidates.distances.is_some() { help(&positions, &partition) } else { 0.0 };
-        Ok((Locator::new(&positions, &partition), Near::new(&positions, reach), partition))
+        Ok((Locator::new(&positions, &partition)?, Near::new(&positions, reach), partition))
     }
 
     /// What each candidate counts.

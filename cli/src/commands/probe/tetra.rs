@@ -46,6 +46,7 @@ pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
 /// Millions of queries a second of processor time of one thread: one by one, and along a path from cell to cell.
 fn measure(points: &[DVec3], partition: &Partition, queries: &[DVec3], report: &Report<'_>) {
     let locator = report.stats.stage("index", || Locator::new(points, partition));
+    let locator = locator.expect("the partition is of these points");
     let rate = |run: &dyn Fn() -> f64| {
         let clock = ThreadClock::start();
         // The sum is used, so that the work cannot be left out.
