@@ -149,6 +149,14 @@ impl Regions {
         true
     }
 
+    /// Scales the light that reaches every region; those that get next to none are dropped.
+    pub fn dim(&mut self, transmittance: f64) {
+        self.list.retain_mut(|region| {
+            region.transmittance *= transmittance;
+            region.transmittance > FAINT
+        });
+    }
+
     /// The regions that some light reaches.
     #[must_use]
     pub fn list(&self) -> &[Region] {

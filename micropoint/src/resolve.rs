@@ -1,7 +1,7 @@
 //! From the parts in a cell to what is seen of them.
 
 use crate::lens::Lens;
-use crate::occlude::{Blocker, Front, Layer, Occluders, Regions, are_disjoint, in_front};
+use crate::occlude::{Blocker, Front, Layer, Occluders, Region, Regions, are_disjoint, contains, in_front};
 use crate::tile::Dicer;
 use glam::DVec2;
 use pointillist_dice::ConvexPolygon;
@@ -25,7 +25,7 @@ pub(crate) struct Visible<'a> {
     /// Transmittance-weighted centroid of the visible area, relative to the cell.
     pub(crate) centroid: DVec2,
     /// The visible area in convex pieces with their own weights; `None`: the whole part.
-    pub(crate) pieces: Option<&'a [crate::occlude::Region]>,
+    pub(crate) pieces: Option<&'a [Region]>,
 }
 
 /// Overlaps smaller than this share of a cell are rounding, and stay below what a sum of weights is checked for in a cell of
@@ -64,25 +64,27 @@ pub(crate) fn resolve_exactly(
     } else {
         let mut seen = 0.0;
         let mut compared = false;
+        scratch.standing.clear();
+        let mut sight = Sight::Hidden;
         for (i, &p) in order.iter().enumerate() {
-            let part = *dicer.part(p);
-            let cut = hide(dicer, scratch, lens, corner, &order, i);
-            compared |= cut;
-            let visible = if cut {
-                let opacity = f64::from(part.opacity);
-                let (mut weight, mut moment) = (0.0, DVec2::ZERO);
-                for r in scratch.regions.list() {
-                    let (area, centroid) = r.polygon.area_and_centroid();
-                    weight += area * r.transmittance * opacity;
-                    moment += centroid * (area * r.transmittance * opacity);
+            sight = match i.checked_sub(1).map(|before| order[before]) {
+                Some(before) if dicer.is_copy(before, p) => {
+                    behind_a_copy(sight, dicer, before, &mut scratch.regions)
                 }
-                if weight <= 0.0 {
-                    continue;
-                }
-                Visible { part: p, weight, centroid: moment / weight, pieces: Some(scratch.regions.list()) }
-            } else {
-                whole(dicer, p)
+                _ => hide(dicer, scratch, lens, corner, &order, i),
             };
+            compared |= sight != Sight::Whole;
+            if sight == Sight::Hidden {
+                continue;
+            }
+            scratch.standing.push(p);
+            let visible = match sight {
+                Sight::Whole => whole(dicer, p),
+                _ => in_pieces(dicer, p, scratch.regions.list()),
+            };
+            if visible.weight <= 0.0 {
+                continue;
+            }
             seen += visible.weight;
             emit(dicer, visible);
             if seen >= 1.0 - FINISHED {
@@ -95,11 +97,52 @@ pub(crate) fn resolve_exactly(
     dicer.recycle(order);
 }
 
+/// How much of a part can be seen.
+#[derive(Clone, Copy, PartialEq)]
+enum Sight {
+    /// All of it: no other part touches it from the front.
+    Whole,
+    /// The regions in [`ResolveScratch`].
+    Pieces,
+    /// Nothing.
+    Hidden,
+}
+
+fn in_pieces<'a>(dicer: &Dicer, p: u32, regions: &'a [Region]) -> Visible<'a> {
+    let opacity = f64::from(dicer.part(p).opacity);
+    let (mut weight, mut moment) = (0.0, DVec2::ZERO);
+    for r in regions {
+        let (area, centroid) = r.polygon.area_and_centroid();
+        weight += area * r.transmittance * opacity;
+        moment += centroid * (area * r.transmittance * opacity);
+    }
+    let centroid = if weight > 0.0 { moment / weight } else { DVec2::ZERO };
+    Visible { part: p, weight, centroid, pieces: Some(regions) }
+}
+
+/// What is seen of a part behind a copy of itself: what is seen of the copy, through the copy. Comparing each of n copies with all
+/// others would take n² steps.
+fn behind_a_copy(copy_sight: Sight, dicer: &Dicer, copy: u32, regions: &mut Regions) -> Sight {
+    let opacity = f64::from(dicer.part(copy).opacity);
+    match copy_sight {
+        Sight::Hidden => return Sight::Hidden,
+        Sight::Whole => {
+            let outline = dicer.outline(dicer.part(copy));
+            regions.start(ConvexPolygon::from_vertices(outline), NEGLIGIBLE_AREA);
+        }
+        Sight::Pieces => {}
+    }
+    regions.dim(1.0 - opacity);
+    if regions.is_hidden() { Sight::Hidden } else { Sight::Pieces }
+}
+
 /// Memory of [`resolve_exactly`].
 #[derive(Debug, Default)]
 pub(crate) struct ResolveScratch {
     regions: Regions,
     blockers: Vec<Blocker>,
+    /// The parts so far of which something is seen: what is behind others hides nothing that those do not.
+    standing: Vec<u32>,
 }
 
 /// The parts of a tile as occluders of each other.
@@ -119,8 +162,7 @@ impl Occluders for Parts<'_> {
     }
 }
 
-/// Cuts part `order[i]` by the parts in front of it. Returns false if none of them touches it; the
-/// regions are meaningless then.
+/// What is seen of part `order[i]` behind the parts in front of it.
 fn hide(
     dicer: &Dicer,
     scratch: &mut ResolveScratch,
@@ -128,19 +170,17 @@ fn hide(
     corner: DVec2,
     order: &[u32],
     i: usize,
-) -> bool {
+) -> Sight {
     let part = dicer.part(order[i]);
     let outline = dicer.outline(part);
     scratch.blockers.clear();
     // What lies behind by less than rounding coincides, and may be in front by its number.
     let behind = part.nearness.0 - lens.tie(part.nearness.0, DVec2::ZERO);
-    for (j, &o) in order.iter().enumerate() {
+    // The parts are sorted by their nearest point: all that follow the first that is behind are behind, too.
+    let following = order[i + 1..].iter().take_while(|&&o| dicer.part(o).nearness.1 >= behind);
+    for &o in scratch.standing.iter().chain(following) {
         let other = dicer.part(o);
-        if other.nearness.1 < behind {
-            // The parts are sorted by their nearest point: all that follow lie behind.
-            break;
-        }
-        if j == i || !part.bounds.overlap(&other.bounds) || are_disjoint(outline, dicer.outline(other)) {
+        if !part.bounds.overlap(&other.bounds) || are_disjoint(outline, dicer.outline(other)) {
             continue;
         }
         let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
@@ -150,16 +190,19 @@ fn hide(
         let first = fo.precedence(fp) == std::cmp::Ordering::Less;
         match in_front(lens, corner, upper, lower, first) {
             Front::Nowhere => {}
+            Front::Everywhere if other.opacity >= 1.0 && contains(dicer.outline(other), outline) => {
+                return Sight::Hidden;
+            }
             Front::Everywhere => scratch.blockers.push((o, None)),
             Front::Within(half) => scratch.blockers.push((o, Some(half))),
         }
     }
     if scratch.blockers.is_empty() {
-        return false;
+        return Sight::Whole;
     }
     let polygon = ConvexPolygon::from_vertices(outline);
     scratch.regions.hide(polygon, NEGLIGIBLE_AREA, &scratch.blockers, &Parts(dicer));
-    true
+    if scratch.regions.is_hidden() { Sight::Hidden } else { Sight::Pieces }
 }
 
 /// Resolves one cell under the paper's rule.

@@ -338,9 +338,6 @@ impl Dicer {
             return;
         }
         let opacity = opacity.unwrap_or_else(|| mean_opacity(job, face, corner, &CELL));
-        if opacity <= 0.0 {
-            return;
-        }
         let part = Part {
             next: NONE,
             face: index,
@@ -383,9 +380,6 @@ impl Dicer {
             return;
         }
         let opacity = opacity.unwrap_or_else(|| mean_opacity(job, face, corner, local));
-        if opacity <= 0.0 {
-            return;
-        }
         let part = Part {
             next: NONE,
             face: index,
@@ -539,6 +533,13 @@ impl Dicer {
 
     pub(crate) fn part(&self, index: u32) -> &Part {
         &self.parts[index as usize]
+    }
+
+    /// Whether two parts of a cell are the same piece of two copies of one triangle.
+    pub(crate) fn is_copy(&self, a: u32, b: u32) -> bool {
+        let (a, b) = (self.part(a), self.part(b));
+        self.faces[a.face as usize].corners == self.faces[b.face as usize].corners
+            && self.outline(a) == self.outline(b)
     }
 
     /// A part's outline relative to its cell.
