@@ -19,6 +19,7 @@
 //! 2. P. Atherton, K. Weiler, D. Greenberg: *Polygon shadow generation*, SIGGRAPH 1978.
 #![forbid(unsafe_code)]
 
+mod copies;
 mod error;
 mod exact;
 #[cfg(feature = "invariants")]

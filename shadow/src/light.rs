@@ -1,5 +1,6 @@
 //! One light and the fractions of it that reach receivers.
 
+use crate::copies;
 use crate::error::ShadowError;
 use crate::exact;
 use crate::layers::{self, LightCells};
@@ -241,6 +242,9 @@ impl<'a> ShadowLight<'a> {
         );
         scratch.counts.clusters_skipped += skipped;
         scratch.queue = queue;
+        if self.options.occlusion == Occlusion::Correlated {
+            copies::merge(&mut scratch.casters, &mut scratch.copy_keys);
+        }
     }
 
     fn link_cluster(&self, lens: &Lens, cluster: u32, scratch: &mut ShadowScratch) {

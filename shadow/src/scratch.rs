@@ -193,6 +193,7 @@ pub struct ShadowScratch {
     pub(crate) least_nearness: f64,
     pub(crate) open_groups: usize,
     pub(crate) casters: Vec<Caster>,
+    pub(crate) copy_keys: Vec<(u64, u32)>,
     links: Vec<(u32, u32)>,
     pub(crate) queue: ClusterQueue,
     pub(crate) projected: Vec<ProjectedVertex>,
@@ -448,9 +449,13 @@ impl ShadowScratch {
         while link != NO_LINK {
             let (index, next) = self.links[link as usize];
             let caster = &self.casters[index as usize];
+            link = next;
+            // Merged into a copy of itself.
+            if caster.opacity == Some(0.0) {
+                continue;
+            }
             let (bounds, nearest, id) = (caster.bounds, caster.face.nearness.1, caster.face.id);
             nearby.push(Nearby { bounds, nearest, id, index });
-            link = next;
         }
     }
 }

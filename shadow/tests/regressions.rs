@@ -99,3 +99,35 @@ fn a_seam_of_a_translucent_sheet_close_to_a_corner_takes_no_light() {
         }
     }
 }
+
+/// Every coincident receiver asked every coincident caster: the shadows of 1000 copies of a triangle took 1000² questions a pixel.
+#[test]
+fn copies_of_a_translucent_caster_shade_as_one() {
+    let copies = 500;
+    let alpha = 0.002_f32;
+    let passed = (1.0 - f64::from(alpha)).powi(copies);
+    let corners = [dvec3(-0.6, 0.5, 0.5), dvec3(0.7, 0.5, 0.4), dvec3(0.1, 0.6, -0.7)];
+    let square = |half: f64| {
+        [[-half, half], [half, half], [half, -half], [-half, -half]].map(|[x, z]| dvec3(x, 0.0, z))
+    };
+    let scene = |opacity: f32, copies: i32| {
+        let mut s = Soup::default();
+        let (ground, sheet) = (s.surface(1.0), s.surface(opacity));
+        s.polygon(&square(20.0), ground);
+        (0..copies).for_each(|_| s.polygon(&corners, sheet));
+        s
+    };
+    let camera = Projection::Orthographic { height: 2.0 };
+    let view = View::look_at(DVec3::Y * 2.0, DVec3::ZERO, DVec3::NEG_Z, camera, 8, 8).unwrap();
+    let emitter = Emitter::Point { position: dvec3(0.4, 3.0, 0.9), axis: DVec3::NEG_Y };
+    let lit = |s: &Soup| light_on(&lit_picture(s, view, emitter, ShadowOptions::default()).unwrap(), 0);
+    let many = lit(&scene(alpha, copies));
+    let one = lit(&scene((1.0 - passed) as f32, 1));
+    let mut shaded = 0;
+    for (pixel, (m, o)) in many.iter().zip(&one).enumerate() {
+        // The single sheet's opacity is rounded to single precision.
+        assert!((m - o).abs() < 1e-6, "pixel {pixel}: {m} for {o}");
+        shaded += usize::from(*o < 0.999);
+    }
+    assert!(shaded > 4, "{shaded} pixels are in the shadow");
+}
