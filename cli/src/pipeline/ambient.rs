@@ -1,6 +1,7 @@
 //! Light that does not come straight from lights: a constant, or what probes or surfaces hold.
 
 use crate::radiosity::Lightmap;
+use crate::scene::SkyLight;
 use glam::{DVec3, Vec3};
 use pointillist_shade::Environment;
 use pointillist_shprobe::{Field, Hint};
@@ -11,6 +12,8 @@ use std::f32::consts::FRAC_1_PI;
 pub enum Ambient<'a> {
     /// The same everywhere; reflected as albedo · colour.
     Color(Vec3),
+    /// From a sky and a ground, by the normal; reflected as albedo · what is seen of them.
+    Sky(SkyLight),
     /// Between probes; reflected as albedo/π · E(n).
     Probes(&'a Field),
     /// From an environment, by the normal; reflected as albedo/π · E(n).
@@ -40,6 +43,7 @@ impl Ambient<'_> {
         match self {
             Self::Radiosity(light) => light.irradiance(triangle, front, position) * FRAC_1_PI,
             Self::Color(color) => *color,
+            Self::Sky(light) => light.seen_by(normal),
             Self::Environment(map) => map.irradiance(normal) * FRAC_1_PI,
             // Only a position beyond all numbers is refused, and nothing of it is seen.
             Self::Probes(field) => {

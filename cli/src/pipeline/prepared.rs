@@ -67,6 +67,7 @@ impl<'a> Prepared<'a> {
     pub fn ambient(&self) -> Ambient<'_> {
         match &self.scene.ambient {
             AmbientLight::Color(color) => Ambient::Color(*color),
+            AmbientLight::Sky(light) => Ambient::Sky(*light),
             AmbientLight::Probes { field, .. } => Ambient::Probes(field),
             AmbientLight::Environment => match self.reflections.of_scene() {
                 Some(map) => Ambient::Environment(map),

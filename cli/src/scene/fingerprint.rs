@@ -1,7 +1,8 @@
 //! One number for everything that a picture depends on.
 
 use super::{
-    AmbientLight, Details, LightSource, Material, Mesh, Projection, Resolution, Scene, Texels, Texture,
+    AmbientLight, Details, LightSource, Material, Mesh, Projection, Resolution, Scene, SkyLight, Texels,
+    Texture,
 };
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade::{Falloff, Light, Material as Surface};
@@ -40,6 +41,9 @@ pub fn of_light(scene: &Scene) -> u64 {
     }
     match &scene.ambient {
         AmbientLight::Color(color) => hash.color(*color),
+        AmbientLight::Sky(SkyLight { sky, ground, up }) => {
+            [sky, ground, up].into_iter().for_each(|v| hash.color(*v))
+        }
         AmbientLight::Environment => hash.text("environment"),
         AmbientLight::Probes { fingerprint, .. } | AmbientLight::Radiosity { fingerprint, .. } => {
             hash.int(*fingerprint);

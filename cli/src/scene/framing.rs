@@ -1,13 +1,16 @@
-//! A camera that has everything in view, and a light for a mesh that comes without.
+//! A camera that has everything in view.
 
 use super::description::{CameraDescription, DEFAULT_FOV_DEG, Description, view_fault};
-use super::{AmbientLight, Camera, LightSource, Mesh, Projection, Resolution, Scene};
+use super::{Camera, Mesh, Projection};
 use crate::input_error::InputError;
-use glam::{DVec3, Vec3};
-use pointillist_shade::Light;
+use glam::DVec3;
 
 /// From the scene towards a camera that nothing is said about: in front, a little to the right and above.
 const TOWARDS_EYE: DVec3 = DVec3::new(0.45, 0.35, 1.0);
+
+/// How far the upper third of a model leans to one side, over the model's depth, to be taken for its front: heads are
+/// held up and forward. Buildings, trees and pots lean by less.
+const LEANS: f64 = 0.15;
 
 /// Room around a framed scene.
 const MARGIN: f64 = 1.05;
@@ -19,7 +22,8 @@ pub(super) fn place(
     mesh: &Mesh,
     aspect: f64,
 ) -> Result<Camera, InputError> {
-    around(given, || corners(mesh), aspect).map_err(|fault| {
+    let turned = if leans_back(mesh) { DVec3::new(-1.0, 1.0, -1.0) } else { DVec3::ONE };
+    around_from(given, || corners(mesh), aspect, TOWARDS_EYE * turned).map_err(|fault| {
         let error = InputError::of_file(description.document.name(), format!("camera: {fault}"));
         error.with_help("give camera.eye and camera.target")
     })
@@ -32,6 +36,15 @@ pub(crate) fn around<I: Iterator<Item = DVec3>>(
     points: impl Fn() -> I,
     aspect: f64,
 ) -> Result<Camera, &'static str> {
+    around_from(given, points, aspect, TOWARDS_EYE)
+}
+
+fn around_from<I: Iterator<Item = DVec3>>(
+    given: &CameraDescription,
+    points: impl Fn() -> I,
+    aspect: f64,
+    towards_eye: DVec3,
+) -> Result<Camera, &'static str> {
     let fov = Projection::Perspective { fov_y_rad: DEFAULT_FOV_DEG.to_radians() };
     let mut camera = Camera {
         eye: given.eye.unwrap_or(DVec3::ZERO),
@@ -40,7 +53,7 @@ pub(crate) fn around<I: Iterator<Item = DVec3>>(
         projection: given.projection.unwrap_or(fov),
     };
     if given.eye.is_none() {
-        let mut towards = TOWARDS_EYE.normalize();
+        let mut towards = towards_eye.normalize();
         if view_fault(towards, DVec3::ZERO, camera.up).is_some() {
             towards = DVec3::Z;
         }
@@ -55,6 +68,24 @@ pub(crate) fn around<I: Iterator<Item = DVec3>>(
 
 fn corners(mesh: &Mesh) -> impl Iterator<Item = DVec3> + '_ {
     mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize])
+}
+
+/// Whether a model's upper part lies towards −Z, so that +Z sees its back.
+fn leans_back(mesh: &Mesh) -> bool {
+    let bounds = corners(mesh).fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+    let size = bounds.1 - bounds.0;
+    let from = bounds.1.y - size.y / 3.0;
+    let (mut area, mut moment) = (0.0, 0.0);
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
+        let centre = (a + b + c) / 3.0;
+        if centre.y >= from {
+            let twice = (b - a).cross(c - a).length();
+            area += twice;
+            moment += twice * (centre.z - 0.5 * (bounds.0.z + bounds.1.z));
+        }
+    }
+    moment < -LEANS * size.z * area
 }
 
 fn middle(points: impl Iterator<Item = DVec3>) -> DVec3 {
@@ -83,22 +114,4 @@ fn distance(camera: &Camera, points: impl Iterator<Item = DVec3>, aspect: f64) -
     };
     let distance = MARGIN * needed;
     if distance.is_finite() && distance > 0.0 { distance } else { 1.0 }
-}
-
-/// Adds a light over the left shoulder with shadow, and some ambient light if there is none.
-pub(super) fn add_light(scene: &mut Scene) {
-    /// A white surface that faces the light gets radiance near 1.
-    const IRRADIANCE: f32 = 2.8;
-    const AMBIENT: f32 = 0.12;
-    let [right, up, backward] = scene.camera.axes();
-    let towards_light = -0.5 * right + 0.9 * up + 0.8 * backward;
-    scene.lights.push(LightSource {
-        name: "light0".to_owned(),
-        light: Light::Directional { direction: -towards_light, irradiance: Vec3::splat(IRRADIANCE) },
-        shadow: true,
-        resolution: Resolution::Auto,
-    });
-    if matches!(scene.ambient, AmbientLight::Color(Vec3::ZERO)) {
-        scene.ambient = AmbientLight::Color(Vec3::splat(AMBIENT));
-    }
 }

@@ -15,6 +15,7 @@ mod load;
 mod materials;
 mod measured;
 mod mtl_materials;
+mod plain_model;
 mod resolve;
 mod smooth;
 pub mod text;
@@ -71,6 +72,8 @@ pub struct Scene {
 pub enum AmbientLight {
     /// The same everywhere, reflected as albedo · colour.
     Color(Vec3),
+    /// By the normal, from a sky and a ground.
+    Sky(SkyLight),
     /// Between baked probes, reflected as albedo/π · irradiance.
     Probes {
         /// The light.
@@ -87,6 +90,24 @@ pub enum AmbientLight {
         /// A hash of the file.
         fingerprint: u64,
     },
+}
+
+/// Light from two half spaces of one radiance each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkyLight {
+    /// Radiance from above.
+    pub sky: Vec3,
+    /// Radiance from below.
+    pub ground: Vec3,
+    /// Unit vector away from the ground.
+    pub up: Vec3,
+}
+
+impl SkyLight {
+    /// Irradiance/π of a surface with this unit normal: it sees a share of (1 + cos)/2 of the sky, weighted by the cosine.
+    pub fn seen_by(&self, normal: Vec3) -> Vec3 {
+        self.ground.lerp(self.sky, 0.5 + 0.5 * normal.dot(self.up))
+    }
 }
 
 /// Where the eye is and what it takes in.

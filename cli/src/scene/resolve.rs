@@ -6,8 +6,8 @@ use super::description::{
 };
 use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
-use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene};
-use super::{auto_uv, fingerprint, framing, gltf_scene, load, smooth};
+use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene, SkyLight};
+use super::{auto_uv, fingerprint, framing, gltf_scene, load, plain_model, smooth};
 use crate::input_error::InputError;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::probe_io::read_probes;
@@ -18,7 +18,8 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Builds the scene of a description whose paths are relative to `folder`. `add_light` gives it a light if it has none.
+/// Builds the scene of a description whose paths are relative to `folder`. `is_plain_model`: a model alone, which
+/// gets light and smooth normals if it brings none.
 ///
 /// # Errors
 ///
@@ -26,10 +27,10 @@ use std::rc::Rc;
 pub(super) fn resolve(
     description: &Description,
     folder: &Path,
-    add_light: bool,
+    is_plain_model: bool,
     generated: Option<Generated>,
 ) -> Result<Scene, InputError> {
-    let mut builder = Builder::new(description, folder);
+    let mut builder = Builder::new(description, folder, is_plain_model);
     if let Some(generated) = generated {
         for (name, purpose, texture) in generated.textures {
             builder.textures.insert(folder.join(name), purpose, texture);
@@ -43,7 +44,7 @@ pub(super) fn resolve(
     let [width, height] = description.size;
     let aspect = f64::from(width) / f64::from(height);
     // A glTF that is the scene brings its camera and its lights.
-    let model = add_light.then(|| builder.meshes.values().find_map(|mesh| mesh.gltf.clone())).flatten();
+    let model = is_plain_model.then(|| builder.meshes.values().find_map(|mesh| mesh.gltf.clone())).flatten();
     let given = gltf_scene::camera(&description.camera, model.as_deref());
     let camera = framing::place(description, &given, &builder.mesh, aspect)?;
     let shading = description.render.shading.unwrap_or(if builder.mesh.normals.is_empty() {
@@ -52,7 +53,7 @@ pub(super) fn resolve(
         Interpolation::Phong
     });
     let mut lights = lights(description);
-    if add_light && lights.is_empty() {
+    if is_plain_model && lights.is_empty() {
         lights = model.map(|model| gltf_scene::lights(&model)).unwrap_or_default();
     }
     let mut scene = Scene {
@@ -71,10 +72,14 @@ pub(super) fn resolve(
         warnings: builder.warnings,
         fingerprint: 0,
     };
-    if add_light && scene.lights.is_empty() {
-        framing::add_light(&mut scene);
+    let unlit = is_plain_model && scene.lights.is_empty();
+    if unlit {
+        scene.lights.push(plain_model::key_light(&scene));
     }
-    scene.ambient = ambient(description, folder, &mut scene)?;
+    scene.ambient = match description.ambient {
+        AmbientDescription::Nothing if unlit => plain_model::fill_light(&scene),
+        _ => ambient(description, folder, &mut scene)?,
+    };
     scene.fingerprint = fingerprint::of(&scene);
     Ok(scene)
 }
@@ -97,7 +102,11 @@ fn ambient_file(
 
 fn ambient(description: &Description, folder: &Path, scene: &mut Scene) -> Result<AmbientLight, InputError> {
     match &description.ambient {
+        AmbientDescription::Nothing => Ok(AmbientLight::Color(Vec3::ZERO)),
         AmbientDescription::Color(color) => Ok(AmbientLight::Color(*color)),
+        &AmbientDescription::Sky { sky, ground } => {
+            Ok(AmbientLight::Sky(SkyLight { sky, ground, up: Vec3::Y }))
+        }
         AmbientDescription::Environment => match description.environment {
             Some(_) => Ok(AmbientLight::Environment),
             None => {
@@ -150,6 +159,7 @@ fn lights(description: &Description) -> Vec<LightSource> {
 struct Builder<'a> {
     description: &'a Description,
     folder: &'a Path,
+    is_plain_model: bool,
     meshes: HashMap<PathBuf, Rc<FileMesh>>,
     mesh: Mesh,
     materials: MaterialTable<'a>,
@@ -159,10 +169,11 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(description: &'a Description, folder: &'a Path) -> Self {
+    fn new(description: &'a Description, folder: &'a Path, is_plain_model: bool) -> Self {
         Self {
             description,
             folder,
+            is_plain_model,
             meshes: HashMap::new(),
             mesh: Mesh::default(),
             materials: MaterialTable::new(description, folder),
@@ -267,7 +278,8 @@ impl<'a> Builder<'a> {
             append_indices(&mut mesh.normal_of, &file.normal_of, mesh.normals.len(), order);
             let to_world = normal_matrix(world.matrix3);
             mesh.normals.extend(file.unit_normals().map(|n| turned(to_world, n)));
-            if shading.is_some() {
+            if shading.is_some() || self.is_plain_model {
+                let crease_rad = crease_rad.or(self.is_plain_model.then_some(plain_model::CREASE_RAD));
                 smooth::fill(mesh, first_triangle, first_position, normals, crease_rad);
             }
         }

@@ -128,8 +128,17 @@ fn read_image(root: &mut Table<'_>) -> Result<Image, InputError> {
 /// Light that does not come straight from lights.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AmbientDescription {
+    /// Nothing is said of it.
+    Nothing,
     /// The same everywhere.
     Color(Vec3),
+    /// From above and from below (+Y is up).
+    Sky {
+        /// Radiance of the upper half space.
+        sky: Vec3,
+        /// Radiance of the lower half space.
+        ground: Vec3,
+    },
     /// A file of baked probes.
     Probes(FileReference),
     /// The environment map.
@@ -139,13 +148,15 @@ pub enum AmbientDescription {
 }
 
 fn read_ambient(root: &mut Table<'_>) -> Result<AmbientDescription, InputError> {
-    let Some(mut table) = root.table("ambient")? else { return Ok(AmbientDescription::Color(Vec3::ZERO)) };
+    let Some(mut table) = root.table("ambient")? else { return Ok(AmbientDescription::Nothing) };
     let color = table.color("color")?;
+    let (sky, ground) = (table.color("sky")?, table.color("ground")?);
     let probes = file(&mut table, "probes")?;
     let radiosity = file(&mut table, "radiosity")?;
     let environment = table.boolean("environment")?.unwrap_or(false);
     let given = [
         ("color", color.is_some()),
+        if sky.is_some() { ("sky", true) } else { ("ground", ground.is_some()) },
         ("probes", probes.is_some()),
         ("radiosity", radiosity.is_some()),
         ("environment", environment),
@@ -160,10 +171,15 @@ fn read_ambient(root: &mut Table<'_>) -> Result<AmbientDescription, InputError> 
     if environment {
         return Ok(AmbientDescription::Environment);
     }
-    Ok(match (probes, radiosity) {
-        (Some(file), _) => AmbientDescription::Probes(file),
-        (None, Some(file)) => AmbientDescription::Radiosity(file),
-        (None, None) => AmbientDescription::Color(color.unwrap_or(Vec3::ZERO)),
+    if sky.is_some() || ground.is_some() {
+        let (sky, ground) = (sky.unwrap_or_default(), ground.unwrap_or_default());
+        return Ok(AmbientDescription::Sky { sky, ground });
+    }
+    Ok(match (probes, radiosity, color) {
+        (Some(file), _, _) => AmbientDescription::Probes(file),
+        (None, Some(file), _) => AmbientDescription::Radiosity(file),
+        (None, None, Some(color)) => AmbientDescription::Color(color),
+        (None, None, None) => AmbientDescription::Nothing,
     })
 }
 
