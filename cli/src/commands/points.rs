@@ -2,6 +2,7 @@
 
 use super::Report;
 use super::render::{OutputFormat, is_there, write_exr, write_png};
+use super::report::check_output;
 use crate::error::CliError;
 use crate::image_io::{ExrFile, Frame, PngOptions, Precision, Stamp, Window};
 use crate::job::Progress;
@@ -83,6 +84,7 @@ impl<'a> Target<'a> {
     pub(super) fn new(path: PathBuf, options: &'a PictureOptions, layers: bool) -> Result<Self, CliError> {
         let format = OutputFormat::of(&path)?;
         format.check_layers(layers, options.float)?;
+        check_output(&path)?;
         Ok(Self { path, format, options })
     }
 
@@ -90,7 +92,7 @@ impl<'a> Target<'a> {
     pub(super) fn is_done(&self, stamp: &Stamp, window: Window, report: &Report<'_>) -> bool {
         let done = self.format == OutputFormat::Exr
             && !self.options.overwrite
-            && is_there(&self.path, stamp, window);
+            && is_there(&self.path, stamp, window, report);
         if done {
             report.note(&format!("{} is already there; --overwrite draws it again", self.path.display()));
         }

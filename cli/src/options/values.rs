@@ -159,6 +159,33 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be more than 0".to_owned()) }
 }
 
+/// A number of threads.
+pub(super) fn threads(text: &str) -> Result<usize, String> {
+    const MOST: usize = 1024;
+    let wrong = || format!("must be a whole number from 1 to {MOST}");
+    text.parse().ok().filter(|n| (1..=MOST).contains(n)).ok_or_else(wrong)
+}
+
+/// Bytes: `8G`, `512M`, `1.5GiB`.
+pub(super) fn memory(text: &str) -> Result<u64, String> {
+    let wrong = || "must be a size such as 512M or 8G (K, M, G and T are powers of 1024)".to_owned();
+    let upper = text.trim().to_ascii_uppercase();
+    let amount = upper.strip_suffix("IB").or_else(|| upper.strip_suffix('B')).unwrap_or(&upper);
+    let unit = amount.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(amount.len());
+    let power = match &amount[unit..] {
+        "" => 0,
+        "K" => 1,
+        "M" => 2,
+        "G" => 3,
+        "T" => 4,
+        _ => return Err(wrong()),
+    };
+    let number: f64 = amount[..unit].trim().parse().map_err(|_| wrong())?;
+    let bytes = number * 1024_f64.powi(power);
+    // Far beyond any machine, and far within the range of the type.
+    if (1.0..1e18).contains(&bytes) { Ok(bytes as u64) } else { Err(wrong()) }
+}
+
 /// A limit.
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().map_err(|_| "must be a number".to_owned())?;

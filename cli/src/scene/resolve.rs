@@ -9,6 +9,7 @@ use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene};
 use super::{auto_uv, fingerprint, framing, gltf_scene, load, smooth};
 use crate::input_error::InputError;
+use crate::memory;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::probe_io::read_probes;
 use crate::radiosity::{Lightmap, read_baked};
@@ -208,7 +209,7 @@ impl<'a> Builder<'a> {
             let error = document.error(reference.span, message);
             return Err(error.with_help("meshes end in .obj, .ply, .gltf or .glb"));
         }
-        let bytes = std::fs::read(path).map_err(|error| {
+        let bytes = memory::read(path).map_err(|error| {
             let message = format!("mesh `{name}` cannot be read: {error}");
             document.error(reference.span, message).with_help("paths are relative to the scene file")
         })?;

@@ -1,7 +1,7 @@
 //! `radiosity SCENE`.
 
 use crate::commands::Report;
-use crate::commands::report::write_text;
+use crate::commands::report::{check_output, write_text};
 use crate::error::CliError;
 use crate::job::Progress;
 use crate::options::{FormFactorKind, LinkKind, RadiosityBakeOptions, SolveMethod};
@@ -53,7 +53,8 @@ fn check(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     let output = &options.output;
     let known = output.extension().is_some_and(|e| e == "json" || e == "ply");
     if known || output == Path::new("-") {
-        return Ok(());
+        options.factors.as_deref().map_or(Ok(()), check_output)?;
+        return check_output(output);
     }
     Err(CliError::Usage(format!("`{}`: baked light ends in .json or .ply", output.display())))
 }
