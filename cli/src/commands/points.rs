@@ -6,11 +6,13 @@ use super::report::check_output;
 use crate::error::CliError;
 use crate::image_io::{ExrFile, Frame, PngOptions, Precision, Stamp, Window};
 use crate::job::Progress;
+use crate::memory;
 use crate::options::{CameraOptions, Common, PictureOptions, Vector};
 use crate::scene::description::{CameraDescription, DEFAULT_FOV_DEG};
 use crate::scene::{Camera, Projection, frame_around};
 use cpu_time::ProcessTime;
 use glam::DVec3;
+use pointillist_ibpr as ibpr;
 use std::hash::Hasher as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -19,8 +21,26 @@ use twox_hash::XxHash3_64;
 /// Width and height of a picture without `--size`.
 const DEFAULT_SIZE: [u32; 2] = [1024, 1024];
 
+/// Bytes that a pixel takes at least while points are drawn: buffers, the frame and its layers.
+const PIXEL_BYTES: u128 = 160;
+
 pub(super) fn size(options: &CameraOptions) -> [u32; 2] {
     options.size.unwrap_or(DEFAULT_SIZE)
+}
+
+/// Looks at the view and the size of the picture before anything is loaded; gives what the job covers and what this run draws.
+pub(super) fn check_view(options: &CameraOptions) -> Result<(Window, Window), CliError> {
+    options.check_view()?;
+    let [width, height] = size(options);
+    let most = ibpr::View::LARGEST_SIDE;
+    if width.max(height) > most {
+        let message = format!("--size {width}x{height}: points are drawn with up to {most} pixels a side");
+        return Err(CliError::Usage(message));
+    }
+    let needed = u128::from(width) * u128::from(height) * PIXEL_BYTES;
+    memory::check(needed, || format!("--size {width}x{height} takes"))
+        .map_err(|error| CliError::Usage(error.with_help()))?;
+    options.windows(width, height)
 }
 
 /// `-o`, or the name of the first file: `bun.ply.gz` gives `bun.png`.

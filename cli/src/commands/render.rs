@@ -48,6 +48,7 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     let format = OutputFormat::of(&output)?;
     check_output(&output)?;
     check_options(options, format, &report)?;
+    options.camera.check_view()?;
     check_size(options)?;
     let overrides = options.camera.overrides(&options.set);
     let scene = report.stats.stage("load", || match &options.scene {

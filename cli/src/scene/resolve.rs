@@ -8,6 +8,7 @@ use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene};
 use super::{auto_uv, fingerprint, framing, gltf_scene, load, smooth};
+use crate::coordinate::{LARGEST, is_usable};
 use crate::input_error::InputError;
 use crate::memory;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
@@ -251,8 +252,10 @@ impl<'a> Builder<'a> {
             mesh.colors.extend_from_slice(&file.colors);
             mesh.colors.resize(mesh.positions.len(), Vec3::ONE);
         }
-        if let Some(index) = mesh.positions[first_position..].iter().position(|p| !p.is_finite()) {
-            let message = format!("the object's transform takes vertex {index} out of the range of numbers");
+        if let Some(index) = mesh.positions[first_position..].iter().position(|p| !is_usable(*p)) {
+            let message = format!(
+                "the object's transform takes vertex {index} out of the range of numbers, ±{LARGEST:e}"
+            );
             return Err(self.description.document.error(object.mesh.span, message));
         }
         // A mirrored object keeps its front in front.
