@@ -16,7 +16,7 @@ use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 static ALLOWED: OnceLock<u64> = OnceLock::new();
 
 /// Something that grows is asked about each time it has grown by this much.
-const STEP: u64 = 64 << 20;
+const STEP: u64 = 16 << 20;
 
 /// The way out that every message offers.
 const HELP: &str = "`--memory SIZE` (or POINTILLIST_MEMORY) says how much may be used";

@@ -78,7 +78,7 @@ fn patches_are_not_made_beyond_memory() {
         folder.fails(&[&line[..], &many, more].concat(), 2, pieces);
     };
     fails(&["--patch", "0.0001"], &["patches take more than", "of memory", "--patch"]);
-    fails(&["--patch", "0.01", "--links", "full"], &["the links of", "of memory", "--links hierarchical"]);
+    fails(&["--patch", "0.05", "--links", "full"], &["the links of", "of memory", "--links hierarchical"]);
     folder.fails(
         &["sample", "triangle.obj", "--count", "200000000", "--memory", "1G"],
         2,
