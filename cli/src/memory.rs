@@ -101,7 +101,9 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
         if count < STEP {
             return Ok(bytes);
         }
-        meter.add(count, || "its bytes take".to_owned()).map_err(too_large)?;
+        if bytes.len() as u64 > length {
+            meter.add(count, || "its bytes take".to_owned()).map_err(too_large)?;
+        }
     }
 }
 

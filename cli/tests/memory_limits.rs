@@ -26,7 +26,7 @@ fn a_cloud_that_unpacks_to_more_than_there_is_room_for_is_refused() {
     let pieces = ["bomb.xyz.gz", "its points take", "of memory", "are available", "--memory SIZE"];
     for command in ["scan", "surfel"] {
         folder.fails(
-            &[command, "bomb.xyz.gz", "-o", "a.png", "--size", "64x64", "--memory", "200M"],
+            &[command, "bomb.xyz.gz", "-o", "a.png", "--size", "64x64", "--memory", "120M"],
             3,
             &pieces,
         );
@@ -70,7 +70,7 @@ fn sizes_of_pictures_are_looked_at_before_anything_is_loaded() {
 }
 
 #[test]
-fn patches_are_not_made_beyond_memory() {
+fn patches_probes_and_points_are_not_made_beyond_memory() {
     let folder = Folder::new();
     let many = ["--max-patches", "100000000000"];
     let fails = |more: &[&str], pieces: &[&str]| {
@@ -79,6 +79,9 @@ fn patches_are_not_made_beyond_memory() {
     };
     fails(&["--patch", "0.0001"], &["patches take more than", "of memory", "--patch"]);
     fails(&["--patch", "0.05", "--links", "full"], &["the links of", "of memory", "--links hierarchical"]);
+    let cluster = ["probe", "place", "scene.toml", "--strategy", "cluster", "--count", "10000000"];
+    let pieces = ["80000000 places", "of memory", "--count"];
+    folder.fails(&[&cluster[..], &["--memory", "1G"]].concat(), 2, &pieces);
     folder.fails(
         &["sample", "triangle.obj", "--count", "200000000", "--memory", "1G"],
         2,

@@ -22,7 +22,7 @@ use twox_hash::XxHash3_64;
 const DEFAULT_SIZE: [u32; 2] = [1024, 1024];
 
 /// Bytes that a pixel takes at least while points are drawn: buffers, the frame and its layers.
-const PIXEL_BYTES: u128 = 160;
+const PIXEL_BYTES: u128 = 48;
 
 pub(super) fn size(options: &CameraOptions) -> [u32; 2] {
     options.size.unwrap_or(DEFAULT_SIZE)
@@ -38,7 +38,7 @@ pub(super) fn check_view(options: &CameraOptions) -> Result<(Window, Window), Cl
         return Err(CliError::Usage(message));
     }
     let needed = u128::from(width) * u128::from(height) * PIXEL_BYTES;
-    memory::check(needed, || format!("--size {width}x{height} takes"))
+    memory::check(needed, || format!("{width}×{height} pixels (--size) take"))
         .map_err(|error| CliError::Usage(error.with_help()))?;
     options.windows(width, height)
 }

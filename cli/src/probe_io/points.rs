@@ -70,7 +70,7 @@ pub fn read_rows<const N: usize>(path: &Path, names: &str) -> Result<Vec<[f64; N
         for (k, value) in row.iter_mut().enumerate() {
             let word = words.next().ok_or_else(|| wrong(format!("only {k} numbers of {N}")))?;
             let number: f64 = word.parse().map_err(|_| wrong(format!("`{word}` is not a number")))?;
-            if !(number.abs() <= LARGEST) {
+            if !number.is_finite() || number.abs() > LARGEST {
                 return Err(wrong(format!("`{word}` is not finite, or beyond ±{LARGEST:e}")));
             }
             *value = number;

@@ -14,6 +14,11 @@ const MOST_POINTS: f64 = 8e6;
 /// How many times too many points are counted on the way to a coarser spacing.
 const ENOUGH: f64 = 16.0;
 
+/// Points that are farther apart are fewer than this share of what they were before, unless triangles have one each.
+const FEWER: f64 = 0.95;
+/// How far apart points may get, as a factor: then every triangle has one.
+const COARSEST: f64 = 1e6;
+
 /// A mesh without points.
 #[derive(Clone, Debug)]
 pub(super) struct LoadedMesh {
@@ -95,16 +100,18 @@ impl LoadedMesh {
         (scan, warning)
     }
 
-    /// Makes points farther apart until they are at most `most`; by how much comes back, too.
+    /// Makes points farther apart until they are at most `most`, or one for each triangle; by how much comes back, too.
     fn within(&self, needed: Needed, most: f64) -> (Needed, f64) {
-        let mut coarser = 1.0;
+        let (mut coarser, mut before) = (1.0, f64::INFINITY);
         loop {
             let candidate = needed.coarser(coarser);
             let count = self.count(&candidate, ENOUGH * most);
-            if count <= most {
+            let is_least = count > FEWER * before && count < ENOUGH * most;
+            if count <= most || is_least || coarser > COARSEST {
                 return (candidate, coarser);
             }
             coarser *= (count / most).sqrt() * 1.02;
+            before = count;
         }
     }
 
@@ -155,5 +162,20 @@ mod tests {
             warning.starts_with("floor.obj: gets ") && warning.contains("times as far apart"),
             "{warning}"
         );
+    }
+    #[test]
+    fn a_mesh_of_more_triangles_than_points_gets_one_for_each() {
+        let strip = |i: u32| DVec3::new(f64::from(i / 2) * 0.01, f64::from(i % 2), 0.0);
+        let mesh = LoadedMesh {
+            name: "strip.obj".to_owned(),
+            positions: (0..102).map(strip).collect(),
+            triangles: (0..100).map(|i| [i, i + 1, i + 2]).collect(),
+            colours: vec![[0.8; 3]; 100],
+        };
+        let projection = Projection::Perspective { fov_y_rad: 0.9 };
+        let camera = Camera { eye: 4.0 * DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, projection };
+        let (scan, warning) = mesh.covered(&camera, [500, 500], None, 10.0);
+        assert_eq!(scan.positions.len(), 100);
+        assert!(warning.is_some());
     }
 }

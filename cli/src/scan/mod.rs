@@ -15,7 +15,7 @@ use std::path::Path;
 use twox_hash::XxHash3_64;
 
 /// Bytes of a point: as it is kept here, and what the renderer makes of it.
-const POINT_BYTES: u64 = 96;
+const POINT_BYTES: u64 = 48;
 
 /// A file's points in the world.
 #[derive(Clone, Debug, Default)]
