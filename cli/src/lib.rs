@@ -6,6 +6,7 @@
 pub mod cloud_io;
 mod commands;
 pub mod compare;
+pub mod coordinate;
 pub mod dice_command;
 mod error;
 pub mod factors_command;

@@ -1,20 +1,25 @@
 //! The `pointillist` command.
 
-use clap::Parser as _;
 use pointillist_cli::{CliError, image_io, options::Cli};
 use std::io::Write as _;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// What a shell reports for a program that Ctrl-C ended.
 const INTERRUPTED: i32 = 130;
 
+/// "Failed while running".
+const FAILED: i32 = 1;
+
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = Cli::read();
     // Without a handler Ctrl-C still ends the program; only a temporary file would stay.
     let _ = ctrlc::set_handler(|| {
         image_io::remove_temporaries();
         std::process::exit(INTERRUPTED);
     });
+    leave_instead_of_aborting();
     match pointillist_cli::run(&cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -24,4 +29,17 @@ fn main() -> ExitCode {
             error.exit_code()
         }
     }
+}
+
+/// Has a failed allocation end the program with a code of ours.
+///
+/// Sizes from outside are checked before, but under a tight limit any allocation may fail. That cannot be caught: a line
+/// "memory allocation of N bytes failed" is printed, and then the program aborts.
+fn leave_instead_of_aborting() {
+    // Without a handler it aborts.
+    let _ = signal_hook::flag::register_conditional_shutdown(
+        signal_hook::consts::SIGABRT,
+        FAILED,
+        Arc::new(AtomicBool::new(true)),
+    );
 }

@@ -128,12 +128,16 @@ fn scans_of_a_conf_are_placed_and_a_mesh_joins_them() {
     folder.write("a.ply", range_grid(21));
     // Turned by 180° about y and moved back: its scanner looks from behind.
     folder.write("two.conf", "bmesh a.ply 0 0 0 0 0 0 1\nbmesh a.ply 1 0 0 0 1 0 0\n");
-    let line = ["scan", "two.conf", "triangle.obj", "-o", "a.png", "--size", "32x32", "--stats", "s.json"];
-    folder.prints(&line);
-    let stats: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(folder.path("s.json")).unwrap()).unwrap();
-    // The triangle of area 1.5 gets points at the spacing of the scans, 0.05.
-    assert!(stats["counts"]["points"].as_u64().unwrap() > 2 * 441 + 600);
+    let points = |size: &str| {
+        let line = ["scan", "two.conf", "triangle.obj", "-o", "a.png", "--size", size, "--stats", "s.json"];
+        folder.prints(&line);
+        let stats = std::fs::read(folder.path("s.json")).unwrap();
+        let stats: serde_json::Value = serde_json::from_slice(&stats).unwrap();
+        stats["counts"]["points"].as_u64().unwrap() - 2 * 441
+    };
+    // The triangle of area 1.5 gets points at the spacing of the scans, 0.05, where pixels are smaller than that.
+    assert!((600..700).contains(&points("256x256")));
+    assert!((100..500).contains(&points("16x16")));
 }
 
 #[test]
@@ -181,10 +185,10 @@ fn bad_options_are_wrong_usage() {
     folder.write("sheet.xyz", sheet(0.0));
     let wrong: [(&[&str], &str); 8] = [
         (&["--scale", "0.5"], "at least 1"),
-        (&["--alpha", "1.5"], "alpha = 1.5"),
-        (&["--outline", "2"], "outline"),
-        (&["--depth-layers", "99", "--alpha", "0.5"], "layers"),
-        (&["--light", "0,0,0"], "light"),
+        (&["--alpha", "1.5"], "--alpha"),
+        (&["--outline", "2"], "--outline"),
+        (&["--depth-layers", "99", "--alpha", "0.5"], "--depth-layers"),
+        (&["--light", "0,0,0"], "--light"),
         (&["--up", "0,0,1", "--eye", "0,0,3", "--target", "0,0,0"], "parallel"),
         (&["--layers", "albedo"], "N, P and count"),
         (&["--layers", "N", "-o", "a.png"], ".exr"),
@@ -193,4 +197,72 @@ fn bad_options_are_wrong_usage() {
         let line: Vec<&str> = ["scan", "sheet.xyz"].into_iter().chain(more.iter().copied()).collect();
         folder.fails(&line, 2, &[piece]);
     }
+}
+
+/// A sphere of quadrilaterals.
+fn sphere(radius: f64) -> String {
+    let mut text = String::new();
+    for i in 0..=12 {
+        for j in 0..24 {
+            let (theta, phi) = (f64::from(i) * std::f64::consts::PI / 12.0, f64::from(j) * 0.261_799_387_799);
+            let (r, y) = (radius * theta.sin(), radius * theta.cos());
+            text += &format!("v {} {y} {}\n", r * phi.cos(), r * phi.sin());
+        }
+    }
+    for i in 0..12 {
+        for j in 0..24 {
+            let at = |i: i32, j: i32| i * 24 + j % 24 + 1;
+            text += &format!("f {} {} {} {}\n", at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
+        }
+    }
+    text
+}
+
+/// What the command says about its number of points, and how much of the picture is covered.
+fn points_and_cover(folder: &Folder, line: &[&str]) -> (u64, f32, String) {
+    let line: Vec<&str> = line.iter().copied().chain(["-o", "out.exr", "--overwrite"]).collect();
+    let output = folder.command(&line).output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    let words: Vec<&str> = message.split_whitespace().collect();
+    let at = words.iter().rposition(|word| *word == "points").expect("a number of points");
+    let picture = read_exr_picture(&std::fs::read(folder.path("out.exr")).unwrap()).unwrap();
+    let cover = picture.color.iter().map(|c| c[3]).sum::<f32>() / picture.color.len() as f32;
+    (words[at - 1].parse().unwrap(), cover, message)
+}
+
+#[test]
+fn points_of_a_mesh_are_tied_to_pixels_and_not_to_the_scan_beside_it() {
+    let folder = Folder::new();
+    folder.write("sheet.xyz", sheet(0.0));
+    folder.write("huge.obj", sphere(1000.0));
+    folder.write("small.obj", sphere(0.5));
+    // Framed together, the scan is a dot; its spacing on the sphere would be billions of points.
+    let (points, cover, message) =
+        points_and_cover(&folder, &["scan", "sheet.xyz", "huge.obj", "--size", "64x64"]);
+    assert!(points < 60_000, "{points} points for 4096 pixels");
+    assert!((0.5..0.9).contains(&cover), "{cover}");
+    assert!(!message.contains("warning"), "{message}");
+    // As many pixels, as many points, whatever the unit.
+    let (small, ..) = points_and_cover(&folder, &["scan", "small.obj", "--size", "64x64"]);
+    let (large, ..) = points_and_cover(&folder, &["scan", "small.obj", "--size", "128x128"]);
+    assert!((3.0..5.0).contains(&(large as f64 / small as f64)), "{small} {large}");
+}
+
+#[test]
+fn one_vertex_far_away_does_not_multiply_the_points() {
+    let folder = Folder::new();
+    let ply = |last: &str| {
+        let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\n\
+                      property double z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
+        format!("{header}-1 -1 0\n1 -1 0\n1 1 0\n{last}\n3 0 1 2\n3 0 2 3\n")
+    };
+    folder.write("square.ply", ply("-1 1 0"));
+    folder.write("moved.ply", ply("-1e9 3e9 0"));
+    let view = ["--eye", "0,0,5", "--target", "0,0,0", "--size", "64x64"];
+    let scan = |file: &'static str| points_and_cover(&folder, &[&["scan", file][..], &view].concat());
+    let (usual, ..) = scan("square.ply");
+    let (moved, cover, message) = scan("moved.ply");
+    assert!(moved < 4 * usual, "{usual} points of a square, {moved} with a vertex moved");
+    assert!(cover > 0.1 && !message.contains("warning"), "{cover} {message}");
 }

@@ -1,6 +1,7 @@
 //! Points on their way out: blocks, the check that they are finite, and the summary.
 
 use super::format::CloudFormat;
+use crate::coordinate::{LARGEST, is_usable};
 use crate::input_error::InputError;
 use glam::{DVec3, Vec3};
 
@@ -25,7 +26,7 @@ pub struct CloudBlock<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct CloudOptions {
-    /// Points with a number that is NaN or infinite are left out and counted, in the place of an error. Default: `false`.
+    /// Points with a number that is NaN or infinite, or with a coordinate beyond 1e18, are left out and counted, in the place of an error. Default: `false`.
     pub drop_invalid: bool,
     /// Most points in a block, from 1 to [`MAX_BLOCK_POINTS`]; anything else is moved there. Default: [`MAX_BLOCK_POINTS`].
     pub block_points: usize,
@@ -144,11 +145,11 @@ pub(super) struct Point {
 }
 
 impl Point {
-    fn is_finite(&self) -> bool {
+    fn can_be_used(&self) -> bool {
         let [r, g, b] = self.colour;
         // A sum is not finite if a term is not; terms that are finite in f32 cannot overflow this one.
         let rest = f64::from(r) + f64::from(g) + f64::from(b) + f64::from(self.radius);
-        self.position.is_finite() && self.normal.is_finite() && rest.is_finite()
+        is_usable(self.position) && self.normal.is_finite() && rest.is_finite()
     }
 }
 
@@ -206,7 +207,7 @@ impl<'a> Gather<'a> {
     /// Takes a point.
     pub(super) fn push(&mut self, point: &Point, at: At) -> Result<(), Stop> {
         self.seen += 1;
-        if !point.is_finite() {
+        if !point.can_be_used() {
             self.invalid += 1;
             self.first_invalid.get_or_insert(at);
             return Ok(());
@@ -257,7 +258,8 @@ impl<'a> Gather<'a> {
     pub(super) fn finish(&mut self, name: &str, format: CloudFormat) -> Result<CloudSummary, Stop> {
         if let Some(at) = self.first_invalid.filter(|_| !self.drop_invalid) {
             let (invalid, seen) = (self.invalid, self.seen);
-            let message = format!("{invalid} of {seen} points are not finite, the first {at}");
+            let message =
+                format!("{invalid} of {seen} points are not finite, or beyond ±{LARGEST:e}, the first {at}");
             return Err(InputError::of_file(name, message)
                 .with_help("`--drop-invalid` leaves them out")
                 .into());
@@ -266,7 +268,7 @@ impl<'a> Gather<'a> {
         if self.handed_out == 0 {
             let message = match self.seen {
                 0 => "the cloud has no points".to_owned(),
-                seen => format!("none of the {seen} points is finite"),
+                seen => format!("none of the {seen} points is finite and within ±{LARGEST:e}"),
             };
             return Err(InputError::of_file(name, message)
                 .with_help("give a file with at least one point")

@@ -2,6 +2,7 @@
 
 use super::number::{Word, Words, parse_f64};
 use super::source::{Line, Source};
+use crate::coordinate::LARGEST;
 use crate::input_error::InputError;
 use glam::{DQuat, DVec3, dvec3};
 use std::fs::File;
@@ -142,8 +143,8 @@ fn named_pose<'a>(
 fn pose(name: &str, line: &Line<'_>, words: &[Word<'_>]) -> Result<Pose, InputError> {
     let mut numbers = [0.0; POSE_NUMBERS];
     for (number, word) in numbers.iter_mut().zip(words) {
-        *number = parse_f64(word.bytes).filter(|number| number.is_finite()).ok_or_else(|| {
-            line.error(name, Some(*word), format!("`{}` is no finite number", word.shown()))
+        *number = parse_f64(word.bytes).filter(|number| number.abs() <= LARGEST).ok_or_else(|| {
+            line.error(name, Some(*word), format!("`{}` is no number up to ±{LARGEST:e}", word.shown()))
                 .with_help("a pose is tx ty tz qx qy qz qw: a translation and a unit quaternion")
         })?;
     }

@@ -1,15 +1,20 @@
 //! `compare`.
 
 use super::Report;
-use super::report::write_text;
+use super::report::{check_output, write_text};
 use crate::compare::{compare, difference_bytes};
 use crate::error::CliError;
 use crate::image_io::{encode_rgb_png, read_picture, write_atomically};
 use crate::input_error::InputError;
 use crate::options::CompareOptions;
+use std::path::Path;
 
 pub(super) fn run(options: &CompareOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
+    check_output(&options.output.path)?;
+    if let Some(path) = &options.diff {
+        check_diff(path)?;
+    }
     let (a, b) = report.stats.stage("load", || (read_picture(&options.a), read_picture(&options.b)));
     let (a, b) = (a?, b?);
     if a.size != b.size {
@@ -38,4 +43,12 @@ pub(super) fn run(options: &CompareOptions) -> Result<(), CliError> {
         }
         _ => Ok(()),
     }
+}
+
+/// The difference is written as PNG, whatever its name says.
+fn check_diff(path: &Path) -> Result<(), CliError> {
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        return check_output(path);
+    }
+    Err(CliError::Usage(format!("--diff `{}`: the name of the difference ends in .png", path.display())))
 }

@@ -1,11 +1,12 @@
 //! `info`.
 
 use super::Report;
-use super::report::write_text;
+use super::report::{check_output, write_text};
 use crate::cloud_io::{self, CloudOptions, CloudSummary, Pose};
 use crate::error::CliError;
 use crate::image_io::{ExrFile, read_picture};
 use crate::input_error::InputError;
+use crate::memory;
 use crate::mesh_io::gltf::read_gltf;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::options::InfoOptions;
@@ -20,6 +21,7 @@ use std::path::Path;
 
 pub(super) fn run(options: &InfoOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
+    check_output(&options.output.path)?;
     let value = report.stats.stage("load", || describe(&options.file))?;
     write_text(&options.output.path, |output| {
         serde_json::to_writer_pretty(&mut *output, &value)?;
@@ -30,8 +32,7 @@ pub(super) fn run(options: &InfoOptions) -> Result<(), CliError> {
 
 fn describe(path: &Path) -> Result<Value, InputError> {
     let name = path.display().to_string();
-    let bytes =
-        || std::fs::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")));
+    let bytes = || memory::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")));
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match extension.as_str() {
         "probes" => Ok(of_probes(&read_probes(path)?)),
@@ -161,7 +162,7 @@ fn of_mesh(format: &str, mesh: &FileMesh) -> Value {
 fn of_gltf(format: &str, name: &str, path: &Path, bytes: &[u8]) -> Result<Value, InputError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let open =
-        |file: &str| std::fs::read(folder.join(file)).map_err(|error| format!("cannot be read: {error}"));
+        |file: &str| memory::read(&folder.join(file)).map_err(|error| format!("cannot be read: {error}"));
     let mesh = read_gltf(name, bytes, &open)?;
     let mut value = of_mesh(format, &mesh);
     if let Some(model) = &mesh.gltf {
@@ -179,7 +180,7 @@ fn of_ply(path: &Path, name: &str) -> Result<Value, InputError> {
     if summary.faces == 0 {
         return Ok(of_cloud(&summary));
     }
-    let bytes = std::fs::read(path).map_err(|e| InputError::of_file(name, format!("cannot be read: {e}")))?;
+    let bytes = memory::read(path).map_err(|e| InputError::of_file(name, format!("cannot be read: {e}")))?;
     Ok(of_mesh("ply", &read_ply(name, &bytes)?))
 }
 

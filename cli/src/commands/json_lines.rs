@@ -1,7 +1,7 @@
 //! Commands that answer JSON lines: where lines come from, and where answers go.
 
 use super::Report;
-use super::report::write_text;
+use super::report::{check_output, write_text};
 use crate::error::CliError;
 use crate::input_error::InputError;
 use crate::json_lines::JsonLinesError;
@@ -19,6 +19,7 @@ pub(super) fn answer_lines(
     output: &Path,
     run: impl FnOnce(&mut dyn BufRead, &mut dyn Write, &str) -> Result<(), JsonLinesError>,
 ) -> Result<(), CliError> {
+    check_output(output)?;
     let name = input.display().to_string();
     let mut lines: Box<dyn BufRead> = if input == Path::new("-") {
         Box::new(io::stdin().lock())

@@ -3,9 +3,11 @@
 use super::Report;
 use super::probe::{is_probe_file, merge_probes};
 use super::render::{OutputFormat, write_exr, write_png};
+use super::report::check_output;
 use crate::error::CliError;
 use crate::image_io::{Channel, ExrFile, Frame, PngOptions, Stamp, Window};
 use crate::input_error::InputError;
+use crate::memory;
 use crate::options::MergeOptions;
 use exr::prelude::FlatSamples;
 use std::path::Path;
@@ -23,6 +25,7 @@ pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
         return merge_probes(options, &report);
     }
     let format = OutputFormat::of(&options.output)?;
+    check_output(&options.output)?;
     let parts = options.parts.iter().map(|path| report.stats.stage("load", || read_part(path)));
     let mut parts = parts.collect::<Result<Vec<_>, _>>()?;
     report.stats.count("parts", parts.len() as u64);
@@ -45,7 +48,7 @@ pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
 fn read_part(path: &Path) -> Result<Part, CliError> {
     let name = path.display().to_string();
     let fault = |message: String| CliError::Input(InputError::of_file(&name, message));
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+    let bytes = memory::read(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => CliError::Parts(format!("part {name} is missing")),
         _ => fault(format!("cannot be read: {error}")),
     })?;

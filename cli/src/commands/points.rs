@@ -2,14 +2,17 @@
 
 use super::Report;
 use super::render::{OutputFormat, is_there, write_exr, write_png};
+use super::report::check_output;
 use crate::error::CliError;
 use crate::image_io::{ExrFile, Frame, PngOptions, Precision, Stamp, Window};
 use crate::job::Progress;
+use crate::memory;
 use crate::options::{CameraOptions, Common, PictureOptions, Vector};
 use crate::scene::description::{CameraDescription, DEFAULT_FOV_DEG};
 use crate::scene::{Camera, Projection, frame_around};
 use cpu_time::ProcessTime;
 use glam::DVec3;
+use pointillist_ibpr as ibpr;
 use std::hash::Hasher as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -18,8 +21,26 @@ use twox_hash::XxHash3_64;
 /// Width and height of a picture without `--size`.
 const DEFAULT_SIZE: [u32; 2] = [1024, 1024];
 
+/// Bytes that a pixel takes at least while points are drawn: buffers, the frame and its layers.
+const PIXEL_BYTES: u128 = 48;
+
 pub(super) fn size(options: &CameraOptions) -> [u32; 2] {
     options.size.unwrap_or(DEFAULT_SIZE)
+}
+
+/// Looks at the view and the size of the picture before anything is loaded; gives what the job covers and what this run draws.
+pub(super) fn check_view(options: &CameraOptions) -> Result<(Window, Window), CliError> {
+    options.check_view()?;
+    let [width, height] = size(options);
+    let most = ibpr::View::LARGEST_SIDE;
+    if width.max(height) > most {
+        let message = format!("--size {width}x{height}: points are drawn with up to {most} pixels a side");
+        return Err(CliError::Usage(message));
+    }
+    let needed = u128::from(width) * u128::from(height) * PIXEL_BYTES;
+    memory::check(needed, || format!("{width}×{height} pixels (--size) take"))
+        .map_err(|error| CliError::Usage(error.with_help()))?;
+    options.windows(width, height)
 }
 
 /// `-o`, or the name of the first file: `bun.ply.gz` gives `bun.png`.
@@ -83,6 +104,7 @@ impl<'a> Target<'a> {
     pub(super) fn new(path: PathBuf, options: &'a PictureOptions, layers: bool) -> Result<Self, CliError> {
         let format = OutputFormat::of(&path)?;
         format.check_layers(layers, options.float)?;
+        check_output(&path)?;
         Ok(Self { path, format, options })
     }
 
@@ -90,7 +112,7 @@ impl<'a> Target<'a> {
     pub(super) fn is_done(&self, stamp: &Stamp, window: Window, report: &Report<'_>) -> bool {
         let done = self.format == OutputFormat::Exr
             && !self.options.overwrite
-            && is_there(&self.path, stamp, window);
+            && is_there(&self.path, stamp, window, report);
         if done {
             report.note(&format!("{} is already there; --overwrite draws it again", self.path.display()));
         }

@@ -1,6 +1,7 @@
 //! `render`.
 
 use super::Report;
+use super::report::check_output;
 use crate::error::CliError;
 use crate::image_io::{
     ExrFile, Frame, LayerKind, PngOptions, Precision, Stamp, Window, encode_png, write_atomically,
@@ -45,7 +46,10 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
     let output = output_path(options);
     let format = OutputFormat::of(&output)?;
+    check_output(&output)?;
     check_options(options, format, &report)?;
+    options.camera.check_view()?;
+    check_size(options)?;
     let overrides = options.camera.overrides(&options.set);
     let scene = report.stats.stage("load", || match &options.scene {
         Some(path) => scene::load(path, &overrides),
@@ -53,9 +57,12 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     })?;
     scene.warnings.iter().for_each(|warning| report.warn(warning));
     let job = job(&scene, options)?;
-    check_memory(&job)?;
+    check_memory(options, job.window, &job.layers)?;
     let stamp = stamp(&scene, &job, options);
-    if format == OutputFormat::Exr && !options.picture.overwrite && is_there(&output, &stamp, job.window) {
+    if format == OutputFormat::Exr
+        && !options.picture.overwrite
+        && is_there(&output, &stamp, job.window, &report)
+    {
         report.note(&format!("{} is already there; --overwrite draws it again", output.display()));
         return report.finish();
     }
@@ -144,23 +151,26 @@ fn layers(scene: &Scene, requests: &[LayerRequest]) -> Result<Vec<LayerKind>, Cl
 }
 
 /// Refuses a picture that memory cannot hold, before anything is computed.
-fn check_memory(job: &RenderJob) -> Result<(), CliError> {
-    let planes: usize = 5 + job.layers.iter().map(|layer| layer.channels(&[]).len()).sum::<usize>();
+fn check_memory(options: &RenderOptions, window: Window, layers: &[LayerKind]) -> Result<(), CliError> {
+    let planes: usize = 5 + layers.iter().map(|layer| layer.channels(&[]).len()).sum::<usize>();
     // Once as computed, and once more as it is written.
-    let needed = u128::from(job.window.pixels()) * planes as u128 * 4 * 2;
-    let Some(available) = memory::available_bytes() else { return Ok(()) };
-    if needed <= u128::from(available) {
-        return Ok(());
-    }
-    let (width, height) = (job.window.width(), job.window.height());
-    let message = format!(
-        "{width}×{height} pixels take {} of memory, and {} are available",
-        memory::human(needed),
-        memory::human(u128::from(available))
-    );
-    Err(crate::InputError::of_file("image.size", message)
-        .with_help("draw it in parts with --tile, or smaller")
-        .into())
+    let needed = u128::from(window.pixels()) * planes as u128 * 4 * 2;
+    let (width, height) = (window.width(), window.height());
+    let fits = memory::check(needed, || format!("{width}×{height} pixels take"));
+    fits.map_err(|error| match options.camera.size {
+        Some([width, height]) => CliError::Usage(format!(
+            "--size {width}x{height}: {}; draw it in parts with --tile, or smaller",
+            error.with_help()
+        )),
+        None => error.in_file("image.size").with_help("draw it in parts with --tile, or smaller").into(),
+    })
+}
+
+/// What `--size` asks for, looked at before the scene is loaded.
+fn check_size(options: &RenderOptions) -> Result<(), CliError> {
+    let Some([width, height]) = options.camera.size else { return Ok(()) };
+    let (_, window) = options.camera.windows(width, height)?;
+    check_memory(options, window, &[])
 }
 
 fn stamp(scene: &Scene, job: &RenderJob, options: &RenderOptions) -> Stamp {
@@ -181,10 +191,17 @@ fn stamp(scene: &Scene, job: &RenderJob, options: &RenderOptions) -> Stamp {
     }
 }
 
-/// Whether the output is there already, drawn from the same scene with the same options.
-pub(super) fn is_there(path: &Path, stamp: &Stamp, window: Window) -> bool {
-    let Ok(bytes) = std::fs::read(path) else { return false };
-    ExrFile::read(&bytes).is_ok_and(|file| file.window == window && file.stamp.as_ref() == Some(stamp))
+/// Whether the output is there already, drawn from the same scene with the same options. A damaged one is not, and is told.
+pub(super) fn is_there(path: &Path, stamp: &Stamp, window: Window, report: &Report<'_>) -> bool {
+    let Ok(bytes) = memory::read(path) else { return false };
+    match ExrFile::read(&bytes) {
+        Ok(file) => file.window == window && file.stamp.as_ref() == Some(stamp),
+        Err(error) => {
+            let name = path.display();
+            report.note(&format!("{name} is there, but cannot be used ({error}); it is drawn again"));
+            false
+        }
+    }
 }
 
 pub(super) fn write_exr(path: &Path, file: ExrFile) -> Result<(), CliError> {

@@ -1,8 +1,9 @@
 //! What every command does around its work: threads, notes, statistics, text results.
 
 use crate::error::CliError;
-use crate::image_io::write_atomically;
+use crate::image_io::{check_writable, write_atomically};
 use crate::job::Stats;
+use crate::memory;
 use crate::options::Common;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -14,14 +15,12 @@ pub(super) struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// Starts the clock and sets up the threads.
+    /// Starts the clock, sets up memory and threads, and looks whether `--stats` can be written.
     pub(super) fn new(common: &'a Common) -> Result<Self, CliError> {
         let stats = Stats::new();
-        if let Some(threads) = common.threads {
-            // Fails if threads are already running, that is when a test calls a second command in one process; results do not
-            // depend on their number.
-            let _ = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global();
-        }
+        common.memory.into_iter().for_each(memory::allow);
+        common.stats.as_deref().map_or(Ok(()), check_output)?;
+        start_threads(common.thread_count());
         Ok(Self { common, stats })
     }
 
@@ -61,6 +60,22 @@ impl<'a> Report<'a> {
             None => Ok(()),
         }
     }
+}
+
+/// Starts the threads that everything is computed on.
+fn start_threads(count: usize) {
+    let started = |count| rayon::ThreadPoolBuilder::new().num_threads(count).build_global().is_ok();
+    // Where the system refuses so many (a limit on memory or on processes), one is better than none. It also fails if threads are
+    // running already, that is when a test calls a second command in one process; results do not depend on their number.
+    let _ = started(count) || started(1);
+}
+
+/// Looks whether a file can be written, before any work is done for it; `-` is standard output.
+pub(super) fn check_output(path: &Path) -> Result<(), CliError> {
+    if path == Path::new("-") {
+        return Ok(());
+    }
+    check_writable(path).map_err(|error| CliError::writing(&path.display().to_string(), &error))
 }
 
 /// Writes text to a file as a whole, or to standard output for `-`.

@@ -1,6 +1,7 @@
 //! `sample`.
 
 use super::Report;
+use super::report::check_output;
 use crate::cloud_io::{CloudPoint, PlyEncoding, write_ply};
 use crate::error::CliError;
 use crate::image_io::write_atomically;
@@ -19,6 +20,7 @@ pub(super) fn run(options: &SampleOptions) -> Result<(), CliError> {
     if output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("ply")) {
         return Err(CliError::Usage(format!("`{}`: a cloud's name ends in .ply", output.display())));
     }
+    check_output(&output)?;
     check_memory(options)?;
     let scene = report.stats.stage("load", || scene::load(&options.model, &overrides(options)))?;
     scene.warnings.iter().for_each(|warning| report.warn(warning));
@@ -85,13 +87,9 @@ fn check_memory(options: &SampleOptions) -> Result<(), CliError> {
         s if s.method == Method::Poisson => (1500, s.amount),
         s => (400, s.amount),
     };
-    let (Amount::Count(count), Some(available)) = (count, memory::available_bytes()) else { return Ok(()) };
-    let needed = count as u128 * bytes;
-    if needed <= u128::from(available) {
-        return Ok(());
-    }
-    let (needed, available) = (memory::human(needed), memory::human(u128::from(available)));
-    Err(CliError::Usage(format!("--count {count} takes {needed} of memory, and {available} are available")))
+    let Amount::Count(count) = count else { return Ok(()) };
+    memory::check(count as u128 * bytes, || format!("--count {count} takes"))
+        .map_err(|error| CliError::Usage(error.with_help()))
 }
 
 fn with_attributes(scene: &Scene, point: &SurfacePoint) -> CloudPoint {

@@ -16,21 +16,22 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
     let path = points::output_path(options.output.as_deref(), &options.files[0]);
     let target = Target::new(path, &options.picture, !options.layers.is_empty())?;
+    let (region, window) = points::check_view(&options.camera)?;
     let load = LoadOptions {
         drop_invalid: options.drop_invalid,
         spacing: options.surface.spacing,
         vertices: options.vertices,
     };
-    let set = report.stats.stage("load", || ScanSet::load(&options.files, &load))?;
+    let mut set = report.stats.stage("load", || ScanSet::load(&options.files, &load))?;
+    let camera = points::camera(&options.camera, None, || set.positions())?;
+    let size = points::size(&options.camera);
+    report.stats.stage("prepare", || set.cover_meshes(&camera, size, options.surface.spacing));
     set.warnings.iter().for_each(|warning| report.warn(warning));
     if set.dropped > 0 {
         report.warn(&format!("{} points that are not finite were left out", set.dropped));
     }
     let frame_options = options.frame_options();
     let cloud = report.stats.stage("prepare", || set.cloud(frame_options.base))?;
-    let camera = points::camera(&options.camera, None, || cloud.positions())?;
-    let size @ [width, height] = points::size(&options.camera);
-    let (region, window) = options.camera.windows(width, height)?;
     let layers = layer_list(&options.layers, &LAYERS).unwrap_or_default();
     let drawn = format!("{:?}", (frame_options, &camera, size, &layers, options.picture.float));
     let stamp = points::stamp(set.fingerprint(), &drawn, &options.camera, region);

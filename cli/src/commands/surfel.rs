@@ -20,12 +20,12 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
         .map_err(|_| CliError::Usage("layers of `surfel` are all, N and P".to_owned()))?;
     let frame_options = options.frame_options().map_err(CliError::Usage)?;
     let fov_deg = options.lens_fov_deg().map_err(CliError::Usage)?;
+    let (region, window) = points::check_view(&options.camera)?;
     let set = report.stats.stage("load", || PointSet::load(&options.clouds, options.drop_invalid))?;
     set.warnings.iter().for_each(|warning| report.warn(warning));
     let cloud = report.stats.stage("prepare", || set.cloud(options.discs.estimate_normals))?;
     let camera = points::camera(&options.camera, fov_deg, || cloud.positions())?;
-    let size @ [width, height] = points::size(&options.camera);
-    let (region, window) = options.camera.windows(width, height)?;
+    let size = points::size(&options.camera);
     let drawn = format!("{:?}", (frame_options, &camera, size, &layers, options.picture.float));
     let stamp = points::stamp(set.fingerprint(), &drawn, &options.camera, region);
     if target.is_done(&stamp, window, &report) {

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use tempfile::Builder;
+use tempfile::{Builder, NamedTempFile};
 
 /// What is being written at the moment: to be removed on Ctrl-C.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -18,6 +18,22 @@ pub fn remove_temporaries() {
     for path in temporaries().drain(..) {
         // Nothing more can be done about a file that cannot be removed.
         let _ = std::fs::remove_file(path);
+    }
+}
+
+/// Whether [`write_atomically`] can begin: tries to make a temporary file where it would.
+///
+/// # Errors
+///
+/// What the system says, in words that need no path.
+pub fn check_writable(path: &Path) -> io::Result<()> {
+    if path.as_os_str().is_empty() {
+        return Err(io::Error::other("the name is empty"));
+    }
+    match path.metadata() {
+        Ok(data) if data.is_dir() => Err(io::Error::other("it is a folder")),
+        Ok(data) if !data.is_file() => Ok(()),
+        _ => temporary_for(path).map(drop),
     }
 }
 
@@ -40,9 +56,24 @@ pub fn write_atomically(
     if path.metadata().is_ok_and(|data| !data.is_file() && !data.is_dir()) {
         return fill(&File::create(path)?);
     }
-    // Through a link to the file it stands for: a rename would replace the link.
-    let path = &path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let temporary = temporary_for(path)?;
+    let name = temporary.path().to_path_buf();
+    temporaries().push(name.clone());
+    let result = fill(temporary.as_file())
+        .and_then(|()| temporary.persist(target_of(path)).map(drop).map_err(|e| e.error));
+    temporaries().retain(|path| *path != name);
+    result
+}
+
+/// Through a link to the file it stands for: a rename would replace the link.
+fn target_of(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
+}
+
+/// A new file in the folder of `path`.
+fn temporary_for(path: &Path) -> io::Result<NamedTempFile> {
+    let target = target_of(path);
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = Builder::new();
     builder.prefix(".pointillist-").suffix(".tmp");
     #[cfg(unix)]
@@ -51,11 +82,15 @@ pub fn write_atomically(
         // As for any new file: the umask takes from it what the user wants taken.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let temporary = builder.tempfile_in(folder)?;
-    let name = temporary.path().to_path_buf();
-    temporaries().push(name.clone());
-    let result =
-        fill(temporary.as_file()).and_then(|()| temporary.persist(path).map(drop).map_err(|e| e.error));
-    temporaries().retain(|path| *path != name);
-    result
+    builder.tempfile_in(folder).map_err(|error| {
+        // The system's message is about a temporary name that nobody asked for.
+        let folder = folder.display();
+        let reason = match error.kind() {
+            io::ErrorKind::NotFound => format!("the folder `{folder}` is not there"),
+            io::ErrorKind::NotADirectory => format!("`{folder}` is not a folder"),
+            io::ErrorKind::PermissionDenied => format!("the folder `{folder}` may not be written to"),
+            kind => format!("in the folder `{folder}`: {kind}"),
+        };
+        io::Error::new(error.kind(), reason)
+    })
 }

@@ -1,6 +1,7 @@
 //! EXR files: one part, any channels, data window within the display window.
 
-use super::{Frame, Stamp, Window};
+use super::{Frame, Stamp, Window, exr_check};
+use crate::memory::MemoryError;
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{
     self as exr_lib, AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image,
@@ -57,6 +58,35 @@ pub enum ExrError {
     /// A channel that stores fewer samples than pixels.
     #[error("channel {0} is subsampled")]
     Subsampled(String),
+    /// Pixels with a list of samples each.
+    #[error("it is deep, which is not read")]
+    Deep,
+    /// The header announces more than the file can hold, however well compressed.
+    #[error(
+        "{width}×{height} pixels in {channels} channels are announced, but the file has only {file_bytes} bytes"
+    )]
+    TooShort {
+        /// Columns of the data window.
+        width: usize,
+        /// Its rows.
+        height: usize,
+        /// Channels of the layer.
+        channels: usize,
+        /// Bytes of the whole file.
+        file_bytes: u64,
+    },
+    /// A tile or a block of lines that is longer than the format can say, or than its pixels take.
+    #[error("a block of {bytes} bytes is announced, which is more than a block can hold")]
+    Block {
+        /// As announced.
+        bytes: u128,
+    },
+    /// A tile of a smaller copy in the place of one of the picture.
+    #[error("a tile says that it belongs to another level of resolution")]
+    Level,
+    /// There is not enough memory for it.
+    #[error(transparent)]
+    Memory(MemoryError),
     /// There is nothing that could be a colour.
     #[error("there are no channels R, G, B or Y")]
     NoColor,
@@ -90,14 +120,17 @@ impl ExrFile {
     ///
     /// # Errors
     ///
-    /// Not an EXR, or one that we cannot show (deep, subsampled, data outside the display window).
+    /// Not an EXR, one that we cannot show (deep, subsampled, data outside the display window), or one that does not fit
+    /// into memory.
     pub fn read(bytes: &[u8]) -> Result<Self, ExrError> {
+        exr_check::check(bytes)?;
         let image = exr_lib::read()
             .no_deep_data()
             .largest_resolution_level()
             .all_channels()
             .first_valid_layer()
             .all_attributes()
+            .non_parallel()
             .from_buffered(Cursor::new(bytes))?;
         let display = image.attributes.display_window;
         let layer = image.layer_data;

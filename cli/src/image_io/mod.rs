@@ -1,15 +1,16 @@
 //! Pictures in and out: EXR with layers, PNG, and what is read for comparison.
 
 mod atomic;
+mod exr_check;
 mod exr_file;
 mod frame;
 mod picture;
 mod png;
 mod stamp;
 
-pub use atomic::{remove_temporaries, write_atomically};
+pub use atomic::{check_writable, remove_temporaries, write_atomically};
 pub use exr_file::{Channel, ExrError, ExrFile, Precision};
 pub use frame::{Frame, Layer, LayerKind, Window};
-pub use picture::{Levels, Picture, read_exr_picture, read_levels, read_picture};
+pub use picture::{Levels, Picture, decode_image, read_exr_picture, read_levels, read_picture};
 pub use png::{PngOptions, encode_png, encode_rgb_png};
 pub use stamp::Stamp;

@@ -2,10 +2,14 @@
 
 use super::{ExrError, ExrFile, Window};
 use crate::input_error::InputError;
+use crate::memory;
 use crate::scene::linear_from_srgb;
 use image::{DynamicImage, ImageReader};
 use std::io::Cursor;
 use std::path::Path;
+
+/// Bytes of a pixel at most while a picture is decoded: as stored, as four floats, and as our own pixels.
+const DECODED_PIXEL_BYTES: u128 = 3 * 4 * 4;
 
 /// Linear colours of a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,7 +88,7 @@ enum Decoded {
 fn decode(path: &Path) -> Result<Decoded, InputError> {
     let name = path.display().to_string();
     let bytes =
-        std::fs::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")))?;
+        crate::memory::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")))?;
     let fault = |message: String| {
         let error = InputError::of_file(&name, format!("cannot be decoded: {message}"));
         error.with_help("EXR, PNG, JPEG and HDR pictures can be read")
@@ -92,7 +96,26 @@ fn decode(path: &Path) -> Result<Decoded, InputError> {
     if bytes.starts_with(&exr::meta::magic_number::BYTES) {
         return read_exr_picture(&bytes).map(Decoded::Exr).map_err(|error| fault(error.to_string()));
     }
-    let reader =
-        ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| fault(e.to_string()))?;
-    reader.decode().map(Decoded::Other).map_err(|error| fault(error.to_string()))
+    decode_image(&bytes).map(Decoded::Other).map_err(fault)
+}
+
+/// Decodes a PNG, JPEG or HDR that fits into memory.
+///
+/// # Errors
+///
+/// What is wrong, or how much memory is missing.
+pub fn decode_image(bytes: &[u8]) -> Result<DynamicImage, String> {
+    let reader = || {
+        let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
+        reader.map_err(|error| error.to_string())
+    };
+    let (width, height) = reader()?.into_dimensions().map_err(|error| error.to_string())?;
+    let needed = u128::from(width) * u128::from(height) * DECODED_PIXEL_BYTES;
+    memory::check(needed, || format!("its {width}×{height} pixels take")).map_err(|e| e.with_help())?;
+    let mut reader = reader()?;
+    // The library's own limit is 512 MiB, whatever the machine.
+    let mut limits = image::Limits::default();
+    limits.max_alloc = memory::available_bytes().or(limits.max_alloc);
+    reader.limits(limits);
+    reader.decode().map_err(|error| error.to_string())
 }

@@ -96,6 +96,11 @@ fn check(name: &str, bytes: &[u8]) -> Result<(String, Vec<MtlMaterial>), InputEr
         let text = String::from_utf8_lossy(line);
         let trimmed = text.trim();
         let fault = |message: String| InputError::in_line(name, bytes, index + 1, message);
+        let statement = line.split(|&b| b == b'#').next().unwrap_or_default();
+        if std::str::from_utf8(statement).is_err() {
+            let error = fault("bytes that are not UTF-8 text".to_owned());
+            return Err(error.with_help("save the file as UTF-8; is it an MTL file?"));
+        }
         let mut words = trimmed.split('#').next().unwrap_or_default().split_whitespace();
         let keyword = words.next().unwrap_or_default();
         let values: Vec<&str> = words.collect();

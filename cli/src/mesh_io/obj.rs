@@ -2,6 +2,7 @@
 
 use super::obj_lines::{Kinds, LineFault, ObjLines};
 use super::{FileMesh, triangulate};
+use crate::coordinate::{LARGEST, is_usable};
 use crate::input_error::InputError;
 use crate::scene::NONE;
 use glam::{DVec2, DVec3, Vec3};
@@ -39,8 +40,8 @@ pub fn read_obj(name: &str, bytes: &[u8]) -> Result<FileMesh, InputError> {
         let Some((kinds, material)) = ObjLines::decode(&model.name) else { continue };
         append(&mut mesh, &model.mesh, kinds, material, name)?;
     }
-    if mesh.positions.iter().all(|p| p.is_finite())
-        && mesh.uvs.iter().all(|p| p.is_finite())
+    if mesh.positions.iter().all(|p| is_usable(*p))
+        && mesh.uvs.iter().all(|p| is_usable(p.extend(0.0)))
         && mesh.normals.iter().all(|n| n.is_finite())
     {
         Ok(mesh)
@@ -70,11 +71,11 @@ fn not_finite(name: &str, bytes: &[u8]) -> InputError {
             _ => return false,
         };
         // Normals are kept in 32 bits.
-        let fits = |n: f64| if is_normal { (n as f32).is_finite() } else { n.is_finite() };
+        let fits = |n: f64| if is_normal { (n as f32).is_finite() } else { n.abs() <= LARGEST };
         words.take(3).any(|word| word.parse().is_ok_and(|number| !fits(number)))
     };
     let line = bytes.split(|&b| b == b'\n').position(is_bad);
-    let message = "a number that is not finite";
+    let message = format!("a number that is not finite, or beyond ±{LARGEST:e}");
     match line {
         Some(index) => InputError::in_line(name, bytes, index + 1, message),
         None => InputError::of_file(name, message),

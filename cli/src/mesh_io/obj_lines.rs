@@ -78,9 +78,9 @@ impl<'a> ObjLines<'a> {
     }
 
     /// The line, with those it continues on, without comment; `None` at the end.
-    fn logical_line(&mut self) -> Option<String> {
+    fn logical_line(&mut self) -> Result<Option<String>, LineFault> {
         if self.rest.is_empty() {
-            return None;
+            return Ok(None);
         }
         self.line = self.next_line;
         let mut line = String::new();
@@ -92,14 +92,19 @@ impl<'a> ObjLines<'a> {
             };
             self.rest = rest;
             self.next_line += 1;
-            // Lossy, because a comment in Latin-1 is no reason to refuse the mesh.
-            let text = String::from_utf8_lossy(physical);
-            let text = text.split('#').next().unwrap_or_default().trim_end();
+            // A comment in Latin-1 is no reason to refuse the mesh.
+            let statement = physical.split(|&b| b == b'#').next().unwrap_or_default();
+            let text = std::str::from_utf8(statement).map_err(|_| LineFault {
+                line: self.next_line - 1,
+                message: "bytes that are not UTF-8 text".to_owned(),
+                help: "save the file as UTF-8; is it an OBJ file?",
+            })?;
+            let text = text.trim_end();
             match text.strip_suffix('\\') {
                 Some(start) if !rest.is_empty() => line.extend([start, " "]),
                 _ => {
                     line.push_str(text);
-                    return Some(line);
+                    return Ok(Some(line));
                 }
             }
         }
@@ -275,8 +280,9 @@ impl BufRead for ObjLines<'_> {
             self.out.clear();
             self.given = 0;
             let result = match self.logical_line() {
-                Some(line) => self.convert(&line),
-                None => {
+                Err(fault) => Err(fault),
+                Ok(Some(line)) => self.convert(&line),
+                Ok(None) => {
                     self.check_ranges().map_err(|fault| self.stop(fault))?;
                     break;
                 }

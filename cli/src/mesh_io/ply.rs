@@ -1,11 +1,12 @@
 //! PLY: ascii and binary, vertices with x y z (and nx ny nz, u v or s t), faces of any size.
 
 use super::{FileMesh, triangulate};
+use crate::coordinate::{LARGEST, is_usable};
 use crate::input_error::InputError;
 use crate::scene::NONE;
 use glam::{DVec2, DVec3, Vec3};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult};
 use std::io::Cursor;
 
 #[derive(Debug, Default)]
@@ -120,7 +121,24 @@ pub fn read_ply(name: &str, bytes: &[u8]) -> Result<FileMesh, InputError> {
         };
         result.map_err(|error| fault(name, bytes, &error))?;
     }
+    check_numbers(name, bytes, &header, &vertices)?;
     build(name, &vertices, &faces, has_normals, has_uvs)
+}
+
+/// Refuses numbers that are not finite or too large, with the line if they stand in text.
+fn check_numbers(name: &str, bytes: &[u8], header: &Header, vertices: &[Vertex]) -> Result<(), InputError> {
+    let is_bad = |v: &Vertex| !is_usable(v.position) || !v.normal.is_finite() || !is_usable(v.uv.extend(0.0));
+    let Some(index) = vertices.iter().position(is_bad) else { return Ok(()) };
+    let message = format!("vertex {index} (from 0) has a number that is not finite, or beyond ±{LARGEST:e}");
+    // One line for each vertex, if nothing else comes before them.
+    let is_text = header.encoding == Encoding::Ascii
+        && header.elements.keys().next().is_some_and(|first| first == "vertex");
+    let is_end = |line: &[u8]| line.trim_ascii_end() == b"end_header";
+    let end = bytes.split(|&b| b == b'\n').position(is_end).filter(|_| is_text);
+    Err(match end {
+        Some(end) => InputError::in_line(name, bytes, end + 2 + index, message),
+        None => InputError::of_file(name, message),
+    })
 }
 
 /// A header that promises more than the file can hold is refused before memory is asked for.
@@ -147,14 +165,6 @@ fn build(
     has_normals: bool,
     has_uvs: bool,
 ) -> Result<FileMesh, InputError> {
-    let bad =
-        vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite() || !v.uv.is_finite());
-    if let Some(index) = bad {
-        return Err(InputError::of_file(
-            name,
-            format!("vertex {index} (from 0) has a number that is not finite"),
-        ));
-    }
     let mut mesh = FileMesh {
         positions: vertices.iter().map(|v| v.position).collect(),
         normals: if has_normals { vertices.iter().map(|v| v.normal).collect() } else { Vec::new() },

@@ -1,16 +1,22 @@
 //! Options of every command that computes.
 
+use super::values;
 use crate::job::ProgressMode;
 use clap::ValueEnum;
+use std::num::NonZero;
 use std::path::PathBuf;
 
 /// Options of every command that computes.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "General")]
 pub struct Common {
-    /// Threads to compute with (default: all)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    /// Threads to compute with, 1 to 1024 (default: one for each processor). More than processors gain nothing: of a larger number,
+    /// as many are started as there are processors, or 16 if that is more. Results do not depend on it
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = values::threads)]
+    pub threads: Option<usize>,
+    /// Memory that may be used, such as 8G (default: what is free, within the limits of the system and of the container)
+    #[arg(long, value_name = "SIZE", env = "POINTILLIST_MEMORY", hide_env_values = true, value_parser = values::memory)]
+    pub memory: Option<u64>,
     /// Say nothing but errors
     #[arg(long, conflicts_with = "verbose")]
     pub quiet: bool,
@@ -44,7 +50,17 @@ pub struct TextOutput {
     pub path: PathBuf,
 }
 
+/// Threads that may be started on any machine, so that the number of threads can be tried out on a small one.
+const ALWAYS_ALLOWED: usize = 16;
+
 impl Common {
+    /// Threads to start.
+    #[must_use]
+    pub fn thread_count(&self) -> usize {
+        let processors = std::thread::available_parallelism().map_or(1, NonZero::get);
+        self.threads.map_or(processors, |threads| threads.min(processors.max(ALWAYS_ALLOWED)))
+    }
+
     /// The progress to show.
     pub fn progress_mode(&self) -> ProgressMode {
         match self.progress {
@@ -53,5 +69,18 @@ impl Common {
             None | Some(Progressive::Auto) if self.quiet => ProgressMode::Off,
             None | Some(Progressive::Auto) => ProgressMode::Auto,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_more_threads_are_started_than_are_of_use() {
+        let processors = std::thread::available_parallelism().map_or(1, NonZero::get);
+        let started = |threads| Common { threads, ..Common::default() }.thread_count();
+        assert_eq!([started(None), started(Some(1)), started(Some(16))], [processors, 1, 16]);
+        assert_eq!(started(Some(1024)), processors.clamp(ALWAYS_ALLOWED, 1024));
     }
 }

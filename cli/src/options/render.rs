@@ -5,6 +5,8 @@ use super::values::{self, Tile, Vector};
 use crate::error::CliError;
 use crate::image_io::Window;
 use crate::scene::Overrides;
+use crate::scene::description::view_fault;
+use glam::DVec3;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -58,7 +60,7 @@ pub struct CameraOptions {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub target: Option<Vector>,
     /// Up in the picture
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
     pub up: Option<Vector>,
     /// Vertical field of view in degrees
     #[arg(long, value_name = "DEG", value_parser = values::degrees)]
@@ -91,6 +93,23 @@ impl CameraOptions {
             CliError::Usage(format!("--tile {tile}: {} rows cannot be cut into more tiles", region.height()))
         })?;
         Ok((region, window))
+    }
+
+    /// Refuses a view that has no direction, whatever is looked at.
+    ///
+    /// # Errors
+    ///
+    /// [`CliError::Usage`] with the options at fault.
+    pub fn check_view(&self) -> Result<(), CliError> {
+        let (Some(Vector(eye)), Some(Vector(target))) = (self.eye, self.target) else { return Ok(()) };
+        let (eye, target) = (DVec3::from(eye), DVec3::from(target));
+        // Without `--up` the scene may have one; any that is not parallel will do here.
+        let up = self.up.map_or((target - eye).any_orthogonal_vector(), |Vector(up)| DVec3::from(up));
+        match view_fault(eye, target, up) {
+            None => Ok(()),
+            Some(fault) if eye == target => Err(CliError::Usage(format!("--eye and --target: {fault}"))),
+            Some(fault) => Err(CliError::Usage(format!("--up: {fault}"))),
+        }
     }
 
     /// What these options and `--set` change in a scene; the options win.

@@ -62,14 +62,14 @@ pub struct SurfaceOptions {
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
     pub passes: u8,
     /// With two passes, size of the finer buffer's pixels relative to the normal one's
-    #[arg(long, value_name = "F", default_value_t = 0.83, value_parser = values::positive)]
+    #[arg(long, value_name = "F", default_value_t = 0.83, value_parser = values::share_above_0)]
     pub finer: f64,
     /// Opacity of surfaces, 0 to 1: draws them translucent
-    #[arg(long, value_name = "A")]
+    #[arg(long, value_name = "A", value_parser = values::share)]
     pub alpha: Option<f32>,
     /// With --alpha, surfaces per pixel
-    #[arg(long, value_name = "N", default_value_t = 5)]
-    pub depth_layers: usize,
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=ibpr::Translucency::MOST_LAYERS as i64))]
+    pub depth_layers: u16,
     /// With --alpha, depth of a layer in spacings (the paper: 10)
     #[arg(long, value_name = "T", default_value_t = 5.0, value_parser = values::positive)]
     pub layer_threshold: f64,
@@ -86,10 +86,10 @@ pub struct SurfaceOptions {
     #[arg(long, value_name = "RULE", default_value = "even")]
     pub weights: WeightsValue,
     /// How far faces reach beyond the outermost points, in buffer pixels; 0 as printed
-    #[arg(long, value_name = "B", default_value_t = ibpr::Options::OUTLINE)]
+    #[arg(long, value_name = "B", default_value_t = ibpr::Options::OUTLINE, value_parser = values::share)]
     pub outline: f32,
     /// Fill gaps of less than 2^L buffer pixels
-    #[arg(long, value_name = "L", default_value_t = 2)]
+    #[arg(long, value_name = "L", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=i64::from(ibpr::Options::MOST_FILL)))]
     pub fill: u32,
 }
 
@@ -98,14 +98,14 @@ pub struct SurfaceOptions {
 #[command(next_help_heading = "Shading: colour × (A + (1 − A)·max(0, n·l))")]
 pub struct ShadingOptions {
     /// Direction towards the light in the world (default: from the eye)
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
     pub light: Option<Vector>,
     /// Share of light from everywhere, 0 to 1
-    #[arg(long, value_name = "A", default_value_t = 0.1)]
+    #[arg(long, value_name = "A", default_value_t = 0.1, value_parser = values::share)]
     pub ambient: f32,
     /// Eye-dome lighting: darken what lies behind its surroundings; a strength of 1 is usual
-    #[arg(long, value_name = "STRENGTH", num_args = 0..=1, default_missing_value = "1")]
-    pub edl: Option<f32>,
+    #[arg(long, value_name = "STRENGTH", num_args = 0..=1, default_missing_value = "1", value_parser = values::not_negative)]
+    pub edl: Option<f64>,
 }
 
 /// `--scale`.
@@ -193,14 +193,15 @@ impl ScanOptions {
         };
         options.translucency = surface.alpha.map(|alpha| ibpr::Translucency {
             alpha,
-            layers: surface.depth_layers,
+            layers: surface.depth_layers.into(),
             threshold: surface.layer_threshold as f32,
         });
         if let Some(Vector(light)) = self.shading.light {
             options.light = ibpr::Light::Towards(light.into());
         }
         options.ambient = self.shading.ambient;
-        options.eye_dome = self.shading.edl.map(|strength| ibpr::EyeDome { strength, radius: 2 });
+        options.eye_dome =
+            self.shading.edl.map(|strength| ibpr::EyeDome { strength: strength as f32, radius: 2 });
         options.surface_layers = !self.layers.is_empty();
         options
     }

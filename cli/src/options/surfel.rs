@@ -94,10 +94,10 @@ pub struct DiscOptions {
 #[command(next_help_heading = "Shading: colour × (A + (1 − A)·max(0, n·l))")]
 pub struct SurfelShading {
     /// Direction towards the light in the world (default: from the eye)
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
     pub light: Option<Vector>,
     /// Share of light from everywhere, 0 to 1
-    #[arg(long, value_name = "A", allow_negative_numbers = true, default_value_t = 0.1)]
+    #[arg(long, value_name = "A", allow_negative_numbers = true, default_value_t = 0.1, value_parser = values::share)]
     pub ambient: f32,
 }
 

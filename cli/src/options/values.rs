@@ -1,5 +1,6 @@
 //! Values of options: vectors, sizes, windows, tiles.
 
+use crate::coordinate::LARGEST;
 use crate::image_io::Window;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -14,8 +15,8 @@ impl FromStr for Vector {
     fn from_str(text: &str) -> Result<Self, String> {
         let numbers: Vec<f64> = list(text, ',', "three numbers such as 1,2.5,-3")?;
         match numbers[..] {
-            [x, y, z] if numbers.iter().all(|n| n.is_finite()) => Ok(Self([x, y, z])),
-            [_, _, _] => Err("numbers must be finite".to_owned()),
+            [x, y, z] if numbers.iter().all(|n| n.abs() <= LARGEST) => Ok(Self([x, y, z])),
+            [_, _, _] => Err(format!("numbers must be finite, and at most {LARGEST:e}")),
             _ => Err(format!("{} numbers; three are needed, such as 1,2.5,-3", numbers.len())),
         }
     }
@@ -100,6 +101,27 @@ pub(super) fn window(text: &str) -> Result<Window, String> {
     }
 }
 
+/// `X,Y,Z` that is not zero.
+pub(super) fn direction(text: &str) -> Result<Vector, String> {
+    let direction: Vector = text.parse()?;
+    if direction.0.iter().all(|n| *n == 0.0) {
+        return Err("must be a direction, which 0,0,0 is not".to_owned());
+    }
+    Ok(direction)
+}
+
+/// A share, 0 to 1.
+pub(super) fn share(text: &str) -> Result<f32, String> {
+    let wanted = || "must be a number from 0 to 1".to_owned();
+    text.parse().ok().filter(|n| (0.0..=1.0).contains(n)).ok_or_else(wanted)
+}
+
+/// A share above 0.
+pub(super) fn share_above_0(text: &str) -> Result<f64, String> {
+    let wanted = || "must be a number above 0 and at most 1".to_owned();
+    text.parse().ok().filter(|n| *n > 0.0 && *n <= 1.0).ok_or_else(wanted)
+}
+
 /// A field of view.
 pub(super) fn degrees(text: &str) -> Result<f64, String> {
     let angle = text.parse::<f64>().map_err(|_| "must be a number of degrees".to_owned())?;
@@ -153,16 +175,54 @@ pub(super) fn response(text: &str) -> Result<ResponseCurve, String> {
     }
 }
 
+/// The range of sizes: they are computed with in 32 bits, too.
+const SIZES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+
 /// A size.
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().map_err(|_| "must be a number".to_owned())?;
-    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be more than 0".to_owned()) }
+    match number {
+        _ if SIZES.contains(&number) => Ok(number),
+        _ if number > 0.0 => Err(format!("must be from {:e} to {:e}", SIZES.start(), SIZES.end())),
+        _ => Err("must be more than 0".to_owned()),
+    }
+}
+
+/// A number of threads.
+pub(super) fn threads(text: &str) -> Result<usize, String> {
+    const MOST: usize = 1024;
+    let wrong = || format!("must be a whole number from 1 to {MOST}");
+    text.parse().ok().filter(|n| (1..=MOST).contains(n)).ok_or_else(wrong)
+}
+
+/// Bytes: `8G`, `512M`, `1.5GiB`.
+pub(super) fn memory(text: &str) -> Result<u64, String> {
+    let wrong = || "must be a size such as 512M or 8G (K, M, G and T are powers of 1024)".to_owned();
+    let upper = text.trim().to_ascii_uppercase();
+    let amount = upper.strip_suffix("IB").or_else(|| upper.strip_suffix('B')).unwrap_or(&upper);
+    let unit = amount.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(amount.len());
+    let power = match &amount[unit..] {
+        "" => 0,
+        "K" => 1,
+        "M" => 2,
+        "G" => 3,
+        "T" => 4,
+        _ => return Err(wrong()),
+    };
+    let number: f64 = amount[..unit].trim().parse().map_err(|_| wrong())?;
+    let bytes = number * 1024_f64.powi(power);
+    // Far beyond any machine, and far within the range of the type.
+    if (1.0..1e18).contains(&bytes) { Ok(bytes as u64) } else { Err(wrong()) }
 }
 
 /// A limit.
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().map_err(|_| "must be a number".to_owned())?;
-    if number >= 0.0 { Ok(number) } else { Err("must be 0 or more".to_owned()) }
+    if (0.0..=*SIZES.end()).contains(&number) {
+        Ok(number)
+    } else {
+        Err("must be 0 or more, and finite".to_owned())
+    }
 }
 
 fn list<T: FromStr>(text: &str, separator: char, wanted: &str) -> Result<Vec<T>, String> {

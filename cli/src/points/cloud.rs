@@ -2,6 +2,7 @@
 
 use crate::cloud_io::{self, CloudOptions};
 use crate::input_error::InputError;
+use crate::memory::Meter;
 use glam::{DVec3, Vec3};
 use pointillist_surfel::{Cloud, Points, SurfelError};
 use std::path::{Path, PathBuf};
@@ -18,7 +19,12 @@ pub struct PointSet {
     files: Vec<(PathBuf, usize)>,
     /// What may be wrong, with the name of the file.
     pub warnings: Vec<String>,
+    /// What its points take.
+    meter: Meter,
 }
+
+/// Bytes of a point: as it is kept here, and what the renderer makes of it.
+const POINT_BYTES: u64 = 160;
 
 /// Appends a file's part of an attribute, which counts only if all files have it.
 fn append<T: Clone>(all: &mut Option<Vec<T>>, part: Option<&[T]>) {
@@ -51,7 +57,10 @@ impl PointSet {
             append(&mut self.normals, block.normals);
             append(&mut self.colours, block.colours);
             append(&mut self.radii, block.radii);
-            Ok(())
+            let taken = block.positions.len() as u64 * POINT_BYTES;
+            self.meter
+                .add(taken, || "its points take".to_owned())
+                .map_err(|error| error.in_file(path.display().to_string()))
         })?;
         let name = path.display();
         let mut warn = |warning: &str| self.warnings.push(format!("{name}: {warning}"));

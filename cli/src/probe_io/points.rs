@@ -1,6 +1,7 @@
 //! Lists of positions, and of cells between them, as text or raw binary.
 
 use super::read_probes;
+use crate::coordinate::LARGEST;
 use crate::input_error::InputError;
 use crate::scene::read_file;
 use glam::DVec3;
@@ -69,8 +70,8 @@ pub fn read_rows<const N: usize>(path: &Path, names: &str) -> Result<Vec<[f64; N
         for (k, value) in row.iter_mut().enumerate() {
             let word = words.next().ok_or_else(|| wrong(format!("only {k} numbers of {N}")))?;
             let number: f64 = word.parse().map_err(|_| wrong(format!("`{word}` is not a number")))?;
-            if !number.is_finite() {
-                return Err(wrong(format!("`{word}` is not finite")));
+            if !number.is_finite() || number.abs() > LARGEST {
+                return Err(wrong(format!("`{word}` is not finite, or beyond ±{LARGEST:e}")));
             }
             *value = number;
         }

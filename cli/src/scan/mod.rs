@@ -1,16 +1,21 @@
 //! Range scans for `scan`: files in, points in the world out.
 
+mod mesh;
 mod mesh_points;
 
 use crate::cloud_io::{self, CloudOptions, Pose};
 use crate::error::CliError;
 use crate::input_error::InputError;
-use crate::scene::{self, Mesh, Overrides, Scene};
+use crate::memory::Meter;
+use crate::scene::Camera;
 use glam::{DVec3, Vec3};
-use mesh_points::points_on;
+use mesh::LoadedMesh;
 use pointillist_ibpr as ibpr;
 use std::path::Path;
 use twox_hash::XxHash3_64;
+
+/// Bytes of a point: as it is kept here, and what the renderer makes of it.
+const POINT_BYTES: u64 = 48;
 
 /// A file's points in the world.
 #[derive(Clone, Debug, Default)]
@@ -28,10 +33,14 @@ pub struct LoadedScan {
 pub struct ScanSet {
     /// In the order of the command line.
     pub scans: Vec<LoadedScan>,
+    /// Meshes that get points once the view is known, after the scans.
+    meshes: Vec<LoadedMesh>,
     /// What may be wrong, with the name of the file.
     pub warnings: Vec<String>,
     /// Points left out because they were not finite.
     pub dropped: u64,
+    /// What its points take.
+    meter: Meter,
 }
 
 /// How files become scans.
@@ -44,9 +53,6 @@ pub struct LoadOptions {
     /// Take the vertices of meshes in the place of points all over them.
     pub vertices: bool,
 }
-
-/// Points that a mesh gets if nothing says how dense they should be.
-const MESH_POINTS: f64 = 400_000.0;
 
 impl ScanSet {
     /// Reads scans (`.ply`, `.xyz`, …), lists of scans (`.conf`) and meshes (`.obj`, `.ply` with faces).
@@ -76,11 +82,36 @@ impl ScanSet {
                 }
             }
         }
-        let spacing = options.spacing.or_else(|| set.typical_spacing());
         for path in meshes {
-            set.scans.push(of_mesh(path, spacing, options.vertices)?);
+            let mesh = LoadedMesh::load(path)?;
+            if options.vertices {
+                set.scans.push(mesh.into_vertices(options.spacing));
+            } else {
+                set.meshes.push(mesh.with_area()?);
+            }
         }
         Ok(set)
+    }
+
+    /// All positions that there are so far: those of scans, and the corners of meshes.
+    pub fn positions(&self) -> impl Iterator<Item = DVec3> + '_ {
+        let scans = self.scans.iter().flat_map(|scan| scan.positions.iter().copied());
+        scans.chain(self.meshes.iter().flat_map(LoadedMesh::corners))
+    }
+
+    /// Puts points on the meshes, as many as a picture of the view needs: as far apart as pixels, or as the points of the scans
+    /// if those are farther apart, or as `spacing` says.
+    pub fn cover_meshes(&mut self, camera: &Camera, size: [u32; 2], spacing: Option<f64>) {
+        let meshes = std::mem::take(&mut self.meshes);
+        if meshes.is_empty() {
+            return;
+        }
+        let least = spacing.or_else(|| self.typical_spacing());
+        for (mesh, most) in meshes.iter().zip(mesh::shares(&meshes)) {
+            let (scan, warning) = mesh.covered(camera, size, least, most);
+            self.warnings.extend(warning);
+            self.scans.push(scan);
+        }
     }
 
     /// Adds a file's points and returns how many faces it has beside.
@@ -93,7 +124,10 @@ impl ScanSet {
                 None => scan.positions.extend_from_slice(block.positions),
             }
             scan.colours.extend_from_slice(block.colours.unwrap_or_default());
-            Ok(())
+            let taken = block.positions.len() as u64 * POINT_BYTES;
+            self.meter
+                .add(taken, || "its points take".to_owned())
+                .map_err(|error| error.in_file(path.display().to_string()))
         })?;
         let name = path.display();
         self.warnings.extend(summary.warnings.iter().map(|warning| format!("{name}: {warning}")));
@@ -154,33 +188,4 @@ impl LoadedScan {
         }
         scan
     }
-}
-
-/// Points all over a mesh, or its vertices, with the diffuse colours of its materials.
-fn of_mesh(path: &Path, spacing: Option<f64>, vertices: bool) -> Result<LoadedScan, InputError> {
-    let Scene { mesh, materials, .. } = scene::load(path, &Overrides::default())?;
-    if vertices {
-        return Ok(LoadedScan { positions: mesh.positions, spacing, ..LoadedScan::default() });
-    }
-    let spacing = spacing.unwrap_or_else(|| (area(&mesh) / MESH_POINTS).sqrt());
-    let mut scan = LoadedScan { spacing: Some(spacing).filter(|s| *s > 0.0), ..LoadedScan::default() };
-    for (triangle, &material) in mesh.triangles.iter().zip(&mesh.material_of) {
-        let start = scan.positions.len();
-        points_on(triangle.map(|v| mesh.positions[v as usize]), spacing, &mut scan.positions);
-        let colour = materials.get(material as usize).map_or([0.8; 3], |m| m.surface.diffuse.to_array());
-        scan.colours.resize(scan.colours.len() + scan.positions.len() - start, colour);
-    }
-    if scan.positions.is_empty() {
-        let error = InputError::of_file(path.display().to_string(), "has no area to put points on");
-        return Err(error.with_help("--vertices takes its vertices as points"));
-    }
-    Ok(scan)
-}
-
-fn area(mesh: &Mesh) -> f64 {
-    let of = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
-        0.5 * (b - a).cross(c - a).length()
-    };
-    mesh.triangles.iter().map(of).sum()
 }

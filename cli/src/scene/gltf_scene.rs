@@ -10,8 +10,9 @@ use std::path::Path;
 /// Reads a glTF and the buffers that it names, from its own folder.
 pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<FileMesh, InputError> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    let open =
-        |name: &str| std::fs::read(folder.join(name)).map_err(|error| format!("cannot be read: {error}"));
+    let open = |name: &str| {
+        crate::memory::read(&folder.join(name)).map_err(|error| format!("cannot be read: {error}"))
+    };
     read_gltf(&path.display().to_string(), bytes, &open)
 }
 

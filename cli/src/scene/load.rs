@@ -109,7 +109,7 @@ fn kind_of(path: &Path) -> Result<Kind, InputError> {
 
 /// The bytes of a file.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
-    std::fs::read(path).map_err(|error| cannot_read(&path.display().to_string(), &error))
+    crate::memory::read(path).map_err(|error| cannot_read(&path.display().to_string(), &error))
 }
 
 fn cannot_read(name: &str, error: &std::io::Error) -> InputError {

@@ -44,7 +44,7 @@ impl MeasuredTable {
         if let Some(known) = self.known.get(path) {
             return Ok(known.clone());
         }
-        let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+        let bytes = crate::memory::read(path).map_err(|error| format!("cannot be read: {error}"))?;
         let table = MerlTable::from_bytes(&bytes).map_err(|error| format!("cannot be used: {error}"))?;
         let fingerprint = twox_hash::XxHash3_64::oneshot(&bytes);
         let measured = MeasuredBrdf { table: Arc::new(table), fingerprint };

@@ -8,7 +8,9 @@ use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene, SkyLight};
 use super::{auto_uv, fingerprint, framing, gltf_scene, load, plain_model, smooth};
+use crate::coordinate::{LARGEST, is_usable};
 use crate::input_error::InputError;
+use crate::memory;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::probe_io::read_probes;
 use crate::radiosity::{Lightmap, read_baked};
@@ -219,7 +221,7 @@ impl<'a> Builder<'a> {
             let error = document.error(reference.span, message);
             return Err(error.with_help("meshes end in .obj, .ply, .gltf or .glb"));
         }
-        let bytes = std::fs::read(path).map_err(|error| {
+        let bytes = memory::read(path).map_err(|error| {
             let message = format!("mesh `{name}` cannot be read: {error}");
             document.error(reference.span, message).with_help("paths are relative to the scene file")
         })?;
@@ -261,8 +263,10 @@ impl<'a> Builder<'a> {
             mesh.colors.extend_from_slice(&file.colors);
             mesh.colors.resize(mesh.positions.len(), Vec3::ONE);
         }
-        if let Some(index) = mesh.positions[first_position..].iter().position(|p| !p.is_finite()) {
-            let message = format!("the object's transform takes vertex {index} out of the range of numbers");
+        if let Some(index) = mesh.positions[first_position..].iter().position(|p| !is_usable(*p)) {
+            let message = format!(
+                "the object's transform takes vertex {index} out of the range of numbers, ±{LARGEST:e}"
+            );
             return Err(self.description.document.error(object.mesh.span, message));
         }
         // A mirrored object keeps its front in front.

@@ -2,9 +2,8 @@
 
 use super::{Texels, Texture, linear_from_srgb};
 use crate::image_io;
-use image::{DynamicImage, ImageReader};
+use image::DynamicImage;
 use std::collections::HashMap;
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 /// What a texture is for, which says how it is decoded.
@@ -41,7 +40,7 @@ impl TextureTable {
         if let Some(&number) = self.known.get(&key) {
             return Ok(number);
         }
-        let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+        let bytes = crate::memory::read(path).map_err(|error| format!("cannot be read: {error}"))?;
         self.add(key, &bytes)
     }
 
@@ -100,9 +99,7 @@ fn read(path: &Path, bytes: &[u8], purpose: Purpose) -> Result<Texture, String> 
         let buffer = image::ImageBuffer::from_raw(width, height, flat);
         DynamicImage::ImageRgba32F(buffer.ok_or("has an impossible size")?)
     } else {
-        let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
-        let reader = reader.map_err(|error| format!("cannot be decoded: {error}"))?;
-        reader.decode().map_err(|error| format!("cannot be decoded: {error}"))?
+        image_io::decode_image(bytes).map_err(|error| format!("cannot be decoded: {error}"))?
     };
     let (width, height) = (image.width(), image.height());
     if width == 0 || height == 0 {

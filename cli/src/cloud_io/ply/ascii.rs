@@ -27,7 +27,7 @@ pub(super) fn vertices(
             line.error(name, None, message).with_help("write colours as uchar from 0 to 255")
         })?;
         if let Some(grid) = &mut grid {
-            grid.keep(point.position);
+            grid.keep(point.position).map_err(|error| error.in_file(name))?;
         }
         gather.push(&point, At::Line(line.number))?;
     }

@@ -31,7 +31,7 @@ pub(super) fn vertices(
             .with_help("write colours as uchar from 0 to 255")
         })?;
         if let Some(grid) = &mut grid {
-            grid.keep(point.position);
+            grid.keep(point.position).map_err(|error| error.in_file(source.name()))?;
         }
         gather.push(&point, At::Byte(start))?;
     }

@@ -2,6 +2,7 @@
 
 use super::super::block::RangeGrid;
 use super::header::Header;
+use crate::memory::{MemoryError, Meter};
 use glam::{DVec3, Vec3};
 
 /// Reads the cells of a `range_grid`.
@@ -20,7 +21,11 @@ pub(super) struct GridReader {
     cell: u64,
     filled: u64,
     distances: Vec<f32>,
+    meter: Meter,
 }
+
+/// A position and the distance to a neighbour.
+const GRID_POINT_BYTES: u64 = 16;
 
 impl GridReader {
     /// For a header with a grid, if the grid comes after the points and has as many cells as its sides say.
@@ -48,15 +53,17 @@ impl GridReader {
             cell: 0,
             filled: 0,
             distances: Vec::new(),
+            meter: Meter::default(),
         })
     }
 
     /// Takes the next point.
-    pub(super) fn keep(&mut self, position: DVec3) {
+    pub(super) fn keep(&mut self, position: DVec3) -> Result<(), MemoryError> {
         if self.origin.is_none() && position.is_finite() {
             self.origin = Some(position);
         }
         self.positions.push((position - self.origin.unwrap_or_default()).as_vec3());
+        self.meter.add(GRID_POINT_BYTES, || "the points of its grid take".to_owned())
     }
 
     /// Takes the next cell: the vertex in it, or nothing for a hole.

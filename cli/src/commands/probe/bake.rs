@@ -5,6 +5,7 @@ use super::solids::{Outcome, Solids};
 use super::{check_output, failed, overrides, write};
 use crate::commands::Report;
 use crate::error::CliError;
+use crate::memory;
 use crate::options::{BakeOptions, What};
 use crate::pipeline::{Prepared, fingerprints};
 use crate::probe_io::{Distances, ProbeEntry, ProbeFile, read_probes};
@@ -30,6 +31,7 @@ pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
     let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
     scene.warnings.iter().for_each(|warning| report.warn(warning));
     let given = report.stats.stage("load", || read_probes(&options.probes))?;
+    check_memory(given.probes.len(), options)?;
     let prepared = Prepared::new(&scene, &report.stats).map_err(failed)?;
     let solids = Solids::new(&prepared, &scene);
     let (mut file, positions) = settled(&given, &solids, &scene, options, &report)?;
@@ -47,6 +49,16 @@ pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
         file.probes.len()
     ));
     report.finish()
+}
+
+/// Refuses more harmonics and distances than memory can hold.
+fn check_memory(probes: usize, options: &BakeOptions) -> Result<(), CliError> {
+    let places = probes as u128 + u128::from(options.fit);
+    let (bands, side) = (u128::from(options.order) + 1, u128::from(options.distances));
+    // Three colours of each coefficient in double precision, this round's and the last's; two numbers for a direction.
+    let needed = places * (bands * bands * 3 * 8 * 2 + side * side * 2 * 4);
+    memory::check(needed, || format!("{places} places (probes and --fit) with --order and --distances take"))
+        .map_err(|error| CliError::Usage(error.with_help()))
 }
 
 /// What earlier runs left in the output.

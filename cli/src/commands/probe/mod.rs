@@ -11,7 +11,7 @@ mod tetra;
 
 pub(super) use merge::merge_probes;
 
-use super::report::write_text;
+use super::report::{self, write_text};
 use crate::error::CliError;
 use crate::image_io::write_atomically;
 use crate::options::ProbeCommand;
@@ -43,10 +43,10 @@ pub(super) fn is_probe_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json") || e.eq_ignore_ascii_case("probes"))
 }
 
-/// Refuses names that say nothing about how probes are written.
+/// Refuses names that say nothing about how probes are written, and files that cannot be written.
 fn check_output(path: &Path) -> Result<(), CliError> {
     if path == Path::new("-") || is_probe_file(path) {
-        return Ok(());
+        return report::check_output(path);
     }
     Err(CliError::Usage(format!("`{}`: a file of probes ends in .json or .probes", path.display())))
 }

@@ -6,6 +6,7 @@ use crate::commands::Report;
 use crate::error::CliError;
 use crate::input_error::InputError;
 use crate::job::Progress;
+use crate::memory;
 use crate::options::{Inside, PlaceOptions, Strategy};
 use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_all};
 use crate::probe_io::ProbeFile;
@@ -24,6 +25,7 @@ const CANDIDATES: usize = 8;
 pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
     check_output(&options.output)?;
+    check_memory(options)?;
     let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
     scene.warnings.iter().for_each(|warning| report.warn(warning));
     if scene.mesh.positions.is_empty() && options.low.is_none() {
@@ -45,6 +47,20 @@ pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
     let seconds = report.stats.elapsed().as_secs_f64();
     report.note(&format!("{}: {} probes in {seconds:.2} s", options.output.display(), positions.len()));
     report.finish()
+}
+
+/// Refuses more probes than memory can hold.
+fn check_memory(options: &PlaceOptions) -> Result<(), CliError> {
+    let grid = options.grid.map(|sides| sides.iter().map(|&n| n as u128).product());
+    let count = u128::from(options.count);
+    let (candidates, bytes): (u128, u128) = match options.strategy {
+        // What each sees, and how far it sees in all directions.
+        Strategy::Cluster => (grid.unwrap_or(count * CANDIDATES as u128), 4096),
+        Strategy::Grid => (grid.unwrap_or(count), 128),
+        Strategy::Random | Strategy::Vertices => (count, 128),
+    };
+    memory::check(candidates * bytes, || format!("{candidates} places (--count, --grid) take"))
+        .map_err(|error| CliError::Usage(error.with_help()))
 }
 
 fn candidates(scene: &Scene, options: &PlaceOptions) -> Vec<DVec3> {

@@ -1,7 +1,7 @@
 //! `probe query`.
 
 use crate::commands::Report;
-use crate::commands::report::write_text;
+use crate::commands::report::{check_output, write_text};
 use crate::error::CliError;
 use crate::options::QueryOptions;
 use crate::probe_io::{read_probes, read_rows};
@@ -10,6 +10,7 @@ use pointillist_shprobe::{Field, Hint, ProbeError};
 
 pub(super) fn run(options: &QueryOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
+    check_output(&options.output.path)?;
     let name = options.probes.display().to_string();
     let file = report.stats.stage("load", || read_probes(&options.probes))?;
     let field = report.stats.stage("load", || file.field(&name))?;

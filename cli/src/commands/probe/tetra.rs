@@ -1,7 +1,7 @@
 //! `probe tetra`.
 
 use crate::commands::Report;
-use crate::commands::report::write_text;
+use crate::commands::report::{check_output, write_text};
 use crate::error::CliError;
 use crate::input_error::InputError;
 use crate::job::ThreadClock;
@@ -14,6 +14,7 @@ use std::path::Path;
 
 pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
+    check_output(&options.output.path)?;
     let points = report.stats.stage("load", || read_points(&options.points))?;
     let name = options.points.display().to_string();
     let refused = |error: ProbeError| {

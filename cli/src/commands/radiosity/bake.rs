@@ -1,9 +1,10 @@
 //! `radiosity SCENE`.
 
 use crate::commands::Report;
-use crate::commands::report::write_text;
+use crate::commands::report::{check_output, write_text};
 use crate::error::CliError;
 use crate::job::Progress;
+use crate::memory;
 use crate::options::{FormFactorKind, LinkKind, RadiosityBakeOptions, SolveMethod};
 use crate::radiosity::{BakedFile, Lamps, SceneSurfaces, scene_surfaces, with_lamps};
 use crate::scene::{self, Overrides, Scene};
@@ -53,9 +54,21 @@ fn check(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     let output = &options.output;
     let known = output.extension().is_some_and(|e| e == "json" || e == "ply");
     if known || output == Path::new("-") {
-        return Ok(());
+        options.factors.as_deref().map_or(Ok(()), check_output)?;
+        return check_output(output);
     }
     Err(CliError::Usage(format!("`{}`: baked light ends in .json or .ply", output.display())))
+}
+
+/// Bytes of a patch or a group of patches at least, before anything is linked.
+const ELEMENT_BYTES: u128 = 512;
+/// Bytes of a link between two patches at least, seen from either.
+const LINK_BYTES: u128 = 24;
+
+/// How many patches and groups memory has room for.
+fn affordable_elements() -> usize {
+    let fits = |bytes: u64| usize::try_from(u128::from(bytes) / ELEMENT_BYTES).unwrap_or(usize::MAX);
+    memory::available_bytes().map_or(usize::MAX, fits)
 }
 
 struct Bake<'a> {
@@ -106,7 +119,7 @@ impl Bake<'_> {
             .with_smallest_patch(options.adaptive.unwrap_or(patch))
             .with_least_factor(options.least_factor)
             // A patch of four counts five elements.
-            .with_max_elements(options.max_patches.saturating_mul(2));
+            .with_max_elements(options.max_patches.saturating_mul(2).min(affordable_elements()));
         let new = |settings: &SceneOptions| {
             radiosity::Scene::new(&self.surfaces.surfaces, settings).map_err(|e| self.refused(&e))
         };
@@ -120,6 +133,7 @@ impl Bake<'_> {
             }
         };
         if !grouped {
+            self.check_full_links(plain.patch_count())?;
             return Ok(plain);
         }
         settings = settings.with_tolerance(Some(options.tolerance));
@@ -144,12 +158,7 @@ impl Bake<'_> {
             | ReflectanceAboveOne { surface, .. }
             | Emission { surface, .. }
             | EmitterWithoutArea { surface } => *surface,
-            RadiosityError::TooManyPatches { .. } => {
-                let limit = self.options.max_patches;
-                let message =
-                    format!("more than {limit} patches: use a larger --patch, or a larger --max-patches");
-                return CliError::Usage(message);
-            }
+            RadiosityError::TooManyPatches { limit } => return self.too_many(*limit),
             _ => return CliError::Failed(error.to_string()),
         };
         let mesh = &self.scene.mesh;
@@ -159,6 +168,30 @@ impl Bake<'_> {
         let name = self.options.scene.as_deref().unwrap_or(Path::new("")).display().to_string();
         let message = format!("triangle {face} (of `{object}`, material `{material}`): {error}");
         CliError::Input(crate::input_error::InputError::of_file(name, message))
+    }
+
+    /// The patches are more than asked for, or than there is memory for.
+    fn too_many(&self, elements: usize) -> CliError {
+        let most = self.options.max_patches;
+        if elements >= most.saturating_mul(2) {
+            let message =
+                format!("more than {most} patches: use a larger --patch, or a larger --max-patches");
+            return CliError::Usage(message);
+        }
+        let needed = elements as u128 * ELEMENT_BYTES;
+        let error = memory::MemoryError {
+            what: format!("more than {} patches take more than", elements / 2),
+            needed,
+            available: memory::available_bytes().unwrap_or(u64::MAX),
+        };
+        CliError::Usage(format!("{}; use a larger --patch", error.with_help()))
+    }
+
+    /// Refuses links of each patch with each other that memory cannot hold.
+    fn check_full_links(&self, patches: usize) -> Result<(), CliError> {
+        let needed = (patches as u128).pow(2) * LINK_BYTES;
+        memory::check(needed, || format!("the links of {patches} patches with each other take"))
+            .map_err(|error| CliError::Usage(format!("{}; or use --links hierarchical", error.with_help())))
     }
 
     fn tell(&self, transport: &Transport, solution: &Solution) {

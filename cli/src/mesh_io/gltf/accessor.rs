@@ -22,11 +22,9 @@ pub(super) fn numbers<const N: usize>(
         let size = kind.size();
         let mut numbers = [0.0; N];
         for (i, number) in numbers.iter_mut().enumerate() {
-            *number = (decode(kind, &element[i * size..(i + 1) * size]) * scale).max(if scale < 1.0 {
-                -1.0
-            } else {
-                f64::MIN
-            });
+            let stored = decode(kind, &element[i * size..(i + 1) * size]);
+            // −128 of 127 is −1. Only of whole numbers: `max` would hide a NaN.
+            *number = if scale < 1.0 { (stored * scale).max(-1.0) } else { stored };
         }
         list.push(numbers);
     })?;

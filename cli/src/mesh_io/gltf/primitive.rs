@@ -2,6 +2,7 @@
 
 use super::accessor::{indices, numbers};
 use super::bytes::Buffers;
+use crate::coordinate::{LARGEST, is_usable};
 use crate::mesh_io::FileMesh;
 use crate::scene::NONE;
 use ::gltf::Semantic;
@@ -32,8 +33,8 @@ pub(super) fn append(
         return Err("more vertices than can be numbered in 32 bits".to_owned());
     }
     mesh.positions.extend(positions.into_iter().map(|p| world.transform_point3(DVec3::from_array(p))));
-    if mesh.positions[base[0]..].iter().any(|p| !p.is_finite()) {
-        return Err("its node takes it out of the range of numbers".to_owned());
+    if mesh.positions[base[0]..].iter().any(|p| !is_usable(*p)) {
+        return Err(format!("a vertex is beyond ±{LARGEST:e} where its node puts it"));
     }
     let has_normals = append_normals(primitive, world.matrix3, count, buffers, mesh)?;
     let has_uvs = append_uvs(primitive, count, buffers, mesh)?;

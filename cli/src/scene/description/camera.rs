@@ -75,7 +75,7 @@ fn check(table: &Table<'_>, eye: DVec3, target: DVec3, up: DVec3) -> Result<(), 
 }
 
 /// What is wrong with a camera in this place, if anything.
-pub(in crate::scene) fn view_fault(eye: DVec3, target: DVec3, up: DVec3) -> Option<&'static str> {
+pub(crate) fn view_fault(eye: DVec3, target: DVec3, up: DVec3) -> Option<&'static str> {
     let unit = |v: DVec3| (v / v.abs().max_element()).normalize_or_zero();
     let view = unit(target - eye);
     if eye == target || view == DVec3::ZERO {

@@ -6,7 +6,7 @@ mod materials;
 mod objects;
 mod render;
 
-pub(super) use camera::view_fault;
+pub(crate) use camera::view_fault;
 pub use camera::{CameraDescription, DEFAULT_FOV_DEG};
 pub use lights::LightDescription;
 pub use materials::{DEFAULT_ALBEDO, MaterialDescription, SurroundingsDescription, TextureReference};

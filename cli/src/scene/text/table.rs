@@ -285,12 +285,17 @@ impl<'a> Table<'a> {
 
     fn finite(&self, key: &str, node: &Node) -> Result<f64, InputError> {
         match node.value {
-            Value::Number(number) if number.is_finite() => Ok(number),
-            Value::Number(_) => Err(self.out_of_range(key, node, "finite")),
+            Value::Number(number) if number.abs() <= LARGEST_NUMBER => Ok(number),
+            Value::Number(_) => {
+                Err(self.out_of_range(key, node, &format!("finite, and at most {LARGEST_NUMBER:e}")))
+            }
             _ => Err(self.wrong(key, node, "a number")),
         }
     }
 }
+
+/// The largest number of a scene: colours and sizes are computed with in 32 bits, and multiplied by each other.
+const LARGEST_NUMBER: f64 = 1e30;
 
 /// The word that was probably meant, if one is near enough.
 fn nearest<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
