@@ -1,8 +1,8 @@
 //! `pointillist dice`: polygons in as JSON lines, pieces or cell areas out as JSON lines.
 
-use std::io::{BufRead, Write};
+use std::io::Write;
 
-use crate::json_lines::{JsonLinesError, shorten, strip_place};
+use crate::json_lines::{JsonLinesError, Lines, shorten, strip_place};
 use glam::{DVec2, dvec2};
 use pointillist_dice::{Accumulator, DiceError, Grid, accumulate, split};
 use serde::{Deserialize, Serialize};
@@ -48,34 +48,23 @@ struct CellFields {
 const EXAMPLE: &str =
     r#"a line looks like {"polygon":[[0,0],[1,0],[0,1]],"grid":{"origin":[0,0],"cell":[1,1]}}"#;
 
-/// Cuts every polygon of `input` by its grid. Blank lines are skipped; every other line gives one line of output:
+/// Cuts every polygon of `lines` by its grid. Blank lines are skipped; every other line gives one line of output:
 /// its pieces, or with `areas` (which accepts concave polygons) its cells. Numbers read back to the same value.
+///
+/// Answers are handed on whenever the next line is not there yet, so that it may depend on them.
 ///
 /// # Errors
 /// Stops at the first line that cannot be used. The lines before it have been written.
-pub fn run(
-    input: &mut dyn BufRead,
-    output: &mut dyn Write,
-    areas: bool,
-    source: &str,
-) -> Result<(), JsonLinesError> {
+pub fn run(lines: &mut Lines<'_>, output: &mut dyn Write, areas: bool) -> Result<(), JsonLinesError> {
     let mut scratch = Accumulator::new();
-    let (mut text, mut line) = (String::new(), 0);
-    loop {
-        line += 1;
-        text.clear();
-        let read = input.read_line(&mut text);
-        let count =
-            read.map_err(|error| JsonLinesError::Read { source_name: source.to_owned(), line, error })?;
-        if count == 0 {
-            return output.flush().map_err(JsonLinesError::Write);
-        }
-        if text.trim().is_empty() {
-            continue;
-        }
+    while let Some((line, text)) = lines.next_line()? {
         let result = answer(&text, output, areas, &mut scratch);
-        result.map_err(|refusal| refusal.into_error(source, line, &text))?;
+        result.map_err(|refusal| refusal.into_error(lines.source(), line, &text))?;
+        if !lines.at_hand() {
+            output.flush().map_err(JsonLinesError::Write)?;
+        }
     }
+    output.flush().map_err(JsonLinesError::Write)
 }
 
 /// Why one line was refused.
@@ -217,11 +206,12 @@ fn way_out(error: DiceError) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use super::run;
+    use super::{Lines, run};
 
     fn answer(input: &str, areas: bool) -> Result<String, String> {
         let mut output = Vec::new();
-        run(&mut input.as_bytes(), &mut output, areas, "shapes.jsonl").map_err(|e| e.to_string())?;
+        let mut lines = Lines::new(Box::new(input.as_bytes()), "shapes.jsonl");
+        run(&mut lines, &mut output, areas).map_err(|e| e.to_string())?;
         String::from_utf8(output).map_err(|e| e.to_string())
     }
 

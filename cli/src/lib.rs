@@ -10,6 +10,7 @@ pub mod dice_command;
 mod error;
 pub mod factors_command;
 pub mod image_io;
+pub mod input;
 mod input_error;
 pub mod job;
 pub mod json_lines;

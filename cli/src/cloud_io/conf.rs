@@ -2,9 +2,9 @@
 
 use super::number::{Word, Words, parse_f64};
 use super::source::{Line, Source};
+use crate::input;
 use crate::input_error::InputError;
 use glam::{DQuat, DVec3, dvec3};
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// How far the length of a quaternion may be from 1. The files have seven digits; what is further off is no rotation, and
@@ -63,10 +63,10 @@ pub struct Conf {
 /// The file cannot be read or names no scan; a line has another form, numbers that are not finite, a quaternion whose length is
 /// further than 0.001 from 1, or a `bmesh` that is not there.
 pub fn read_conf(path: &Path) -> Result<Conf, InputError> {
-    let name = path.display().to_string();
-    let file = File::open(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")))?;
+    let name = input::name_of(path);
+    let bytes = input::read(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    read(Source::new(&name, file), folder, &|path| path.is_file())
+    read(Source::new(&name, bytes.as_slice()), folder, &|path| path.is_file())
 }
 
 /// [`read_conf`] for bytes in memory, for which `exists` says which files are there.

@@ -3,6 +3,7 @@
 use super::Report;
 use super::report::write_text;
 use crate::error::CliError;
+use crate::input::name_of;
 use crate::options::{CameraOptions, CheckOptions};
 use crate::scene;
 use std::path::Path;
@@ -16,7 +17,7 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
     report.stats.count("lights", scene.lights.len() as u64);
     let text = format!(
         "{}: fine; {} triangles in {} objects, {} materials, {} textures, {} lights, {}×{} pixels",
-        options.scene.display(),
+        name_of(&options.scene),
         scene.mesh.triangles.len(),
         scene.mesh.objects.len(),
         scene.materials.len(),

@@ -5,6 +5,7 @@ use super::report::write_text;
 use crate::cloud_io::{self, CloudOptions, CloudSummary, Pose};
 use crate::error::CliError;
 use crate::image_io::{ExrFile, read_picture};
+use crate::input;
 use crate::input_error::InputError;
 use crate::mesh_io::gltf::read_gltf;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
@@ -19,7 +20,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 pub(super) fn run(options: &InfoOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let report = Report::new(&options.common)?.writing([&options.output.path])?;
     let value = report.stats.stage("load", || describe(&options.file))?;
     write_text(&options.output.path, |output| {
         serde_json::to_writer_pretty(&mut *output, &value)?;
@@ -29,10 +30,9 @@ pub(super) fn run(options: &InfoOptions) -> Result<(), CliError> {
 }
 
 fn describe(path: &Path) -> Result<Value, InputError> {
-    let name = path.display().to_string();
-    let bytes =
-        || std::fs::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")));
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let name = input::name_of(path);
+    let bytes = || input::read(path);
+    let extension = input::kind_of(path)?;
     match extension.as_str() {
         "probes" => Ok(of_probes(&read_probes(path)?)),
         "json" if has_key(&bytes()?, "probes") => Ok(of_probes(&read_probes(path)?)),
@@ -179,8 +179,7 @@ fn of_ply(path: &Path, name: &str) -> Result<Value, InputError> {
     if summary.faces == 0 {
         return Ok(of_cloud(&summary));
     }
-    let bytes = std::fs::read(path).map_err(|e| InputError::of_file(name, format!("cannot be read: {e}")))?;
-    Ok(of_mesh("ply", &read_ply(name, &bytes)?))
+    Ok(of_mesh("ply", &read_ply(name, &input::read(path)?)?))
 }
 
 /// Broken points are counted and not an error: this command is for looking at files.

@@ -221,7 +221,7 @@ pub struct MergeOptions {
     /// EXR files that `render --tile` wrote, or files that `probe bake --part` wrote, in any order.
     #[arg(required = true, value_name = "PART")]
     pub parts: Vec<PathBuf>,
-    /// The whole: .exr or .png for a picture, .json or .probes for probes.
+    /// The whole: .exr or .png for a picture, .json, .probes or `-` (standard output) for probes.
     #[arg(short, long, value_name = "PATH")]
     pub output: PathBuf,
     /// For PNG: brighten by this many stops.

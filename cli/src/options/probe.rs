@@ -1,6 +1,7 @@
 //! `probe` and its commands.
 
 use super::{Common, TextOutput, Tile, values};
+use crate::input::is_standard;
 use clap::{Subcommand, ValueEnum};
 use pointillist_shprobe::sh;
 use std::path::PathBuf;
@@ -253,6 +254,13 @@ pub struct TetraOptions {
     /// What every command has.
     #[command(flatten)]
     pub common: Common,
+}
+
+impl TetraOptions {
+    /// Where cells go; nowhere if location is measured, unless a file is named.
+    pub fn result(&self) -> Option<&PathBuf> {
+        Some(&self.output.path).filter(|path| self.locate.is_none() || !is_standard(path))
+    }
 }
 
 /// `probe query`.

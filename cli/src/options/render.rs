@@ -11,7 +11,7 @@ use std::str::FromStr;
 /// `render`.
 #[derive(Debug, clap::Args)]
 pub struct RenderOptions {
-    /// Scene file or mesh; `-` is a scene file on standard input.
+    /// Scene file or mesh; `-` is either on standard input.
     pub scene: Option<PathBuf>,
     /// The picture: .png or .exr (default: pointillist.png for the built-in scene, else SCENE with .png)
     #[arg(short, long, value_name = "PATH")]

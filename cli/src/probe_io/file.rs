@@ -1,8 +1,8 @@
 //! A whole file of probes.
 
 use super::ProbeEntry;
+use crate::input;
 use crate::input_error::InputError;
-use crate::scene::read_file;
 use glam::DVec3;
 use pointillist_shprobe::sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, ProbeError};
@@ -126,9 +126,7 @@ fn refused(name: &str, error: &ProbeError) -> InputError {
 /// # Errors
 /// A file that is missing or not one of probes, with the place and the field.
 pub fn read_probes(path: &Path) -> Result<ProbeFile, InputError> {
-    let name = path.display().to_string();
-    let bytes = read_file(path)?;
-    parse_probes(&name, &bytes)
+    parse_probes(&input::name_of(path), &input::read(path)?)
 }
 
 /// Reads JSON or binary from memory; `name` is what it is called in messages.

@@ -1,7 +1,7 @@
 //! The baked file.
 
+use crate::input;
 use crate::input_error::InputError;
-use crate::scene::read_file;
 use pointillist_radiosity::Baked;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
@@ -148,9 +148,9 @@ pub(super) const BAKE: &str = "bake it with `pointillist radiosity SCENE -o bake
 /// # Errors
 /// A file that is missing or holds something else, with the field.
 pub fn read_baked(path: &Path) -> Result<BakedFile, InputError> {
-    let bytes = read_file(path)?;
+    let bytes = input::read(path)?;
     let mut reader = serde_json::Deserializer::from_slice(&bytes);
-    let name = path.display().to_string();
+    let name = input::name_of(path);
     serde_path_to_error::deserialize(&mut reader).map_err(|error| {
         let message = format!("no baked radiosity: `{}`: {}", error.path(), error.inner());
         InputError::of_file(name, message).with_help(BAKE)

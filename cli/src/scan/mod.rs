@@ -4,6 +4,7 @@ mod mesh_points;
 
 use crate::cloud_io::{self, CloudOptions, Pose};
 use crate::error::CliError;
+use crate::input;
 use crate::input_error::InputError;
 use crate::scene::{self, Mesh, Overrides, Scene};
 use glam::{DVec3, Vec3};
@@ -58,7 +59,7 @@ impl ScanSet {
         let mut set = Self::default();
         let mut meshes = vec![];
         for path in paths {
-            match path.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
+            match input::kind_of(path)?.as_str() {
                 "conf" => {
                     let conf = cloud_io::read_conf(path)?;
                     set.warnings.extend(conf.warnings);
@@ -95,7 +96,7 @@ impl ScanSet {
             scan.colours.extend_from_slice(block.colours.unwrap_or_default());
             Ok(())
         })?;
-        let name = path.display();
+        let name = input::name_of(path);
         self.warnings.extend(summary.warnings.iter().map(|warning| format!("{name}: {warning}")));
         self.dropped += summary.dropped;
         scan.spacing = options.spacing.or(summary.grid.and_then(|grid| grid.spacing));
@@ -171,7 +172,7 @@ fn of_mesh(path: &Path, spacing: Option<f64>, vertices: bool) -> Result<LoadedSc
         scan.colours.resize(scan.colours.len() + scan.positions.len() - start, colour);
     }
     if scan.positions.is_empty() {
-        let error = InputError::of_file(path.display().to_string(), "has no area to put points on");
+        let error = InputError::of_file(input::name_of(path), "has no area to put points on");
         return Err(error.with_help("--vertices takes its vertices as points"));
     }
     Ok(scan)

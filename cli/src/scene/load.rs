@@ -2,8 +2,8 @@
 
 use super::text::{Document, Format};
 use super::{Description, Scene, resolve};
+use crate::input;
 use crate::input_error::InputError;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Changes to a scene that come from the command line.
@@ -62,19 +62,11 @@ pub(super) fn apply(document: &mut Document, overrides: &Overrides) -> Result<()
 }
 
 fn read_document(path: &Path) -> Result<(Document, Kind, PathBuf), InputError> {
-    let name = path.display().to_string();
-    if name == "-" {
-        let mut text = String::new();
-        std::io::stdin()
-            .read_to_string(&mut text)
-            .map_err(|error| InputError::of_file("standard input", error.to_string()))?;
-        let format = if text.trim_start().starts_with('{') { Format::Json } else { Format::Toml };
-        return Ok((Document::parse("standard input", &text, format)?, Kind::Text(format), PathBuf::new()));
-    }
+    let name = input::name_of(path);
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     match kind_of(path)? {
         Kind::Text(format) => {
-            let text = String::from_utf8(read_file(path)?).map_err(|error| {
+            let text = String::from_utf8(input::read(path)?).map_err(|error| {
                 let at = error.utf8_error().valid_up_to();
                 let line = error.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count() + 1;
                 InputError::in_line(&name, error.as_bytes(), line, "not UTF-8 text")
@@ -83,7 +75,9 @@ fn read_document(path: &Path) -> Result<(Document, Kind, PathBuf), InputError> {
         }
         Kind::Mesh => {
             // Opened here, so that a missing file is an error about the file and not about a text nobody wrote.
-            std::fs::File::open(path).map_err(|error| cannot_read(&name, &error))?;
+            if !input::is_standard(path) {
+                std::fs::File::open(path).map_err(|error| input::cannot_read(&name, &error))?;
+            }
             let file = path.file_name().unwrap_or_default().to_string_lossy();
             // A JSON string is a TOML string, too, whatever characters the name holds.
             let text = format!("[[object]]\nmesh = {}\n", serde_json::Value::from(file.as_ref()));
@@ -93,26 +87,15 @@ fn read_document(path: &Path) -> Result<(Document, Kind, PathBuf), InputError> {
 }
 
 fn kind_of(path: &Path) -> Result<Kind, InputError> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    match extension.as_str() {
+    match input::kind_of(path)?.as_str() {
         "toml" => Ok(Kind::Text(Format::Toml)),
         "json" => Ok(Kind::Text(Format::Json)),
         "obj" | "ply" | "glb" | "gltf" => Ok(Kind::Mesh),
         _ => {
-            let name = path.display().to_string();
+            let name = input::name_of(path);
             let message = "the name does not say what kind of scene this is";
             Err(InputError::of_file(name, message)
                 .with_help("scenes end in .toml, .json, .obj, .ply, .gltf or .glb"))
         }
     }
-}
-
-/// The bytes of a file.
-pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
-    std::fs::read(path).map_err(|error| cannot_read(&path.display().to_string(), &error))
-}
-
-fn cannot_read(name: &str, error: &std::io::Error) -> InputError {
-    let error = InputError::of_file(name, format!("cannot be read: {error}"));
-    error.with_help("check the path; it is taken from the folder you are in")
 }

@@ -5,12 +5,13 @@ use super::description::{
     TextureReference,
 };
 use super::measured::MeasuredTable;
-use super::resolve::{load_texture, read_file};
+use super::resolve::load_texture;
 use super::textures::{Purpose, TextureTable};
 use super::{
     Bump, BumpHeight, Channel, Details, Map, Material, MeasuredBrdf, NONE, Surroundings, gltf_materials,
     mtl_materials,
 };
+use crate::input;
 use crate::input_error::InputError;
 use crate::mesh_io::gltf::GltfModel;
 use crate::mesh_io::{FileMesh, MtlMaterial, read_mtl};
@@ -282,7 +283,7 @@ fn read_libraries(
                 }
                 continue;
             }
-            let bytes = read_file(&path)?;
+            let bytes = input::read(&path)?;
             let materials = read_mtl(&path.display().to_string(), &bytes)?;
             libraries.insert(path.clone(), Library { path, bytes, materials });
         }

@@ -28,7 +28,6 @@ pub use fingerprint::{
     of_geometry as geometry_fingerprint, of_light as light_fingerprint, of_sources as source_fingerprint,
 };
 pub(crate) use framing::around as frame_around;
-pub(crate) use load::read_file;
 pub use load::{Overrides, load, load_to_bake};
 pub use measured::MeasuredBrdf;
 pub use text::Format;

@@ -7,7 +7,8 @@ use super::description::{
 use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene};
-use super::{auto_uv, fingerprint, framing, gltf_scene, load, smooth};
+use super::{auto_uv, fingerprint, framing, gltf_scene, smooth};
+use crate::input;
 use crate::input_error::InputError;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::probe_io::read_probes;
@@ -87,11 +88,11 @@ fn ambient_file(
     help: &str,
 ) -> Result<(PathBuf, u64), InputError> {
     let path = folder.join(&file.path);
-    if !path.is_file() {
+    if !input::is_standard(&path) && !path.is_file() {
         let message = format!("`{}` is not there", path.display());
         return Err(description.document.error(file.span, message).with_help(help));
     }
-    let fingerprint = twox_hash::XxHash3_64::oneshot(&super::read_file(&path)?);
+    let fingerprint = twox_hash::XxHash3_64::oneshot(&input::read(&path)?);
     Ok((path, fingerprint))
 }
 
@@ -201,15 +202,15 @@ impl<'a> Builder<'a> {
             return Ok(Rc::new(mesh));
         }
         let document = &self.description.document;
-        let name = path.display().to_string();
-        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let name = input::name_of(path);
+        let extension = input::kind_of(path)?;
         if !["obj", "ply", "gltf", "glb"].contains(&extension.as_str()) {
             let message = format!("`{}` is not a kind of mesh that can be read", reference.path);
             let error = document.error(reference.span, message);
             return Err(error.with_help("meshes end in .obj, .ply, .gltf or .glb"));
         }
-        let bytes = std::fs::read(path).map_err(|error| {
-            let message = format!("mesh `{name}` cannot be read: {error}");
+        let bytes = input::read(path).map_err(|error| {
+            let message = format!("mesh `{name}` {}", error.message);
             document.error(reference.span, message).with_help("paths are relative to the scene file")
         })?;
         let mesh = match extension.as_str() {
@@ -319,5 +320,3 @@ pub(super) fn load_texture(
         error.with_help("paths are relative to the scene file; PNG, JPEG, HDR and EXR can be read")
     })
 }
-
-pub(super) use load::read_file;

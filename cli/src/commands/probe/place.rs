@@ -3,9 +3,10 @@
 use super::solids::{Outcome, Solids};
 use super::{check_output, failed, overrides, write};
 use crate::commands::Report;
+use crate::commands::report::name_of_output;
 use crate::error::CliError;
+use crate::input::name_of;
 use crate::input_error::InputError;
-use crate::job::Progress;
 use crate::options::{Inside, PlaceOptions, Strategy};
 use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_all};
 use crate::probe_io::ProbeFile;
@@ -22,12 +23,12 @@ const LIFT: f64 = 0.02;
 const CANDIDATES: usize = 8;
 
 pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let report = Report::new(&options.common)?.writing([&options.output])?;
     check_output(&options.output)?;
     let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
     scene.warnings.iter().for_each(|warning| report.warn(warning));
     if scene.mesh.positions.is_empty() && options.low.is_none() {
-        let error = InputError::of_file(options.scene.display().to_string(), "the scene is empty");
+        let error = InputError::of_file(name_of(&options.scene), "the scene is empty");
         return Err(error.with_help("say which box to fill with --low and --high").into());
     }
     let prepared = Prepared::new(&scene, &report.stats).map_err(failed)?;
@@ -43,7 +44,11 @@ pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
     report.stats.count("probes", positions.len() as u64);
     report.stats.stage("write", || write(&options.output, &ProbeFile::of_positions(&positions)))?;
     let seconds = report.stats.elapsed().as_secs_f64();
-    report.note(&format!("{}: {} probes in {seconds:.2} s", options.output.display(), positions.len()));
+    report.note(&format!(
+        "{}: {} probes in {seconds:.2} s",
+        name_of_output(&options.output),
+        positions.len()
+    ));
     report.finish()
 }
 
@@ -143,7 +148,7 @@ fn cluster(
     let broken = |error: ProbeError| CliError::Failed(error.to_string());
     let capture = CaptureOptions { resolution: options.resolution, emission: false, thorough: false };
     let look = LookOptions { capture, order: 2, distances: pointillist_shprobe::DEFAULT_DISTANCE_SIZE };
-    let progress = Progress::new(options.common.progress_mode());
+    let progress = report.progress();
     progress.begin("look", 2 * candidates.len() as u64);
     let stats = &report.stats;
     let light = |ambient: Ambient<'_>, at: &[DVec3]| {

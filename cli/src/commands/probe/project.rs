@@ -12,7 +12,7 @@ use pointillist_shprobe::sh::{CubeMap, CubeProjector, Panorama, PanoramaProjecto
 use std::path::Path;
 
 pub(super) fn run(options: &ProjectOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let report = Report::new(&options.common)?.reading(&options.images)?.writing([&options.output.path])?;
     let response = response(&options.response)?;
     let images = options.images.iter().map(|path| read(path, &response, options.exposure, &report));
     let images = report.stats.stage("load", || images.collect::<Result<Vec<_>, _>>())?;

@@ -42,7 +42,7 @@ impl<'a> Rounds<'a> {
     ) -> Self {
         let more = between(probes, options.fit as usize, solids);
         let places = probes.iter().copied().chain(more).collect();
-        let progress = Progress::new(options.common.progress_mode());
+        let progress = report.progress();
         Self { prepared, scene, options, report, places, probes: probes.len(), progress }
     }
 

@@ -3,6 +3,7 @@
 use crate::commands::Report;
 use crate::commands::report::write_text;
 use crate::error::CliError;
+use crate::input::name_of;
 use crate::input_error::InputError;
 use crate::job::ThreadClock;
 use crate::options::TetraOptions;
@@ -10,12 +11,13 @@ use crate::probe_io::{format_cells, read_points};
 use glam::{DVec3, dvec3};
 use pointillist_shprobe::{Delaunay, Hint, Locator, Partition, ProbeError};
 use std::f64::consts::TAU;
-use std::path::Path;
 
 pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let report = Report::new(&options.common)?
+        .reading(std::iter::once(&options.points).chain(&options.locate))?
+        .writing(options.result())?;
     let points = report.stats.stage("load", || read_points(&options.points))?;
-    let name = options.points.display().to_string();
+    let name = name_of(&options.points);
     let refused = |error: ProbeError| {
         let error = InputError::of_file(&name, error.to_string());
         CliError::Input(error.with_help("points are finite numbers, `x y z` a line"))
@@ -37,8 +39,8 @@ pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
         measure(&points, &partition, &queries, &report);
     }
     let binary = options.output.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bin"));
-    if options.output.path != Path::new("-") || options.locate.is_none() {
-        write_text(&options.output.path, |output| format_cells(output, &partition, binary))?;
+    if let Some(path) = options.result() {
+        write_text(path, |output| format_cells(output, &partition, binary))?;
     }
     report.finish()
 }

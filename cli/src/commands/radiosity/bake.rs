@@ -1,9 +1,9 @@
 //! `radiosity SCENE`.
 
 use crate::commands::Report;
-use crate::commands::report::write_text;
+use crate::commands::report::{name_of_output, write_text};
 use crate::error::CliError;
-use crate::job::Progress;
+use crate::input::{is_standard, name_of};
 use crate::options::{FormFactorKind, LinkKind, RadiosityBakeOptions, SolveMethod};
 use crate::radiosity::{BakedFile, Lamps, SceneSurfaces, scene_surfaces, with_lamps};
 use crate::scene::{self, Overrides, Scene};
@@ -20,7 +20,8 @@ const PATCHES_ACROSS: f64 = 32.0;
 const MOST_FULL: usize = 1000;
 
 pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let report =
+        Report::new(&options.common)?.writing(std::iter::once(&options.output).chain(&options.factors))?;
     check(options)?;
     let Some(path) = &options.scene else {
         return Err(CliError::Usage("SCENE is missing".to_owned()));
@@ -29,7 +30,7 @@ pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     let overrides = Overrides { assignments };
     let scene = report.stats.stage("load", || scene::load_to_bake(path, &overrides))?;
     scene.warnings.iter().for_each(|warning| report.warn(warning));
-    let surfaces = report.stats.stage("load", || scene_surfaces(&scene, &path.display().to_string()))?;
+    let surfaces = report.stats.stage("load", || scene_surfaces(&scene, &name_of(path)))?;
     if surfaces.translucent > 0 {
         let count = surfaces.translucent;
         report.warn(&format!("{count} triangles let most light through and are left out"));
@@ -52,7 +53,7 @@ fn check(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     }
     let output = &options.output;
     let known = output.extension().is_some_and(|e| e == "json" || e == "ply");
-    if known || output == Path::new("-") {
+    if known || is_standard(output) {
         return Ok(());
     }
     Err(CliError::Usage(format!("`{}`: baked light ends in .json or .ply", output.display())))
@@ -68,7 +69,7 @@ struct Bake<'a> {
 impl Bake<'_> {
     fn solve(&self) -> Result<(Transport, Vec<Rgb>, Solution), CliError> {
         let Self { options, report, .. } = self;
-        let progress = Progress::new(options.common.progress_mode());
+        let progress = report.progress();
         progress.begin("radiosity", 3);
         let stats = &report.stats;
         let mut patches = stats.stage("divide", || self.divided())?;
@@ -156,7 +157,7 @@ impl Bake<'_> {
         let face = self.surfaces.faces[surface][0] as usize;
         let object = &mesh.objects[mesh.object_of[face] as usize].name;
         let material = &self.scene.materials[mesh.material_of[face] as usize].name;
-        let name = self.options.scene.as_deref().unwrap_or(Path::new("")).display().to_string();
+        let name = self.options.scene.as_deref().map(name_of).unwrap_or_default();
         let message = format!("triangle {face} (of `{object}`, material `{material}`): {error}");
         CliError::Input(crate::input_error::InputError::of_file(name, message))
     }
@@ -224,7 +225,7 @@ impl Bake<'_> {
         })?;
         let seconds = report.stats.elapsed().as_secs_f64();
         let vertices = file.positions.len();
-        report.note(&format!("{}: {vertices} vertices in {seconds:.2} s", path.display()));
+        report.note(&format!("{}: {vertices} vertices in {seconds:.2} s", name_of_output(path)));
         Ok(())
     }
 }
