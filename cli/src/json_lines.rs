@@ -1,5 +1,6 @@
 //! JSON lines that are answered one by one: how they are read, what can go wrong, and how it is said.
 
+use crate::json_words::plain;
 use std::io::{BufRead as _, BufReader, Read};
 
 /// Bytes that are read at once, if there are as many: enough lines to keep all threads busy.
@@ -95,9 +96,9 @@ pub enum JsonLinesError {
 
 /// The message with the column; every request is on line 1 as far as the parser knows, so its line would mislead.
 pub(crate) fn strip_place(error: &serde_json::Error) -> String {
-    let message = error.to_string();
-    let end = message.rfind(" at line ").unwrap_or(message.len());
-    format!("{}, column {}", &message[..end], error.column())
+    let message = plain(&error.to_string());
+    let subject = if message.starts_with("is ") || message.starts_with("has ") { "a value " } else { "" };
+    format!("{subject}{message}, column {}", error.column())
 }
 
 /// Lines of any length make a message of one line.

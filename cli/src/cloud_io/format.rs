@@ -83,6 +83,10 @@ fn refusal(name: &str, extension: &str) -> InputError {
         "gz" => ("this is not gzip", "a gzip file begins with the bytes 1f 8b; was it unpacked already?"),
         "las" | "laz" => ("this is not LAS", "a LAS or LAZ file begins with `LASF`"),
         "e57" => ("this is not E57", "an E57 file begins with `ASTM-E57`"),
+        "obj" | "gltf" | "glb" | "toml" | "json" => (
+            "this is a mesh or a scene, not a cloud",
+            "`pointillist sample FILE -o cloud.ply` puts points all over it; `pointillist render FILE` draws it",
+        ),
         _ => (
             "neither the name nor the first bytes say what kind of cloud this is",
             "known are .ply, .ply.gz, .xyz, .txt, .asc, .pts, .csv, .las, .laz, .e57 and .conf",

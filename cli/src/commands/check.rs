@@ -4,6 +4,7 @@ use super::Report;
 use super::report::write_text;
 use crate::error::CliError;
 use crate::input::name_of;
+use crate::input_error::InputError;
 use crate::options::{CameraOptions, CheckOptions};
 use crate::scene;
 use std::path::Path;
@@ -12,7 +13,12 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
     let overrides = CameraOptions::default().overrides(&options.set);
     let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides))?;
-    scene.warnings.iter().for_each(|warning| report.warn(warning));
+    let faults: Vec<String> = scene.unmatched.iter().map(InputError::to_string).collect();
+    scene.warnings.iter().filter(|w| !faults.contains(w)).for_each(|warning| report.warn(warning));
+    if let Some((first, rest)) = scene.unmatched.split_first() {
+        rest.iter().for_each(|fault| report.warn(&fault.to_string()));
+        return Err(first.clone().into());
+    }
     report.stats.count("triangles", scene.mesh.triangles.len() as u64);
     report.stats.count("lights", scene.lights.len() as u64);
     let text = format!(

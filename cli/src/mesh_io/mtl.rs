@@ -81,7 +81,7 @@ const NOT_YET: [&str; 10] =
 pub fn read_mtl(name: &str, bytes: &[u8]) -> Result<Vec<MtlMaterial>, InputError> {
     let (plain, extras) = check(name, bytes)?;
     let (materials, _) = tobj::load_mtl_buf(&mut Cursor::new(plain.as_bytes()))
-        .map_err(|error| InputError::of_file(name, format!("not an MTL file: {error}")))?;
+        .map_err(|_| InputError::of_file(name, "not an MTL file"))?;
     // Neither loses a material that the other has; if ever, maps are missing and nothing is mixed up.
     let extras = extras.into_iter().chain(std::iter::repeat_with(MtlMaterial::default));
     Ok(materials.into_iter().zip(extras).map(|(material, extra)| convert(material, extra)).collect())

@@ -120,7 +120,7 @@ pub enum Command {
         pointillist compare a.exr b.exr\n  \
         pointillist compare a.exr b.exr --diff difference.png --max-rmse 1e-3")]
     Compare(CompareOptions),
-    /// Say what a scene, mesh or image file holds, as JSON
+    /// Say what a scene, mesh, cloud, picture or baked file holds, as JSON
     #[command(after_help = "Examples:\n  pointillist info house.toml\n  pointillist info house.exr")]
     Info(InfoOptions),
     /// Read and validate a scene and everything it names; draw nothing
@@ -192,7 +192,7 @@ pub struct CompareOptions {
 /// `info`.
 #[derive(Debug, clap::Args)]
 pub struct InfoOptions {
-    /// A scene (.toml, .json), mesh (.obj, .ply) or picture (.exr, .png, .jpg, .hdr).
+    /// A scene (.toml, .json), mesh (.obj, .ply, .gltf, .glb), cloud (.ply, .xyz, .conf, …), picture (.exr, .png, .jpg, .hdr), or what was baked: probes, radiosity, harmonics.
     pub file: PathBuf,
     /// Where results go.
     #[command(flatten)]

@@ -1,9 +1,10 @@
 //! From a path and options to a [`Scene`].
 
-use super::text::{Document, Format};
+use super::text::{Document, Format, Value};
 use super::{Description, Scene, resolve};
 use crate::input;
 use crate::input_error::InputError;
+use crate::json_kind::JsonKind;
 use std::path::{Path, PathBuf};
 
 /// Changes to a scene that come from the command line.
@@ -71,7 +72,9 @@ fn read_document(path: &Path) -> Result<(Document, Kind, PathBuf), InputError> {
                 let line = error.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count() + 1;
                 InputError::in_line(&name, error.as_bytes(), line, "not UTF-8 text")
             })?;
-            Ok((Document::parse(&name, &text, format)?, Kind::Text(format), folder))
+            let document = Document::parse(&name, &text, format)?;
+            refuse_results(&document, format)?;
+            Ok((document, Kind::Text(format), folder))
         }
         Kind::Mesh => {
             // Opened here, so that a missing file is an error about the file and not about a text nobody wrote.
@@ -86,16 +89,51 @@ fn read_document(path: &Path) -> Result<(Document, Kind, PathBuf), InputError> {
     }
 }
 
+/// A JSON file may be what another command wrote; as a scene it would have nothing but unknown keys.
+fn refuse_results(document: &Document, format: Format) -> Result<(), InputError> {
+    let Value::Table(entries) = &document.root().value else { return Ok(()) };
+    match JsonKind::of_keys(entries.iter().map(|(key, _)| key.name.as_str())) {
+        kind if format == Format::Json && kind != JsonKind::Scene => {
+            Err(kind.misplaced(document.name(), JsonKind::Scene))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn kind_of(path: &Path) -> Result<Kind, InputError> {
     match input::kind_of(path)?.as_str() {
         "toml" => Ok(Kind::Text(Format::Toml)),
         "json" => Ok(Kind::Text(Format::Json)),
         "obj" | "ply" | "glb" | "gltf" => Ok(Kind::Mesh),
-        _ => {
+        kind => {
             let name = input::name_of(path);
-            let message = "the name does not say what kind of scene this is";
-            Err(InputError::of_file(name, message)
-                .with_help("scenes end in .toml, .json, .obj, .ply, .gltf or .glb"))
+            let (message, help) = no_scene(kind);
+            Err(InputError::of_file(name, message).with_help(help))
         }
     }
 }
+
+/// What a file with this ending is in the place of a scene, and what it is for.
+fn no_scene(ending: &str) -> (&'static str, &'static str) {
+    match ending {
+        "gz" | "xyz" | "txt" | "asc" | "pts" | "csv" | "las" | "laz" | "e57" | "conf" => {
+            ("this is a cloud of points, not a scene", DRAW_CLOUD)
+        }
+        "probes" => (
+            "these are light probes, not a scene",
+            "a scene names them by [ambient] probes = \"FILE\"; `pointillist probe` bakes and queries them",
+        ),
+        "exr" | "png" | "jpg" | "jpeg" | "hdr" => (
+            "this is a picture, not a scene",
+            "`pointillist compare` and `pointillist probe project` read pictures; scenes name them as textures",
+        ),
+        _ => (
+            "the name does not say what kind of scene this is",
+            "scenes end in .toml, .json, .obj, .ply, .gltf or .glb",
+        ),
+    }
+}
+
+/// The way out for a cloud where a mesh is wanted.
+pub(super) const DRAW_CLOUD: &str = "`pointillist scan FILE` draws points as closed surfaces, `pointillist surfel FILE` as discs; \
+     `pointillist info FILE` says what the file holds";

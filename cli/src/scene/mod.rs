@@ -33,6 +33,7 @@ pub use measured::MeasuredBrdf;
 pub use text::Format;
 pub use texture_lookup::{linear_from_srgb, srgb_from_linear};
 
+use crate::input_error::InputError;
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade as shade;
 use std::path::PathBuf;
@@ -59,9 +60,11 @@ pub struct Scene {
     pub lights: Vec<LightSource>,
     /// Light that does not come straight from the lights.
     pub ambient: AmbientLight,
+    /// Materials of the scene file or of options that no mesh has. They are among the warnings, too.
+    pub unmatched: Vec<InputError>,
     /// What was odd but not wrong, for the user to read.
     pub warnings: Vec<String>,
-    /// A hash of everything above but the warnings: equal scenes draw equal pictures.
+    /// A hash of everything above but what is there to be read: equal scenes draw equal pictures.
     pub fingerprint: u64,
 }
 

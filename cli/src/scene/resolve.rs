@@ -4,6 +4,7 @@ use super::builtin::Generated;
 use super::description::{
     AmbientDescription, Description, FileReference, ObjectDescription, RenderDescription, TextureReference,
 };
+use super::load::DRAW_CLOUD;
 use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene};
@@ -52,6 +53,8 @@ pub(super) fn resolve(
     } else {
         Interpolation::Phong
     });
+    let unmatched = builder.materials.unmatched();
+    builder.warnings.extend(unmatched.iter().map(InputError::to_string));
     let mut lights = lights(description);
     if add_light && lights.is_empty() {
         lights = model.map(|model| gltf_scene::lights(&model)).unwrap_or_default();
@@ -66,6 +69,7 @@ pub(super) fn resolve(
         },
         mesh: builder.mesh,
         materials: builder.materials.into_materials(),
+        unmatched,
         textures: builder.textures.into_textures(),
         lights,
         ambient: AmbientLight::Color(Vec3::ZERO),
@@ -87,7 +91,7 @@ fn ambient_file(
     file: &FileReference,
     help: &str,
 ) -> Result<(PathBuf, u64), InputError> {
-    let path = folder.join(&file.path);
+    let path = file.path_from(folder);
     if !input::is_standard(&path) && !path.is_file() {
         let message = format!("`{}` is not there", path.display());
         return Err(description.document.error(file.span, message).with_help(help));
@@ -187,7 +191,7 @@ impl<'a> Builder<'a> {
     }
 
     fn add(&mut self, object: &ObjectDescription) -> Result<(), InputError> {
-        let path = self.folder.join(&object.mesh.path);
+        let path = object.mesh.path_from(self.folder);
         let file = self.file_mesh(&path, &object.mesh)?;
         let materials =
             self.materials.resolve(object, &file, &path, &mut self.textures, &mut self.warnings)?;
@@ -211,7 +215,7 @@ impl<'a> Builder<'a> {
         }
         let bytes = input::read(path).map_err(|error| {
             let message = format!("mesh `{name}` {}", error.message);
-            document.error(reference.span, message).with_help("paths are relative to the scene file")
+            document.error(reference.span, message).with_help(reference.relative_to())
         })?;
         let mesh = match extension.as_str() {
             "obj" => read_obj(&name, &bytes)?,
@@ -222,8 +226,17 @@ impl<'a> Builder<'a> {
             self.warnings.extend_from_slice(&model.warnings);
         }
         if mesh.triangles.is_empty() {
-            return Err(InputError::of_file(name, "the mesh has no faces")
-                .with_help("a mesh needs at least one triangle"));
+            let points = mesh.positions.len();
+            return Err(if extension == "ply" && points > 0 {
+                InputError::of_file(
+                    name,
+                    format!("this is a cloud of {points} points, not a mesh: it has no faces"),
+                )
+                .with_help(DRAW_CLOUD)
+            } else {
+                InputError::of_file(name, "the mesh has no faces")
+                    .with_help("a mesh needs at least one triangle")
+            });
         }
         let mesh = Rc::new(mesh);
         self.meshes.insert(path.to_path_buf(), Rc::clone(&mesh));
@@ -313,10 +326,10 @@ pub(super) fn load_texture(
     reference: &TextureReference,
     purpose: Purpose,
 ) -> Result<usize, InputError> {
-    let path = folder.join(&reference.file.path);
+    let path = reference.file.path_from(folder);
     textures.load(&path, purpose).map_err(|fault| {
         let message = format!("texture `{}` {fault}", path.display());
         let error = description.document.error(reference.file.span, message);
-        error.with_help("paths are relative to the scene file; PNG, JPEG, HDR and EXR can be read")
+        error.with_help(format!("{}; PNG, JPEG, HDR and EXR can be read", reference.file.relative_to()))
     })
 }
