@@ -101,6 +101,8 @@ fn kind_of_content(bytes: &[u8]) -> &'static str {
     match first {
         _ if line.starts_with('{') => "json",
         _ if first.parse::<f64>().is_ok() => "xyz",
+        // The names of columns, as CSV has them.
+        "x" | "X" | "\"x\"" | "\"X\"" if !is_key => "xyz",
         _ if !is_key && OBJ.contains(&first) => "obj",
         _ if !is_key && CONF.contains(&first) => "conf",
         _ => "toml",
@@ -120,6 +122,8 @@ mod tests {
             ("bmesh a.ply 0 0 0 0 0 0 1\n", "conf"),
             ("0.5 -1e3 7\n", "xyz"),
             ("1,2,3\n", "xyz"),
+            ("X,Y,Z,R,G,B\n", "xyz"),
+            ("x = 1\n", "toml"),
             ("  {\"camera\": {}}", "json"),
             ("# a scene\n[camera]\n", "toml"),
             ("v = 1\n", "toml"),

@@ -54,7 +54,7 @@ pub struct Conf {
 /// Reads a `.conf` and looks whether its scans are there; the scans themselves are not opened.
 ///
 /// A line is `bmesh FILE tx ty tz qx qy qz qw`: a point p of the scan goes to R(q)ᵀ·p + t, that is, it is rotated by
-/// the conjugate of q. `FILE` is relative to the `.conf`, may have blanks, and stands for `FILE.gz` if only that is there.
+/// the conjugate of q. `FILE` is relative to the `.conf`, may have blanks, may be in quotes, and stands for `FILE.gz` if only that is there.
 /// `mesh FILE …` is the same for other kinds of scans; cylindrical scans (`…_cybcyl`), and others that are
 /// not there, are left out with a warning. `camera …` is a view. Lines that begin with `#` are comments.
 ///
@@ -134,7 +134,11 @@ fn named_pose<'a>(
     let (file, numbers) = words.split_at(split);
     let file = file.first().zip(file.last()).map(|(first, last)| {
         let end = last.start + last.bytes.len();
-        Word { start: first.start, bytes: &line.text[first.start..end] }
+        let bytes = &line.text[first.start..end];
+        match bytes {
+            [b'"', name @ .., b'"'] if !name.is_empty() => Word { start: first.start + 1, bytes: name },
+            _ => Word { start: first.start, bytes },
+        }
     });
     Ok((file, pose(name, line, numbers)?))
 }

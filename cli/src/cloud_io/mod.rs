@@ -20,6 +20,7 @@ mod ply;
 mod ply_write;
 mod source;
 mod xyz;
+mod xyz_header;
 
 pub use block::{CloudBlock, CloudOptions, CloudSummary, MAX_BLOCK_POINTS, RangeGrid};
 pub use conf::{Conf, ConfScan, Pose, read_conf, read_conf_bytes};

@@ -23,6 +23,8 @@ pub fn remove_temporaries() {
 
 /// Writes a file under a temporary name in the same folder and renames it once `write` has succeeded.
 ///
+/// A file that is replaced keeps its mode; a new one gets what the umask leaves.
+///
 /// Something that is there and no plain file (a pipe, a device) is written to as it is.
 ///
 /// # Errors
@@ -54,8 +56,13 @@ pub fn write_atomically(
     let temporary = builder.tempfile_in(folder)?;
     let name = temporary.path().to_path_buf();
     temporaries().push(name.clone());
-    let result =
-        fill(temporary.as_file()).and_then(|()| temporary.persist(path).map(drop).map_err(|e| e.error));
+    let keep_mode = |file: &File| match path.metadata() {
+        Ok(old) => file.set_permissions(old.permissions()),
+        Err(_) => Ok(()),
+    };
+    let result = fill(temporary.as_file())
+        .and_then(|()| keep_mode(temporary.as_file()))
+        .and_then(|()| temporary.persist(path).map(drop).map_err(|e| e.error));
     temporaries().retain(|path| *path != name);
     result
 }

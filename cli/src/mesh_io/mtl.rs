@@ -1,5 +1,6 @@
 //! MTL.
 
+use super::names::unquoted;
 use crate::input_error::InputError;
 use glam::Vec3;
 use std::io::Cursor;
@@ -147,8 +148,9 @@ fn check(name: &str, bytes: &[u8]) -> Result<(String, Vec<MtlMaterial>), InputEr
 
 /// A map's line after its keyword.
 fn map(keyword: &'static str, text: &str, line: usize) -> Result<MtlMap, String> {
-    let file = file_name(text).to_owned();
-    let options = &text[..text.len() - file.len()];
+    let name = file_name(text);
+    let options = &text[..text.len() - name.len()];
+    let file = unquoted(name).to_owned();
     let mut words = options.split_whitespace();
     let (mut bump_multiplier, mut kind) = (None, None);
     while let Some(word) = words.next() {

@@ -157,7 +157,7 @@ pub struct DiceOptions {
     /// File with a JSON object on each line; `-` is standard input.
     #[arg(value_name = "FILE", default_value = "-")]
     pub input: PathBuf,
-    /// One area and centroid for each cell in the place of pieces; accepts concave polygons.
+    /// One area and centroid for each cell in the place of pieces; accepts concave polygons, polygons that cross themselves, and holes: "rings":[[[x,y],…],…] in the place of "polygon", and "rule":"evenodd" (default) or "nonzero" says what is inside.
     #[arg(long)]
     pub areas: bool,
     /// Where results go.

@@ -35,6 +35,9 @@ pub enum ProbeCommand {
         pointillist probe project px.png nx.png py.png ny.png pz.png nz.png -o sh.json")]
     Project(ProjectOptions),
     /// Divide space between points into Delaunay tetrahedra
+    ///
+    /// Prints `# tetrahedra N` and four indices a line, from 0; `# dimension 2` (1, 0) and triangles (segments, a point) where the
+    /// points span no more; `# tetrahedra 0` for no points.
     #[command(after_help = "Examples:\n  \
         pointillist probe tetra points.txt\n  \
         pointillist probe tetra points.bin -o cells.bin --locate queries.bin --stats stats.json")]

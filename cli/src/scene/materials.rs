@@ -15,7 +15,7 @@ use super::{
 use crate::input;
 use crate::input_error::InputError;
 use crate::mesh_io::gltf::GltfModel;
-use crate::mesh_io::{FileMesh, MtlMaterial, read_mtl};
+use crate::mesh_io::{FileMesh, MtlMaterial, names_of, read_mtl};
 use pointillist_shade as shade;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
@@ -288,12 +288,12 @@ fn read_libraries(
     // By path, so that a library that is named in front of every group is read once.
     let mut libraries: BTreeMap<PathBuf, Library> = BTreeMap::new();
     for names in &file.material_files {
-        // `mtllib a b` may be two files or one with a space in its name.
+        // `mtllib a b` may be two files or one with a space in its name; quotes settle it.
         let whole = folder.join(names);
         let paths = if whole.exists() {
             vec![whole]
         } else {
-            names.split_whitespace().map(|name| folder.join(name.replace('\\', "/"))).collect()
+            names_of(names).into_iter().map(|name| folder.join(name.replace('\\', "/"))).collect()
         };
         for path in paths {
             if libraries.contains_key(&path) {

@@ -33,6 +33,13 @@ pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
     }
     let prepared = Prepared::new(&scene, &report.stats).map_err(failed)?;
     let positions = candidates(&scene, options);
+    if options.strategy == Strategy::Vertices && positions.len() < options.count as usize {
+        let (count, found) = (options.count, positions.len());
+        report.warn(&format!(
+            "--count {count}, but the scene has only {found} different vertices; \
+             --strategy grid, random and cluster place more"
+        ));
+    }
     let positions = settle(&positions, &prepared, &scene, options, &report)?;
     let positions = match options.strategy {
         Strategy::Cluster => cluster(&prepared, &positions, options, &report)?,

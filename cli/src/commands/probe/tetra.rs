@@ -9,7 +9,7 @@ use crate::job::ThreadClock;
 use crate::options::TetraOptions;
 use crate::probe_io::{format_cells, read_points};
 use glam::{DVec3, dvec3};
-use pointillist_shprobe::{Delaunay, Hint, Locator, Partition, ProbeError};
+use pointillist_shprobe::{Delaunay, Hint, Locator, Partition, ProbeError, Tetrahedra};
 use std::f64::consts::TAU;
 
 pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
@@ -23,8 +23,7 @@ pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
         CliError::Input(error.with_help("points are finite numbers, `x y z` a line"))
     };
     let start = std::time::Instant::now();
-    let partition =
-        report.stats.stage("build", || Delaunay::new(&points).map(|d| d.partition())).map_err(refused)?;
+    let partition = report.stats.stage("build", || partition(&points)).map_err(refused)?;
     report.stats.figure("build_s", start.elapsed().as_secs_f64());
     let cells = match &partition {
         Partition::Tetrahedra(t) => t.corners.len(),
@@ -45,8 +44,20 @@ pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
     report.finish()
 }
 
+/// The cells between points; none if there are no points, which is no fault of the caller's.
+fn partition(points: &[DVec3]) -> Result<Partition, ProbeError> {
+    if points.is_empty() {
+        return Ok(Partition::Tetrahedra(Tetrahedra { corners: vec![], neighbours: vec![] }));
+    }
+    Delaunay::new(points).map(|d| d.partition())
+}
+
 /// Millions of queries a second of processor time of one thread: one by one, and along a path from cell to cell.
 fn measure(points: &[DVec3], partition: &Partition, queries: &[DVec3], report: &Report<'_>) {
+    if points.is_empty() {
+        ["locate_random_mqps", "locate_coherent_mqps"].iter().for_each(|name| report.stats.figure(name, 0.0));
+        return;
+    }
     let locator = report.stats.stage("index", || Locator::new(points, partition));
     let rate = |run: &dyn Fn() -> f64| {
         let clock = ThreadClock::start();
