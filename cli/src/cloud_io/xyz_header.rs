@@ -23,16 +23,34 @@ const NAMES: [&[&str]; 9] = [
 pub(super) struct Header {
     /// For each column an index into [`NAMES`], or nothing for one that is left out.
     meanings: Vec<Option<usize>>,
+    /// What is between values, if not blanks.
+    separator: Option<u8>,
     /// Columns that are left out.
     unused: Vec<String>,
     has_colours: bool,
     has_normals: bool,
 }
 
-fn words(text: &[u8]) -> Vec<String> {
+/// The values of a line. Where the names have commas or semicolons between them, a value may be empty or have blanks in it.
+fn values_of(text: &[u8], separator: Option<u8>) -> Vec<Word<'_>> {
+    let Some(separator) = separator else { return Words::<true>::of(text).collect() };
+    let mut start = 0;
+    let word = |part: &[u8]| {
+        let blanks = part.len() - part.trim_ascii_start().len();
+        let found = start + blanks;
+        start += part.len() + 1;
+        (found, part.trim_ascii().len())
+    };
+    let places: Vec<(usize, usize)> = text.split(|&byte| byte == separator).map(word).collect();
+    places.into_iter().map(|(start, length)| Word { start, bytes: &text[start..start + length] }).collect()
+}
+
+/// Names of columns, in lower case and without quotes, and what is between them.
+fn words(text: &[u8]) -> (Vec<String>, Option<u8>) {
+    let separator = [b',', b';'].into_iter().find(|byte| text.contains(byte));
     let plain =
         |word: Word<'_>| String::from_utf8_lossy(word.bytes).trim_matches(['"', '\'']).trim().to_lowercase();
-    Words::<true>::of(text).map(plain).collect()
+    (values_of(text, separator).into_iter().map(plain).collect(), separator)
 }
 
 impl Header {
@@ -42,14 +60,14 @@ impl Header {
         let is_comment = first.is_some_and(|w| w.bytes.starts_with(b"#") || w.bytes.starts_with(b"//"));
         let is_text = std::str::from_utf8(text).is_ok();
         let is_name = |word: &String| word.starts_with(|c: char| c.is_alphabetic() || c == '_');
-        let words = words(text);
+        let (words, _) = words(text);
         let is_number = |word: &String| parse_f64(word.as_bytes()).is_some();
         is_text && !is_comment && !words.is_empty() && words.iter().all(|w| is_name(w) && !is_number(w))
     }
 
     /// What a line of words says; nothing if it does not name x, y and z.
     pub(super) fn of(text: &[u8]) -> Option<Self> {
-        let words = words(text);
+        let (words, separator) = words(text);
         let mut found = [false; NAMES.len()];
         let meaning = |word: &String| {
             let meaning = NAMES.iter().position(|names| names.contains(&word.as_str()))?;
@@ -68,25 +86,22 @@ impl Header {
         }
         let unused =
             words.into_iter().zip(&meanings).filter(|(_, m)| m.is_none()).map(|(word, _)| word).collect();
-        Some(Self { meanings, unused, has_colours, has_normals })
+        Some(Self { meanings, separator, unused, has_colours, has_normals })
     }
 
     /// The point of a line; nothing if the line is empty or a comment.
     pub(super) fn row(&self, name: &str, line: &Line<'_>) -> Result<Option<Row>, InputError> {
+        if line.is_blank() || line.text.trim_ascii_start().starts_with(b"#") {
+            return Ok(None);
+        }
         let mut values = [0.0; NAMES.len()];
         let mut count = 0;
-        for word in Words::<true>::of(line.text) {
-            if word.bytes.starts_with(b"#") || word.bytes.starts_with(b"//") {
-                break;
-            }
+        for word in values_of(line.text, self.separator) {
             // Columns that are left out may hold anything.
             if let Some(Some(meaning)) = self.meanings.get(count) {
                 values[*meaning] = parse_f64(word.bytes).ok_or_else(|| no_number(name, line, word))?;
             }
             count += 1;
-        }
-        if count == 0 {
-            return Ok(None);
         }
         if count != self.meanings.len() {
             let message = format!("{count} values, but the first line names {} columns", self.meanings.len());

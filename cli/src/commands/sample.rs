@@ -10,10 +10,14 @@ use crate::memory;
 use crate::options::SampleOptions;
 use crate::scene::{self, NONE, Overrides, Scene, srgb_from_linear};
 use glam::{DVec3, Vec3};
-use pointillist_surfel::{Amount, Method, SurfacePoint, SurfelError, sample};
+use pointillist_surfel::{Amount, Method, SurfacePoint, SurfelError, sample_with};
 use rayon::prelude::*;
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
+
+/// Units of the progress bar, and the share of the time that choosing points takes, about; the rest is colours and writing.
+const PROGRESS_STEPS: u64 = 1000;
+const SAMPLED: f64 = 0.9;
 
 pub(super) fn run(options: &SampleOptions) -> Result<(), CliError> {
     let output = output_path(options);
@@ -25,10 +29,14 @@ pub(super) fn run(options: &SampleOptions) -> Result<(), CliError> {
     if scene.materials.iter().any(|m| m.opacity_map.is_some() || m.surface.opacity < 1.0) {
         report.warn("opacity has no place in the cloud: what can be seen through becomes solid");
     }
+    let progress = report.progress();
+    progress.begin("sample", PROGRESS_STEPS);
     let points = report.stats.stage("sample", || {
-        sample(&scene.mesh.positions, &scene.mesh.triangles, &options.sampler())
+        let done = |share| progress.reach(SAMPLED * share);
+        sample_with(&scene.mesh.positions, &scene.mesh.triangles, &options.sampler(), &done)
             .map_err(|error| refusal(&options.model, error))
     })?;
+    progress.reach(SAMPLED);
     if points.is_empty() {
         report.warn("no ray meets the model; try a smaller --spacing, or --method poisson");
     }
@@ -38,6 +46,7 @@ pub(super) fn run(options: &SampleOptions) -> Result<(), CliError> {
     report.stats.stage("write", || write_text(&output, |file| write_ply(file, &cloud, encoding)))?;
     report.stats.count("triangles", scene.mesh.triangles.len() as u64);
     report.stats.count("points", cloud.len() as u64);
+    progress.finish();
     let seconds = report.stats.elapsed().as_secs_f64();
     report.note(&format!("{}: {} points in {seconds:.2} s", name_of_output(&output), cloud.len()));
     report.finish()

@@ -63,6 +63,19 @@ impl Progress {
         self.print(done);
     }
 
+    /// Goes on to this share of all units, unless that would be back.
+    pub fn reach(&self, share: f64) {
+        let total = self.total.load(Ordering::Relaxed);
+        let wanted = (share.clamp(0.0, 1.0) * total as f64) as u64;
+        let before = self.done.fetch_max(wanted, Ordering::Relaxed);
+        if wanted > before {
+            if let Some(bar) = &self.bar {
+                bar.set_position(wanted);
+            }
+            self.print(wanted);
+        }
+    }
+
     /// Removes the bar, or prints the last line.
     pub fn finish(&self) {
         if let Some(bar) = &self.bar {

@@ -148,7 +148,8 @@ pub struct BakeOptions {
     /// Damp the harmonics of a probe where irradiance would be negative
     #[arg(long)]
     pub dering: bool,
-    /// Compute every shadow and texel within a pixel, not just enough of them for the sum
+    /// Compute every shadow and texel within a pixel, not just enough of them for the sum, and look with all pixels where 32 on a side are
+    /// enough: before the last bounce, and from the places of --fit
     #[arg(long)]
     pub thorough: bool,
     /// What to do with a probe inside of a solid

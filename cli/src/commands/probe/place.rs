@@ -8,7 +8,7 @@ use crate::error::CliError;
 use crate::input::name_of;
 use crate::input_error::InputError;
 use crate::options::{Inside, PlaceOptions, Strategy};
-use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_all};
+use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_again, look_all};
 use crate::probe_io::ProbeFile;
 use crate::scene::{self, NONE, Scene};
 use glam::DVec3;
@@ -153,15 +153,14 @@ fn cluster(
     report: &Report<'_>,
 ) -> Result<Vec<DVec3>, CliError> {
     let broken = |error: ProbeError| CliError::Failed(error.to_string());
-    let capture = CaptureOptions { resolution: options.resolution, emission: false, thorough: false };
+    let capture =
+        CaptureOptions { resolution: options.resolution, emission: false, lights: true, thorough: false };
     let look = LookOptions { capture, order: 2, distances: pointillist_shprobe::DEFAULT_DISTANCE_SIZE };
     let progress = report.progress();
     progress.begin("look", 2 * candidates.len() as u64);
     let stats = &report.stats;
-    let light = |ambient: Ambient<'_>, at: &[DVec3]| {
-        stats.stage("look", || look_all(prepared, at, look, ambient, &progress, stats)).map_err(failed)
-    };
-    let seen = light(prepared.ambient(), candidates)?;
+    let first = || look_all(prepared, candidates, look, prepared.ambient(), &progress, stats);
+    let seen = stats.stage("look", first).map_err(failed)?;
     let out = match options.inside {
         Inside::Keep => vec![false; candidates.len()],
         _ => buried(&seen),
@@ -169,9 +168,11 @@ fn cluster(
     let candidates: Vec<DVec3> =
         candidates.iter().zip(&out).filter(|(_, out)| !**out).map(|(p, _)| *p).collect();
     stats.skip("candidates_in_walls", out.iter().filter(|&&b| b).count() as u64);
-    let (direct, distances) = split(seen.into_iter().zip(out).filter(|(_, out)| !out).map(|(seen, _)| seen));
+    let seen: Vec<Seen> = seen.into_iter().zip(out).filter(|(_, out)| !out).map(|(seen, _)| seen).collect();
+    let (direct, distances) = split(seen.iter().cloned());
     let field = Field::new(&candidates, &direct).and_then(|f| f.with_distances(distances)).map_err(broken)?;
-    let (radiance, distances) = split(light(Ambient::Probes(&field), &candidates)?);
+    let again = || look_again(prepared, &candidates, look, Ambient::Probes(&field), &seen, &progress, stats);
+    let (radiance, distances) = split(stats.stage("look", again).map_err(failed)?);
     progress.finish();
     let known = place::Candidates {
         positions: &candidates,
