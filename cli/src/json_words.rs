@@ -30,21 +30,14 @@ const WORDS: [(&str, &str); 20] = [
 /// The message of a reader without place and without names of types.
 pub(crate) fn plain(message: &str) -> String {
     let message = message.split(" at line ").next().unwrap_or_default();
-    let expectation = message.split_once(", expected ");
-    let (found, kind) = match expectation {
-        Some((found, _)) if found.starts_with("invalid type: ") => (&found["invalid type: ".len()..], "is"),
-        Some((found, _)) if found.starts_with("invalid value: ") => (&found["invalid value: ".len()..], "is"),
-        Some((found, _)) if found.starts_with("invalid length ") => {
-            (&found["invalid length ".len()..], "has")
-        }
+    let Some((found, wanted)) = message.split_once(", expected ") else { return message.to_owned() };
+    let thing = found.strip_prefix("invalid type: ").or_else(|| found.strip_prefix("invalid value: "));
+    match (thing, found.strip_prefix("invalid length ")) {
+        (Some(thing), _) => format!("is {} and should be {}", named(thing), named(wanted)),
+        (None, Some(_)) if wanted.starts_with("struct ") => "is a list and should be an object".to_owned(),
+        (None, Some(length)) => format!("has {length} entries and should be {}", named(wanted)),
         // Lists of keys and messages of their own.
-        _ => return message.to_owned(),
-    };
-    let wanted = expectation.map_or("", |(_, wanted)| wanted);
-    match kind {
-        "has" if !wanted.contains("struct") => format!("has {found} entries and should be {}", named(wanted)),
-        "has" => "is a list and should be an object".to_owned(),
-        _ => format!("is {} and should be {}", named(found), named(wanted)),
+        (None, None) => message.to_owned(),
     }
 }
 

@@ -103,6 +103,8 @@ fn standard_streams_carry_one_thing_and_no_pictures() {
     folder.fails(&["compare", "-", "-"], 2, &["given twice"]);
     folder.fails(&["probe", "query", "-", "-"], 2, &["given twice"]);
     folder.fails(&["dice", "--stats", "-"], 2, &["two results"]);
+    folder.fails(&["check", "scene.toml", "--stats", "-"], 2, &["two results"]);
+    folder.prints(&["check", "scene.toml", "--stats", "-", "--quiet"]);
     folder.fails(&["radiosity", "scene.toml", "-o", "-", "--factors", "-"], 2, &["two results"]);
 }
 

@@ -185,13 +185,11 @@ impl Table {
 
     /// Decides what the rows are, and lets them go.
     fn release(&self, name: &str, rows: &mut Vec<Row>, gather: &mut Gather<'_>) -> Result<Rest, Stop> {
-        let rest = match self.columns {
-            _ if self.header.is_some() => {
-                self.header.as_ref().map_or(Rest::None, |h| h.rest(|| decide(rows, false)))
-            }
-            6 => decide(rows, true),
-            7 => decide(rows, false),
-            _ => Rest::None,
+        let rest = match (&self.header, self.columns) {
+            (Some(header), _) => header.rest(|| decide(rows, false)),
+            (None, 6) => decide(rows, true),
+            (None, 7) => decide(rows, false),
+            (None, _) => Rest::None,
         };
         let has_colours = matches!(rest, Rest::Colour(_) | Rest::Both(_));
         gather.expect(has_colours, matches!(rest, Rest::Normal | Rest::Both(_)), false);
@@ -243,8 +241,10 @@ pub(super) fn no_number(name: &str, line: &Line<'_>, word: Word<'_>) -> InputErr
         Ok(_) => format!("`{}` is no number", word.shown()),
         Err(_) => "this is not UTF-8 text".to_owned(),
     };
-    line.error(name, Some(word), message)
-        .with_help("a line is `x y z`, `x y z r g b` or `x y z nx ny nz`; lines of words begin with # or //")
+    line.error(name, Some(word), message).with_help(
+        "a line is `x y z`, `x y z r g b` or `x y z nx ny nz`; lines of words begin with # or //, \
+             but for a first line with the names of the columns",
+    )
 }
 
 fn wrong_count(name: &str, line: &Line<'_>, count: &str) -> InputError {

@@ -7,10 +7,11 @@ use crate::input::name_of;
 use crate::input_error::InputError;
 use crate::options::{CameraOptions, CheckOptions};
 use crate::scene;
-use std::path::Path;
+use std::path::PathBuf;
 
 pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let result = (!options.common.quiet).then(|| PathBuf::from("-"));
+    let report = Report::new(&options.common)?.writing(&result)?;
     let overrides = CameraOptions::default().overrides(&options.set);
     let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides))?;
     let faults: Vec<String> = scene.unmatched.iter().map(InputError::to_string).collect();
@@ -32,8 +33,8 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
         scene.image.width,
         scene.image.height
     );
-    if !options.common.quiet {
-        write_text(Path::new("-"), |output| writeln!(output, "{text}"))?;
+    if let Some(path) = &result {
+        write_text(path, |output| writeln!(output, "{text}"))?;
     }
     report.finish()
 }

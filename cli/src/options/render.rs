@@ -16,7 +16,7 @@ pub struct RenderOptions {
     /// The picture: .png or .exr (default: pointillist.png for the built-in scene, else SCENE with .png)
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
-    /// Override any key of the scene; the value is TOML
+    /// Override any key of the scene; the value is TOML, and a path is relative to the folder you are in
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// The view.
