@@ -45,7 +45,8 @@ pub fn run(
 ) -> Result<u64, JsonLinesError> {
     let mut pairs = 0;
     loop {
-        let (batch, stopped) = batch(lines);
+        let mut batch = vec![];
+        let read = take_batch(lines, &mut batch);
         let answers: Vec<Result<Answer, (String, String)>> =
             batch.par_iter().map(|(_, text)| answer(text, options)).collect();
         for (result, (line, text)) in answers.into_iter().zip(&batch) {
@@ -61,25 +62,22 @@ pub fn run(
             pairs += 1;
         }
         output.flush().map_err(JsonLinesError::Write)?;
-        match stopped {
-            Some(Ok(())) => return Ok(pairs),
-            Some(Err(error)) => return Err(error),
-            None => {}
+        // A line that cannot be read comes after the answers to those before it.
+        if !read? {
+            return Ok(pairs);
         }
     }
 }
 
-/// Waits for a line and takes those that are there with it; and why there will be no more, if so.
-fn batch(lines: &mut Lines<'_>) -> (Vec<(usize, String)>, Option<Result<(), JsonLinesError>>) {
-    let mut batch = vec![];
+/// Waits for a line and takes those that are there with it; `false` at the end.
+fn take_batch(lines: &mut Lines<'_>, batch: &mut Vec<(usize, String)>) -> Result<bool, JsonLinesError> {
     while batch.is_empty() || (batch.len() < BATCH && lines.at_hand()) {
-        match lines.next_line() {
-            Ok(Some(line)) => batch.push(line),
-            Ok(None) => return (batch, Some(Ok(()))),
-            Err(error) => return (batch, Some(Err(error))),
+        match lines.next_line()? {
+            Some(line) => batch.push(line),
+            None => return Ok(false),
         }
     }
-    (batch, None)
+    Ok(true)
 }
 
 /// The form factor of one line, or what is wrong with it and the way out.
