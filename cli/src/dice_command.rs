@@ -1,19 +1,32 @@
 //! `pointillist dice`: polygons in as JSON lines, pieces or cell areas out as JSON lines.
 
-use std::io::{BufRead, Write};
+use std::io::Write;
 
-use crate::json_lines::{JsonLinesError, shorten, strip_place};
+use crate::json_lines::{JsonLinesError, Lines, shorten, strip_place};
 use glam::{DVec2, dvec2};
-use pointillist_dice::{Accumulator, DiceError, Grid, accumulate, split};
+use pointillist_dice::{Accumulator, DiceError, FillRule, Grid, accumulate_filled, split};
 use serde::{Deserialize, Serialize};
 
 /// One line of the input.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Request {
-    polygon: Vec<[f64; 2]>,
+    #[serde(default)]
+    polygon: Option<Vec<[f64; 2]>>,
+    #[serde(default)]
+    rings: Option<Vec<Vec<[f64; 2]>>>,
+    #[serde(default)]
+    rule: Option<Rule>,
     #[serde(default)]
     grid: GridFields,
+}
+
+/// What is inside of outlines that cross themselves or one another.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Rule {
+    EvenOdd,
+    NonZero,
 }
 
 /// Unit cells at the origin unless said otherwise.
@@ -48,53 +61,87 @@ struct CellFields {
 const EXAMPLE: &str =
     r#"a line looks like {"polygon":[[0,0],[1,0],[0,1]],"grid":{"origin":[0,0],"cell":[1,1]}}"#;
 
-/// Cuts every polygon of `input` by its grid. Blank lines are skipped; every other line gives one line of output:
-/// its pieces, or with `areas` (which accepts concave polygons) its cells. Numbers read back to the same value.
+/// Cuts every polygon of `lines` by its grid. Blank lines are skipped; every other line gives one line of output:
+/// its pieces, or with `areas` its cells. Numbers read back to the same value.
+///
+/// `areas` takes concave polygons, polygons that cross themselves, and `rings` in the place of `polygon`; `rule` says what is inside:
+/// `evenodd` (the default) or `nonzero`.
+///
+/// Answers are handed on whenever the next line is not there yet, so that it may depend on them.
 ///
 /// # Errors
 /// Stops at the first line that cannot be used. The lines before it have been written.
-pub fn run(
-    input: &mut dyn BufRead,
-    output: &mut dyn Write,
-    areas: bool,
-    source: &str,
-) -> Result<(), JsonLinesError> {
+pub fn run(lines: &mut Lines<'_>, output: &mut dyn Write, areas: bool) -> Result<(), JsonLinesError> {
     let mut scratch = Accumulator::new();
-    let (mut text, mut line) = (String::new(), 0);
-    loop {
-        line += 1;
-        text.clear();
-        let read = input.read_line(&mut text);
-        let count =
-            read.map_err(|error| JsonLinesError::Read { source_name: source.to_owned(), line, error })?;
-        if count == 0 {
-            return output.flush().map_err(JsonLinesError::Write);
-        }
-        if text.trim().is_empty() {
-            continue;
-        }
+    while let Some((line, text)) = lines.next_line()? {
         let result = answer(&text, output, areas, &mut scratch);
-        result.map_err(|refusal| refusal.into_error(source, line, &text))?;
+        result.map_err(|refusal| refusal.into_error(lines.source(), line, &text))?;
+        if !lines.at_hand() {
+            output.flush().map_err(JsonLinesError::Write)?;
+        }
     }
+    output.flush().map_err(JsonLinesError::Write)
 }
 
 /// Why one line was refused.
 enum Refusal {
     Json(serde_json::Error),
+    /// Not one polygon, nor rings where they can be.
+    Outlines(&'static str),
     Dice(DiceError, String),
     Write(std::io::Error),
 }
 
 fn answer(text: &str, output: &mut dyn Write, areas: bool, scratch: &mut Accumulator) -> Result<(), Refusal> {
     let request: Request = serde_json::from_str(text).map_err(Refusal::Json)?;
-    let polygon: Vec<DVec2> = request.polygon.iter().map(|&v| DVec2::from_array(v)).collect();
+    let rings = request.outlines(areas)?;
     let of_dice = |error: DiceError| Refusal::Dice(error, value_at_fault(error, &request));
     let [[x0, y0], [dx, dy]] = [request.grid.origin, request.grid.cell];
     let grid = Grid::new(dvec2(x0, y0), dvec2(dx, dy)).map_err(of_dice)?;
     if areas {
-        write_cells(&polygon, &grid, scratch, output, of_dice)
+        write_cells(&rings, request.fill_rule(), &grid, scratch, output, of_dice)
     } else {
-        write_pieces(&polygon, &grid, output, of_dice)
+        write_pieces(&rings[0], &grid, output, of_dice)
+    }
+}
+
+impl Request {
+    /// The outlines; of pieces exactly one.
+    fn outlines(&self, areas: bool) -> Result<Vec<Vec<DVec2>>, Refusal> {
+        let points = |ring: &Vec<[f64; 2]>| ring.iter().map(|&v| DVec2::from_array(v)).collect();
+        match (&self.polygon, &self.rings) {
+            (Some(_), Some(_)) => Err(Refusal::Outlines("`polygon` and `rings` are both given")),
+            (None, None) => Err(Refusal::Outlines("missing field `polygon`, or `rings`")),
+            (None, Some(_)) if !areas => Err(Refusal::Outlines("`rings` need --areas")),
+            (Some(polygon), None) => Ok(vec![points(polygon)]),
+            (None, Some(rings)) => Ok(rings.iter().map(points).collect()),
+        }
+    }
+
+    fn fill_rule(&self) -> FillRule {
+        match self.rule {
+            None | Some(Rule::EvenOdd) => FillRule::EvenOdd,
+            Some(Rule::NonZero) => FillRule::NonZero,
+        }
+    }
+
+    /// Name and value of a vertex, counted through all outlines.
+    fn vertex(&self, index: usize) -> String {
+        if let Some(polygon) = &self.polygon {
+            return format!("polygon[{index}] = {}", json(&polygon.get(index)));
+        }
+        let mut before = 0;
+        for (i, ring) in self.rings.iter().flatten().enumerate() {
+            if let Some(vertex) = ring.get(index - before) {
+                return format!("rings[{i}][{}] = {}", index - before, json(vertex));
+            }
+            before += ring.len();
+        }
+        "rings".to_owned()
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.rings.iter().flatten().chain(&self.polygon).map(Vec::len).sum()
     }
 }
 
@@ -114,14 +161,16 @@ fn write_pieces(
 }
 
 fn write_cells(
-    polygon: &[DVec2],
+    rings: &[Vec<DVec2>],
+    rule: FillRule,
     grid: &Grid,
     scratch: &mut Accumulator,
     output: &mut dyn Write,
     of_dice: impl Fn(DiceError) -> Refusal,
 ) -> Result<(), Refusal> {
     let mut list = List::new("cells", output);
-    accumulate(polygon, grid, scratch, |run| {
+    let rings: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
+    accumulate_filled(&rings, rule, grid, scratch, |run| {
         for (cell, centroid) in run.cells(grid) {
             list.push(&CellFields { cell: cell.to_array(), area: run.area, centroid: centroid.to_array() });
         }
@@ -169,15 +218,14 @@ impl<'a> List<'a> {
 
 /// The field that an error is about, as the user wrote it.
 fn value_at_fault(error: DiceError, request: &Request) -> String {
-    let vertex = |index: usize| format!("polygon[{index}] = {}", json(&request.polygon.get(index)));
     match error {
         DiceError::NotFinite { index } | DiceError::OutOfRange { index } | DiceError::NotConvex { index } => {
-            vertex(index)
+            request.vertex(index)
         }
         DiceError::BadGrid { .. } => {
             format!("grid.origin = {}, grid.cell = {}", json(&request.grid.origin), json(&request.grid.cell))
         }
-        _ => format!("polygon with {} vertices", request.polygon.len()),
+        _ => format!("polygon with {} vertices", request.vertex_count()),
     }
 }
 
@@ -189,10 +237,11 @@ impl Refusal {
     fn into_error(self, source: &str, line: usize, text: &str) -> JsonLinesError {
         let (message, way_out) = match self {
             Self::Write(error) => return JsonLinesError::Write(error),
+            Self::Outlines(message) => (message.to_owned(), EXAMPLE.to_owned()),
             Self::Json(error) => (strip_place(&error), EXAMPLE.to_owned()),
             Self::Dice(error @ DiceError::NotConvex { .. }, value) => (
                 format!("{value}: the polygon is not convex there ({error})"),
-                "use --areas, which accepts concave polygons, or triangulate the polygon".to_owned(),
+                "use --areas, which accepts polygons of any shape, or triangulate the polygon".to_owned(),
             ),
             Self::Dice(error, value) => (format!("{value}: {error}"), way_out(error).to_owned()),
         };
@@ -217,11 +266,12 @@ fn way_out(error: DiceError) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use super::run;
+    use super::{Lines, run};
 
     fn answer(input: &str, areas: bool) -> Result<String, String> {
         let mut output = Vec::new();
-        run(&mut input.as_bytes(), &mut output, areas, "shapes.jsonl").map_err(|e| e.to_string())?;
+        let mut lines = Lines::new(Box::new(input.as_bytes()), "shapes.jsonl");
+        run(&mut lines, &mut output, areas).map_err(|e| e.to_string())?;
         String::from_utf8(output).map_err(|e| e.to_string())
     }
 

@@ -1,8 +1,8 @@
 //! `pointillist radiosity factors`: pairs of polygons in as JSON lines, form factors out as JSON lines.
 
-use std::io::{BufRead, Write};
+use std::io::Write;
 
-use crate::json_lines::{JsonLinesError, shorten, strip_place};
+use crate::json_lines::{JsonLinesError, Lines, shorten, strip_place};
 use glam::DVec3;
 use pointillist_radiosity::{FactorOptions, Polygon, PolygonError, form_factor};
 use rayon::prelude::*;
@@ -32,38 +32,26 @@ struct Answer {
 const EXAMPLE: &str =
     r#"a line looks like {"from":[[0,0,0],[1,0,0],[0,1,0]],"to":[[0,0,1],[0,1,1],[1,0,1]],"occluders":[]}"#;
 
-/// Answers every line of `input`, on all threads. Blank lines are skipped. Gives the number of pairs.
+/// Answers every line of `lines`, those that are there on all threads at once. Blank lines are skipped. Gives the number of pairs.
+///
+/// Answers are handed on whenever the next line is not there yet, so that it may depend on them.
 ///
 /// # Errors
 /// Stops at the first line that cannot be used. The lines before it have been answered.
 pub fn run(
-    input: &mut dyn BufRead,
+    lines: &mut Lines<'_>,
     output: &mut dyn Write,
     options: &FactorOptions,
-    source: &str,
 ) -> Result<u64, JsonLinesError> {
-    let (mut line, mut pairs, mut ended) = (0, 0, false);
-    while !ended {
-        let mut batch: Vec<(usize, String)> = vec![];
-        while batch.len() < BATCH {
-            let mut text = String::new();
-            line += 1;
-            let read = input.read_line(&mut text);
-            let read =
-                read.map_err(|error| JsonLinesError::Read { source_name: source.to_owned(), line, error })?;
-            if read == 0 {
-                ended = true;
-                break;
-            }
-            if !text.trim().is_empty() {
-                batch.push((line, text));
-            }
-        }
+    let mut pairs = 0;
+    loop {
+        let mut batch = vec![];
+        let read = take_batch(lines, &mut batch);
         let answers: Vec<Result<Answer, (String, String)>> =
             batch.par_iter().map(|(_, text)| answer(text, options)).collect();
         for (result, (line, text)) in answers.into_iter().zip(&batch) {
             let answer = result.map_err(|(message, way_out)| JsonLinesError::Input {
-                source_name: source.to_owned(),
+                source_name: lines.source().to_owned(),
                 line: *line,
                 message,
                 text: shorten(text.trim()),
@@ -73,9 +61,23 @@ pub fn run(
             output.write_all(b"\n").map_err(JsonLinesError::Write)?;
             pairs += 1;
         }
+        output.flush().map_err(JsonLinesError::Write)?;
+        // A line that cannot be read comes after the answers to those before it.
+        if !read? {
+            return Ok(pairs);
+        }
     }
-    output.flush().map_err(JsonLinesError::Write)?;
-    Ok(pairs)
+}
+
+/// Waits for a line and takes those that are there with it; `false` at the end.
+fn take_batch(lines: &mut Lines<'_>, batch: &mut Vec<(usize, String)>) -> Result<bool, JsonLinesError> {
+    while batch.is_empty() || (batch.len() < BATCH && lines.at_hand()) {
+        match lines.next_line()? {
+            Some(line) => batch.push(line),
+            None => return Ok(false),
+        }
+    }
+    Ok(true)
 }
 
 /// The form factor of one line, or what is wrong with it and the way out.

@@ -390,7 +390,7 @@ fn broken_text_names_its_line() {
     refused("a.xyz", "1 2 3\n1 2\n", &["a.xyz:2:1", "2 numbers", "have 3"]);
     refused("a.xyz", "1 2\n", &["a.xyz:1:1", "2 numbers"]);
     refused("a.xyz", "1 2 3 4 5 6 7 8\n", &["a.xyz:1:1", "more than seven"]);
-    refused("a.xyz", "x y z\n1 2 3\n", &["a.xyz:1:1", "`x` is no number", "# or //"]);
+    refused("a.xyz", "1 2 3\nx y z\n", &["a.xyz:2:1", "`x` is no number", "# or //"]);
     refused("a.xyz", b"1 2 3\n1 \xff 3\n", &["a.xyz:2:3", "not UTF-8"]);
     refused("a.xyz", "3\n1 2 3\n", &["line 1 announces 3", "1 follow"]);
     refused("a.png", "1 2 3\n", &["what kind of cloud"]);

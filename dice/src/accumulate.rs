@@ -6,6 +6,7 @@ use glam::{DVec2, IVec2, dvec2};
 
 use crate::DiceError;
 use crate::edge::Edge;
+use crate::fill::{self, Boundary, FillRule};
 use crate::fixed::{self, Fixed, ONE};
 use crate::grid::{Grid, Point};
 use crate::outline::{Extent, check_count};
@@ -86,7 +87,7 @@ struct Entry {
 /// area. Sums are exact in fixed point: a cell outside is not reported, a cell inside is exactly full.
 ///
 /// Polygons without area have no runs. Where an outline crosses itself, areas are weighted with the winding number
-/// relative to the sign of the whole, and cells in which that is negative are left out.
+/// relative to the sign of the whole, and cells in which that is negative are left out; [`accumulate_filled`] has rules for that.
 ///
 /// # Errors
 /// [`DiceError::NotFinite`], [`DiceError::OutOfRange`] and [`DiceError::TooManyCells`], all before the first run.
@@ -102,21 +103,66 @@ pub fn accumulate(
         return Ok(());
     }
     let Some(sign) = orientation(ring, grid) else { return Ok(()) };
-    scratch.active.clear();
-    let mut sweep = Sweep { grid, noise: extent.noise(), sign, visit: &mut visit };
-    let mut waiting = 0;
-    for row in fixed::floor(extent.min.y)..fixed::ceil(extent.max.y) {
-        while scratch.edges.get(waiting).is_some_and(|w| fixed::floor(w.edge.top.y) <= row) {
-            scratch.active.push(waiting as u32);
-            waiting += 1;
-        }
-        scratch.walk_row(row);
-        sweep.report(row, &scratch.row);
-    }
+    scratch.sweep(&extent, Sweep { grid, noise: extent.noise(), sign, visit: &mut visit });
+    Ok(())
+}
+
+/// As [`accumulate`] for outlines that may cross themselves or one another, and have holes: `rule` says what is inside. What is inside counts
+/// once, however often outlines go round it.
+///
+/// A single ring that does not meet itself gives what [`accumulate`] gives, bit for bit. In others, crossings are rounded to `f64`. Edges
+/// are compared with all others at the same height, so a time grows with the square of their number where many lie side by side.
+///
+/// # Errors
+/// As [`accumulate`]; vertices are counted through all rings.
+pub fn accumulate_filled(
+    rings: &[&[DVec2]],
+    rule: FillRule,
+    grid: &Grid,
+    scratch: &mut Accumulator,
+    mut visit: impl FnMut(Run),
+) -> Result<(), DiceError> {
+    let all = rings.concat();
+    // Checks every vertex, too: what follows takes finite numbers for granted.
+    let Some(extent) = Extent::of(&all, grid)? else { return Ok(()) };
+    let Some(boundary) = fill::boundary(rings, rule) else { return accumulate(&all, grid, scratch, visit) };
+    scratch.collect_boundary(&boundary, grid)?;
+    scratch.sweep(&extent, Sweep { grid, noise: extent.noise(), sign: 1, visit: &mut visit });
     Ok(())
 }
 
 impl Accumulator {
+    /// Goes through all rows of `extent` with the edges that were collected.
+    fn sweep(&mut self, extent: &Extent, mut sweep: Sweep<'_, impl FnMut(Run)>) {
+        self.active.clear();
+        let mut waiting = 0;
+        for row in fixed::floor(extent.min.y)..fixed::ceil(extent.max.y) {
+            while self.edges.get(waiting).is_some_and(|w| fixed::floor(w.edge.top.y) <= row) {
+                self.active.push(waiting as u32);
+                waiting += 1;
+            }
+            self.walk_row(row);
+            sweep.report(row, &self.row);
+        }
+    }
+
+    /// As [`Self::collect_edges`] for pieces of a boundary.
+    fn collect_boundary(&mut self, boundary: &[Boundary], grid: &Grid) -> Result<(), DiceError> {
+        self.edges.clear();
+        let mut count = 0;
+        for piece in boundary {
+            let (a, b) = (grid.point(piece.top, 0)?, grid.point(piece.bottom, 0)?);
+            count += cells_between(a, b);
+            if a.y != b.y {
+                let edge = Edge::new(a, b);
+                let sign = if piece.inside_right { 1 } else { -1 };
+                self.edges.push(Walker { edge, x: edge.top.x, sign });
+            }
+        }
+        self.edges.sort_by_key(|w| w.edge.top.y);
+        check_count(count)
+    }
+
     /// The edges that are not horizontal, from top to bottom.
     fn collect_edges(&mut self, ring: &[DVec2], grid: &Grid) -> Result<(), DiceError> {
         self.edges.clear();
@@ -125,8 +171,7 @@ impl Accumulator {
         let mut a = grid.point(last, ring.len() - 1)?;
         for (index, &vertex) in ring.iter().enumerate() {
             let b = grid.point(vertex, index)?;
-            count += u64::from(fixed::floor(a.x).abs_diff(fixed::floor(b.x)));
-            count += u64::from(fixed::floor(a.y).abs_diff(fixed::floor(b.y))) + 1;
+            count += cells_between(a, b);
             if a.y != b.y {
                 let edge = Edge::new(a, b);
                 self.edges.push(Walker { edge, x: edge.top.x, sign: if a.y < b.y { 1 } else { -1 } });
@@ -222,6 +267,12 @@ impl Entry {
             height_moment: -self.height_moment,
         }
     }
+}
+
+/// About how many cells an edge meets.
+fn cells_between(a: Point, b: Point) -> u64 {
+    let lines = |a: Fixed, b: Fixed| u64::from(fixed::floor(a).abs_diff(fixed::floor(b)));
+    lines(a.x, b.x) + lines(a.y, b.y) + 1
 }
 
 /// Turns a row's entries into runs.

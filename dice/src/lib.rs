@@ -58,6 +58,7 @@ pub mod convex;
 mod cut;
 mod edge;
 mod error;
+mod fill;
 mod fixed;
 mod grid;
 #[cfg(feature = "invariants")]
@@ -66,12 +67,13 @@ mod outline;
 mod plane;
 mod split;
 
-pub use accumulate::{Accumulator, Run, accumulate};
+pub use accumulate::{Accumulator, Run, accumulate, accumulate_filled};
 pub use clip::{ClipVertex, clip_guard_band, clip_near};
 pub use code::{Code, CodeKind};
 pub use convex::{ConvexPolygon, HalfPlane};
 pub use cut::{CellWindow, Cut, MAX_CUT_VERTICES, cut};
 pub use error::DiceError;
+pub use fill::FillRule;
 pub use grid::{Grid, MAX_COORDINATE};
 pub use plane::{AttributePlane, PerspectivePlane};
 pub use split::{Piece, split};

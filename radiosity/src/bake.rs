@@ -4,6 +4,7 @@
 //! gathered once more: from the patches that its own patches are linked with, by Lambert's formula and exact clipping.
 
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
 
@@ -71,9 +72,17 @@ impl Transport {
     /// The light at every vertex. `direct` as given to the solver.
     #[must_use]
     pub fn bake(&self, solution: &Solution, direct: &[Rgb]) -> Baked {
+        self.bake_with(solution, direct, &|_| ())
+    }
+
+    /// As [`Transport::bake`], and says for every vertex, from any thread, which share of the work is done.
+    #[must_use]
+    pub fn bake_with(&self, solution: &Solution, direct: &[Rgb], done: &(dyn Fn(f64) + Sync)) -> Baked {
         let mut mesh = Mesh::new(self);
         mesh.collect();
+        let (count, all) = (AtomicUsize::new(0), mesh.places.len() as f64);
         let light = parallel::map(mesh.places.len(), Pieces::default, |pieces, i| {
+            done(count.fetch_add(1, Ordering::Relaxed) as f64 / all);
             self.light_at(solution, &mesh.places[i], pieces)
         });
         let mut light: Vec<Rgb> = light;

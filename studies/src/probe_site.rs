@@ -234,7 +234,7 @@ impl<'a> Ground<'a> {
         if self.site.eye == Eye::Rays {
             return Ok(look_by_rays(&self.site.scene, &self.tree, p, resolution));
         }
-        let options = CaptureOptions { resolution, emission: false, thorough };
+        let options = CaptureOptions { resolution, emission: false, lights: true, thorough };
         Ok(self.prepared.capture(p, options, Ambient::Color(Vec3::ZERO), &Stats::new())?.into())
     }
 

@@ -30,6 +30,7 @@ impl Sketch {
                 textures: vec![],
                 lights: vec![],
                 ambient: AmbientLight::Color(Vec3::ZERO),
+                unmatched: vec![],
                 warnings: vec![],
                 fingerprint: 0,
             },

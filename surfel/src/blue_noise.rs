@@ -27,10 +27,10 @@ pub(crate) fn count_for(area: f64, spacing: f64) -> f64 {
     (area / spacing / spacing / HEXAGON).round().max(1.0)
 }
 
-/// Exactly `count` samples in the order of their triangles.
-pub(crate) fn points(mesh: &Mesh<'_>, count: usize, seed: u64) -> Vec<SurfacePoint> {
+/// Exactly `count` samples in the order of their triangles. `done` is told shares of the work.
+pub(crate) fn points(mesh: &Mesh<'_>, count: usize, seed: u64, done: &dyn Fn(f64)) -> Vec<SurfacePoint> {
     let candidates = parallel::map(count * OVERSAMPLING, |i| candidate(mesh, i, count * OVERSAMPLING, seed));
-    let kept = eliminate::kept(&candidates, count, lattice_spacing(mesh.area(), count));
+    let kept = eliminate::kept(&candidates, count, lattice_spacing(mesh.area(), count), done);
     kept.into_iter().map(|i| candidates[i as usize]).collect()
 }
 

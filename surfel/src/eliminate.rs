@@ -90,8 +90,9 @@ impl Queue {
     }
 }
 
-/// Numbers of the `count` points (at most all) to keep, in order. `spacing` is that of a lattice of as many.
-pub(crate) fn kept(points: &[SurfacePoint], count: usize, spacing: f64) -> Vec<u32> {
+/// Numbers of the `count` points (at most all) to keep, in order. `spacing` is that of a lattice of as many. `done` is told
+/// shares of the work.
+pub(crate) fn kept(points: &[SurfacePoint], count: usize, spacing: f64, done: &dyn Fn(f64)) -> Vec<u32> {
     let share = count as f64 / points.len() as f64;
     let crowding = Crowding { reach: spacing, nearest: spacing * BETA * (1.0 - share.powf(GAMMA)) };
     let rows = Rows::new(points.len(), spacing, |i| points[i].position);
@@ -106,7 +107,11 @@ pub(crate) fn kept(points: &[SurfacePoint], count: usize, spacing: f64) -> Vec<u
         sum
     });
     let mut queue = Queue::new(&weights);
-    for _ in count..points.len() {
+    let goes = points.len().saturating_sub(count);
+    for gone in 0..goes {
+        if gone % TOLD == 0 {
+            done(WEIGHED + (1.0 - WEIGHED) * gone as f64 / goes as f64);
+        }
         let place = queue.take(&weights).expect("every point that is left is in the queue");
         weights[place] = GONE;
         rows.near(rows.at(place), spacing, |other, distance2| {
@@ -120,6 +125,10 @@ pub(crate) fn kept(points: &[SurfacePoint], count: usize, spacing: f64) -> Vec<u
     kept.sort_unstable();
     kept
 }
+
+/// Share of the time after which all weights are known, about, and points that go between two calls of `done`.
+const WEIGHED: f64 = 0.3;
+const TOLD: usize = 1 << 14;
 
 /// The weight of a point that was taken away.
 const GONE: f64 = -1.0;

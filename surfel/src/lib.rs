@@ -111,5 +111,5 @@ pub use options::{Light, Options, Procedure};
 pub use point::SurfacePoint;
 pub use points::Points;
 pub use render::Renderer;
-pub use sample::{Amount, MAX_COUNT, Method, SampleOptions, sample};
+pub use sample::{Amount, MAX_COUNT, Method, SampleOptions, sample, sample_with};
 pub use view::{Projection, View};

@@ -9,6 +9,7 @@ use crate::neighbours::{Near, Places, Sides};
 use crate::rows::Rows;
 use crate::{SurfacePoint, parallel};
 use glam::{DVec2, DVec3, Vec3};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Corners of the square that a cell begins as, and of what the cell is cut to where it has no neighbours.
 const SQUARE: [DVec2; 4] =
@@ -21,15 +22,23 @@ const ROUNDING: f64 = 1e-9;
 /// surface has a crease between them: each side has to be covered by its own discs, but only up to the crease.
 const SAME_SURFACE: f64 = 0.5;
 
+/// Points between two calls of `done`.
+const TOLD: usize = 1 << 14;
+
 /// Parts of the reach that are tried first.
 const PARTS: [f64; 2] = [1.0 / 3.0, 0.5];
 
 /// Gives every point its radius, at most `reach`: no place of the surface is farther from its nearest point. Points on a
-/// border, where no neighbours close their cells, get another.
-pub(crate) fn assign(points: &mut [SurfacePoint], reach: f64, on_border: f64) {
+/// border, where no neighbours close their cells, get another. `done` is told shares of the work.
+pub(crate) fn assign(points: &mut [SurfacePoint], reach: f64, on_border: f64, done: &(dyn Fn(f64) + Sync)) {
+    let count = AtomicUsize::new(0);
     let rows = Rows::new(points.len(), reach, |i| points[i].position);
     let normals: Vec<DVec3> = rows.order().iter().map(|&i| rows.turned(points[i as usize].normal)).collect();
     let radii = parallel::map(points.len(), |place| {
+        let finished = count.fetch_add(1, Ordering::Relaxed);
+        if finished.is_multiple_of(TOLD) {
+            done(finished as f64 / points.len() as f64);
+        }
         // Most cells are small: a part of the reach finds all that cuts them, in a part of the time.
         let cell2 = |part: f64| Cell::in_rows(&rows, &normals, place, part * reach).farthest2();
         let is_closed = |part: f64, cell2: f64| cell2 <= (part * reach).powi(2);

@@ -79,6 +79,9 @@ impl SampleOptions {
     }
 }
 
+/// Share of the time after which points are chosen and only their radii are left, about.
+const CHOSEN: f64 = 0.75;
+
 /// Points all over a mesh, evenly by area, each with the radius of its disc.
 ///
 /// Triangles without area get none. Points come ray by ray ([`Method::Ldi`]) or in the order of the triangles
@@ -90,6 +93,19 @@ pub fn sample(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     options: &SampleOptions,
+) -> Result<Vec<SurfacePoint>, SurfelError> {
+    sample_with(positions, triangles, options, &|_| ())
+}
+
+/// As [`sample`], and says now and then, from any thread, which share of the work is done.
+///
+/// # Errors
+/// As [`sample`].
+pub fn sample_with(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    options: &SampleOptions,
+    done: &(dyn Fn(f64) + Sync),
 ) -> Result<Vec<SurfacePoint>, SurfelError> {
     match options.amount {
         Amount::Count(0) => return Err(SurfelError::ZeroCount),
@@ -115,11 +131,12 @@ pub fn sample(
             };
             let count = within_limit(count)? as usize;
             let lattice = blue_noise::lattice_spacing(mesh.area(), count);
-            let points = blue_noise::points(&mesh, count, options.seed);
+            let points = blue_noise::points(&mesh, count, options.seed, &|share| done(CHOSEN * share));
             (points, blue_noise::COVER * lattice, blue_noise::ON_BORDER * lattice)
         }
     };
-    radius::assign(&mut points, reach, on_border);
+    done(CHOSEN);
+    radius::assign(&mut points, reach, on_border, &|share| done(CHOSEN + (1.0 - CHOSEN) * share));
     Ok(points)
 }
 

@@ -3,9 +3,9 @@
 use super::number::{Word, Words, parse_f64};
 use super::source::{Line, Source};
 use crate::coordinate::LARGEST;
+use crate::input;
 use crate::input_error::InputError;
 use glam::{DQuat, DVec3, dvec3};
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// How far the length of a quaternion may be from 1. The files have seven digits; what is further off is no rotation, and
@@ -55,7 +55,7 @@ pub struct Conf {
 /// Reads a `.conf` and looks whether its scans are there; the scans themselves are not opened.
 ///
 /// A line is `bmesh FILE tx ty tz qx qy qz qw`: a point p of the scan goes to R(q)ᵀ·p + t, that is, it is rotated by
-/// the conjugate of q. `FILE` is relative to the `.conf`, may have blanks, and stands for `FILE.gz` if only that is there.
+/// the conjugate of q. `FILE` is relative to the `.conf`, may have blanks, may be in quotes, and stands for `FILE.gz` if only that is there.
 /// `mesh FILE …` is the same for other kinds of scans; cylindrical scans (`…_cybcyl`), and others that are
 /// not there, are left out with a warning. `camera …` is a view. Lines that begin with `#` are comments.
 ///
@@ -64,10 +64,10 @@ pub struct Conf {
 /// The file cannot be read or names no scan; a line has another form, numbers that are not finite, a quaternion whose length is
 /// further than 0.001 from 1, or a `bmesh` that is not there.
 pub fn read_conf(path: &Path) -> Result<Conf, InputError> {
-    let name = path.display().to_string();
-    let file = File::open(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")))?;
+    let name = input::name_of(path);
+    let bytes = input::read(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    read(Source::new(&name, file), folder, &|path| path.is_file())
+    read(Source::new(&name, bytes.as_slice()), folder, &|path| path.is_file())
 }
 
 /// [`read_conf`] for bytes in memory, for which `exists` says which files are there.
@@ -135,7 +135,11 @@ fn named_pose<'a>(
     let (file, numbers) = words.split_at(split);
     let file = file.first().zip(file.last()).map(|(first, last)| {
         let end = last.start + last.bytes.len();
-        Word { start: first.start, bytes: &line.text[first.start..end] }
+        let bytes = &line.text[first.start..end];
+        match bytes {
+            [b'"', name @ .., b'"'] if !name.is_empty() => Word { start: first.start + 1, bytes: name },
+            _ => Word { start: first.start, bytes },
+        }
     });
     Ok((file, pose(name, line, numbers)?))
 }

@@ -1,5 +1,6 @@
 //! Which format a file is written in.
 
+use crate::input::STANDARD_INPUT;
 use crate::input_error::InputError;
 use std::path::Path;
 
@@ -52,7 +53,7 @@ pub(super) enum Content {
 }
 
 impl Content {
-    /// By the first bytes if they say, by the extension otherwise: a wrong name is more common than a text that begins with
+    /// By the first bytes if they say, by the extension otherwise, and standard input is then text: a wrong name is more common than a text that begins with
     /// the mark of another format.
     pub(super) fn of(name: &str, head: &[u8]) -> Result<Self, InputError> {
         let extension = Path::new(name).extension().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -65,7 +66,7 @@ impl Content {
             Ok(Self::Las)
         } else if starts(b"ASTM-E57") {
             Ok(Self::E57)
-        } else if TEXT.contains(&extension.as_str()) {
+        } else if TEXT.contains(&extension.as_str()) || name == STANDARD_INPUT {
             Ok(Self::Xyz)
         } else {
             Err(refusal(name, &extension))
@@ -82,6 +83,10 @@ fn refusal(name: &str, extension: &str) -> InputError {
         "gz" => ("this is not gzip", "a gzip file begins with the bytes 1f 8b; was it unpacked already?"),
         "las" | "laz" => ("this is not LAS", "a LAS or LAZ file begins with `LASF`"),
         "e57" => ("this is not E57", "an E57 file begins with `ASTM-E57`"),
+        "obj" | "gltf" | "glb" | "toml" | "json" => (
+            "this is a mesh or a scene, not a cloud",
+            "`pointillist sample FILE -o cloud.ply` puts points all over it; `pointillist render FILE` draws it",
+        ),
         _ => (
             "neither the name nor the first bytes say what kind of cloud this is",
             "known are .ply, .ply.gz, .xyz, .txt, .asc, .pts, .csv, .las, .laz, .e57 and .conf",

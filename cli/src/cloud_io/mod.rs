@@ -20,12 +20,14 @@ mod ply;
 mod ply_write;
 mod source;
 mod xyz;
+mod xyz_header;
 
 pub use block::{CloudBlock, CloudOptions, CloudSummary, MAX_BLOCK_POINTS, RangeGrid};
 pub use conf::{Conf, ConfScan, Pose, read_conf, read_conf_bytes};
 pub use format::CloudFormat;
 pub use ply_write::{CloudPoint, PlyEncoding, write_ply};
 
+use crate::input;
 use crate::input_error::InputError;
 use block::{Gather, Stop};
 use format::{Content, HEAD_BYTES};
@@ -35,7 +37,7 @@ use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek};
 use std::path::Path;
 
-/// Reads a cloud from a file and hands it out in blocks, in the order of the file.
+/// Reads a cloud from a file, or standard input for `-`, and hands it out in blocks, in the order of the file.
 ///
 /// Formats, each known by content or extension:
 ///
@@ -62,10 +64,12 @@ pub fn read_cloud<E: From<InputError>>(
     options: &CloudOptions,
     sink: &mut dyn FnMut(CloudBlock<'_>) -> Result<(), E>,
 ) -> Result<CloudSummary, E> {
-    let name = path.display().to_string();
+    let name = input::name_of(path);
     with_sink(sink, options, |gather| {
-        let file =
-            File::open(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")))?;
+        if input::is_standard(path) {
+            return read_any(&name, Cursor::new(input::standard()?), gather);
+        }
+        let file = File::open(path).map_err(|error| input::cannot_read(&name, &error))?;
         // The seek of LAS and E57 goes past the buffer; the others bring their own.
         read_any(&name, BufReader::with_capacity(1 << 16, file), gather)
     })

@@ -12,6 +12,9 @@
 //! points have one above 1 or none above 0, and to 1 otherwise. A later line that does not fit is an error, not another
 //! guess.
 //!
+//! A first line of names, as CSV has it, says instead which number is what: `x`, `y`, `z`, `r`, `g`, `b` (or `red`, `green`, `blue`), `nx`,
+//! `ny`, `nz`; other columns are left out. A first line of words without `x`, `y` and `z` is passed over.
+//!
 //! A first line with one whole number is the count of points. Empty lines, and lines that begin with `#` or `//`, are
 //! passed over; so is the rest of a line from there on.
 
@@ -20,6 +23,7 @@ use super::colour::ColourCode;
 use super::format::CloudFormat;
 use super::number::{Word, Words, parse_f64};
 use super::source::{Line, Source};
+use super::xyz_header::Header;
 use crate::input_error::InputError;
 use glam::DVec3;
 
@@ -29,20 +33,22 @@ const MOST: usize = 7;
 /// How far the length of a normal may be from 1: programs write as few as two decimals.
 const NORMAL_TOLERANCE: f64 = 0.01;
 
-/// A line: its first three numbers, its last three, its number.
+/// A line: its position, its colour or else its normal, its normal if it has both, its number.
 #[derive(Clone, Copy)]
-struct Row {
-    position: DVec3,
-    rest: DVec3,
-    line: u64,
+pub(super) struct Row {
+    pub(super) position: DVec3,
+    pub(super) rest: DVec3,
+    pub(super) normal: DVec3,
+    pub(super) line: u64,
 }
 
-/// What the last three numbers are.
+/// What the numbers beside the position are.
 #[derive(Clone, Copy, PartialEq)]
-enum Rest {
+pub(super) enum Rest {
     None,
     Colour(ColourCode),
     Normal,
+    Both(ColourCode),
 }
 
 /// Reads a text from its first byte.
@@ -68,7 +74,9 @@ pub(super) fn read(mut source: Source<'_>, gather: &mut Gather<'_>) -> Result<Cl
     }
     table.check_count(name)?;
     let mut summary = gather.finish(name, CloudFormat::Xyz)?;
-    if matches!(table.columns, 4 | 7) {
+    if let Some(header) = &table.header {
+        summary.warnings.extend(header.warning());
+    } else if matches!(table.columns, 4 | 7) {
         summary.warnings.push("the fourth number of each line, an intensity, was left out".to_owned());
     }
     Ok(summary)
@@ -77,6 +85,10 @@ pub(super) fn read(mut source: Source<'_>, gather: &mut Gather<'_>) -> Result<Cl
 /// The form of the lines.
 #[derive(Default)]
 struct Table {
+    /// What each column is, if the first line says so.
+    header: Option<Header>,
+    /// Whether a line of words was passed over or taken as a header: only the first may be one.
+    had_words: bool,
     /// Numbers of a line; 0 before the first.
     columns: usize,
     /// The line with the count, and the count.
@@ -93,6 +105,14 @@ impl Table {
             line.text
         };
         let line = &Line { text, ..*line };
+        if self.is_header(line) {
+            return Ok(None);
+        }
+        if let Some(header) = &self.header {
+            let row = header.row(name, line)?;
+            self.rows += u64::from(row.is_some());
+            return Ok(row);
+        }
         let mut numbers = [0.0; MOST];
         let mut count = 0;
         for word in Words::<true>::of(text) {
@@ -112,7 +132,18 @@ impl Table {
         self.rows += 1;
         let three = |at: usize| DVec3::new(numbers[at], numbers[at + 1], numbers[at + 2]);
         let rest = if count >= 6 { three(count - 3) } else { DVec3::ZERO };
-        Ok(Some(Row { position: three(0), rest, line: line.number }))
+        Ok(Some(Row { position: three(0), rest, normal: DVec3::ZERO, line: line.number }))
+    }
+
+    /// Whether this is a line of words before all numbers; keeps what it says of the columns.
+    fn is_header(&mut self, line: &Line<'_>) -> bool {
+        let is_first = !self.had_words && self.columns == 0 && self.rows == 0 && self.announced.is_none();
+        if !is_first || !Header::is_one(line.text) {
+            return false;
+        }
+        self.had_words = true;
+        self.header = Header::of(line.text);
+        true
     }
 
     /// Whether this is the count of points that some programs begin with; keeps it.
@@ -154,12 +185,14 @@ impl Table {
 
     /// Decides what the rows are, and lets them go.
     fn release(&self, name: &str, rows: &mut Vec<Row>, gather: &mut Gather<'_>) -> Result<Rest, Stop> {
-        let rest = match self.columns {
-            6 => decide(rows, true),
-            7 => decide(rows, false),
-            _ => Rest::None,
+        let rest = match (&self.header, self.columns) {
+            (Some(header), _) => header.rest(|| decide(rows, false)),
+            (None, 6) => decide(rows, true),
+            (None, 7) => decide(rows, false),
+            (None, _) => Rest::None,
         };
-        gather.expect(matches!(rest, Rest::Colour(_)), rest == Rest::Normal, false);
+        let has_colours = matches!(rest, Rest::Colour(_) | Rest::Both(_));
+        gather.expect(has_colours, matches!(rest, Rest::Normal | Rest::Both(_)), false);
         for row in std::mem::take(rows) {
             push(name, row, rest, gather)?;
         }
@@ -183,7 +216,8 @@ fn push(name: &str, row: Row, rest: Rest, gather: &mut Gather<'_>) -> Result<(),
     match rest {
         Rest::None => {}
         Rest::Normal => point.normal = row.rest.as_vec3(),
-        Rest::Colour(code) => {
+        Rest::Colour(code) | Rest::Both(code) => {
+            point.normal = row.normal.as_vec3();
             for (linear, stored) in point.colour.iter_mut().zip(row.rest.to_array()) {
                 *linear = code.linear(stored).ok_or_else(|| no_colour(name, row.line, stored, code))?;
             }
@@ -202,13 +236,15 @@ fn no_colour(name: &str, line: u64, stored: f64, code: ColourCode) -> InputError
         .with_help("a PLY file says what its numbers are; or make all colours run from 0 to 255")
 }
 
-fn no_number(name: &str, line: &Line<'_>, word: Word<'_>) -> InputError {
+pub(super) fn no_number(name: &str, line: &Line<'_>, word: Word<'_>) -> InputError {
     let message = match std::str::from_utf8(word.bytes) {
         Ok(_) => format!("`{}` is no number", word.shown()),
         Err(_) => "this is not UTF-8 text".to_owned(),
     };
-    line.error(name, Some(word), message)
-        .with_help("a line is `x y z`, `x y z r g b` or `x y z nx ny nz`; lines of words begin with # or //")
+    line.error(name, Some(word), message).with_help(
+        "a line is `x y z`, `x y z r g b` or `x y z nx ny nz`; lines of words begin with # or //, \
+             but for a first line with the names of the columns",
+    )
 }
 
 fn wrong_count(name: &str, line: &Line<'_>, count: &str) -> InputError {

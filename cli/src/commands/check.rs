@@ -3,20 +3,28 @@
 use super::Report;
 use super::report::write_text;
 use crate::error::CliError;
+use crate::input::name_of;
+use crate::input_error::InputError;
 use crate::options::{CameraOptions, CheckOptions};
 use crate::scene;
-use std::path::Path;
+use std::path::PathBuf;
 
 pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let result = (!options.common.quiet).then(|| PathBuf::from("-"));
+    let report = Report::new(&options.common)?.writing(&result)?;
     let overrides = CameraOptions::default().overrides(&options.set);
     let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides))?;
-    scene.warnings.iter().for_each(|warning| report.warn(warning));
+    let faults: Vec<String> = scene.unmatched.iter().map(InputError::to_string).collect();
+    scene.warnings.iter().filter(|w| !faults.contains(w)).for_each(|warning| report.warn(warning));
+    if let Some((first, rest)) = scene.unmatched.split_first() {
+        rest.iter().for_each(|fault| report.warn(&fault.to_string()));
+        return Err(first.clone().into());
+    }
     report.stats.count("triangles", scene.mesh.triangles.len() as u64);
     report.stats.count("lights", scene.lights.len() as u64);
     let text = format!(
         "{}: fine; {} triangles in {} objects, {} materials, {} textures, {} lights, {}×{} pixels",
-        options.scene.display(),
+        name_of(&options.scene),
         scene.mesh.triangles.len(),
         scene.mesh.objects.len(),
         scene.materials.len(),
@@ -25,8 +33,8 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
         scene.image.width,
         scene.image.height
     );
-    if !options.common.quiet {
-        write_text(Path::new("-"), |output| writeln!(output, "{text}"))?;
+    if let Some(path) = &result {
+        write_text(path, |output| writeln!(output, "{text}"))?;
     }
     report.finish()
 }

@@ -5,13 +5,18 @@ use super::report::{check_output, write_text};
 use crate::compare::{compare, difference_bytes};
 use crate::error::CliError;
 use crate::image_io::{encode_rgb_png, read_picture, write_atomically};
+use crate::input::{is_standard, name_of};
 use crate::input_error::InputError;
 use crate::options::CompareOptions;
 use std::path::Path;
 
 pub(super) fn run(options: &CompareOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
-    check_output(&options.output.path)?;
+    let report =
+        Report::new(&options.common)?.reading([&options.a, &options.b])?.writing([&options.output.path])?;
+    if options.diff.as_deref().is_some_and(is_standard) {
+        let message = "--diff -: a picture is no text, and goes to a file";
+        return Err(CliError::Usage(message.to_owned()));
+    }
     if let Some(path) = &options.diff {
         check_diff(path)?;
     }
@@ -19,8 +24,8 @@ pub(super) fn run(options: &CompareOptions) -> Result<(), CliError> {
     let (a, b) = (a?, b?);
     if a.size != b.size {
         let [[aw, ah], [bw, bh]] = [a.size, b.size];
-        let message = format!("is {bw}×{bh}, but {} is {aw}×{ah}", options.a.display());
-        let error = InputError::of_file(options.b.display().to_string(), message);
+        let message = format!("is {bw}×{bh}, but {} is {aw}×{ah}", name_of(&options.a));
+        let error = InputError::of_file(name_of(&options.b), message);
         return Err(error.with_help("only pictures of the same size can be compared").into());
     }
     let differences = report.stats.stage("compare", || compare(&a, &b));

@@ -7,8 +7,8 @@ use crate::error::CliError;
 use crate::options::DiceOptions;
 
 pub(super) fn run(options: &DiceOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
-    answer_lines(&report, &options.input, &options.output.path, |input, output, name| {
-        report.stats.stage("dice", || dice_command::run(input, output, options.areas, name))
+    let report = Report::new(&options.common)?.writing([&options.output.path])?;
+    answer_lines(&report, &options.input, &options.output.path, |lines, output| {
+        report.stats.stage("dice", || dice_command::run(lines, output, options.areas))
     })
 }

@@ -4,8 +4,12 @@ use super::report::write_text;
 use crate::error::CliError;
 use crate::image_io::write_atomically;
 use crate::options::Cli;
-use clap::CommandFactory as _;
+use clap::builder::Resettable;
+use clap::{Command, CommandFactory as _};
 use clap_complete::Shell;
+use clap_mangen::Man;
+use clap_mangen::roff::{Roff, roman};
+use std::io;
 use std::path::Path;
 
 pub(super) fn completions(shell: Shell) -> Result<(), CliError> {
@@ -15,33 +19,42 @@ pub(super) fn completions(shell: Shell) -> Result<(), CliError> {
 }
 
 pub(super) fn man(folder: Option<&Path>) -> Result<(), CliError> {
-    let mut command = Cli::command();
+    // Every page would have a neighbour `…-help(1)` that says nothing.
+    let mut command = Cli::command().disable_help_subcommand(true);
     command.build();
+    let failed = |error| CliError::Failed(format!("the manual page cannot be made: {error}"));
     let Some(folder) = folder else {
-        let page = page(command)?;
+        let page = page(command).map_err(failed)?;
         return write_text(Path::new("-"), |output| output.write_all(&page));
     };
-    let mut pages = vec![("pointillist.1".to_owned(), command.clone())];
-    for sub in command.get_subcommands().filter(|sub| sub.get_name() != "help") {
-        let name = format!("pointillist-{}", sub.get_name());
-        // clap wants names that live as long as the program; these are eight, once.
-        pages.push((format!("{name}.1"), sub.clone().name(&*name.leak())));
-    }
     std::fs::create_dir_all(folder)
         .map_err(|error| CliError::writing(&folder.display().to_string(), &error))?;
-    for (file, command) in pages {
-        let page = page(command)?;
-        let path = folder.join(file);
-        write_atomically(&path, |output| std::io::Write::write_all(output, &page))
+    let mut commands = vec![command];
+    while let Some(command) = commands.pop() {
+        commands.extend(command.get_subcommands().cloned());
+        let path = folder.join(Man::new(command.clone()).get_filename());
+        let page = page(command).map_err(failed)?;
+        write_atomically(&path, |output| io::Write::write_all(output, &page))
             .map_err(|error| CliError::writing(&path.display().to_string(), &error))?;
     }
     Ok(())
 }
 
-fn page(command: clap::Command) -> Result<Vec<u8>, CliError> {
+/// The page of a command. What follows the options in `--help`, examples mostly, keeps its lines: as text of a manual page they would be
+/// filled into a paragraph, and no longer be commands.
+fn page(command: Command) -> io::Result<Vec<u8>> {
+    let after = command.get_after_long_help().or_else(|| command.get_after_help()).map(ToString::to_string);
     let mut page = Vec::new();
-    clap_mangen::Man::new(command)
-        .render(&mut page)
-        .map_err(|error| CliError::Failed(format!("the manual page cannot be made: {error}")))?;
+    Man::new(command.after_help(Resettable::Reset).after_long_help(Resettable::Reset)).render(&mut page)?;
+    let Some(after) = after else { return Ok(page) };
+    let examples = after.split_once('\n').filter(|(first, _)| first.starts_with("Example"));
+    let (title, lines) = examples.map_or(("EXIT STATUS", after.as_str()), |(_, lines)| ("EXAMPLES", lines));
+    let mut roff = Roff::new();
+    roff.control("SH", [title]).control("nf", []);
+    for line in lines.lines() {
+        roff.text([roman(line)]);
+    }
+    roff.control("fi", []);
+    roff.to_writer(&mut page)?;
     Ok(page)
 }

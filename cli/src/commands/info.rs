@@ -1,27 +1,30 @@
 //! `info`.
 
 use super::Report;
-use super::report::{check_output, write_text};
+use super::report::write_text;
 use crate::cloud_io::{self, CloudOptions, CloudSummary, Pose};
 use crate::error::CliError;
 use crate::image_io::{ExrFile, read_picture};
+use crate::input;
 use crate::input_error::InputError;
+use crate::json_kind::JsonKind;
+use crate::json_words;
 use crate::memory;
 use crate::mesh_io::gltf::read_gltf;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::options::InfoOptions;
 use crate::probe_io::{ProbeEntry, ProbeFile, read_probes};
+use crate::radiosity::{BakedFile, read_baked};
 use crate::scene::{self, Material, Overrides, Projection, Scene};
 use glam::DVec3;
 use pointillist_shade::Model;
-use serde::de::IgnoredAny;
+use serde::Deserialize;
 use serde_json::{Value, json};
-use std::collections::HashMap;
+use std::f64::consts::PI;
 use std::path::Path;
 
 pub(super) fn run(options: &InfoOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
-    check_output(&options.output.path)?;
+    let report = Report::new(&options.common)?.writing([&options.output.path])?;
     let value = report.stats.stage("load", || describe(&options.file))?;
     write_text(&options.output.path, |output| {
         serde_json::to_writer_pretty(&mut *output, &value)?;
@@ -30,14 +33,21 @@ pub(super) fn run(options: &InfoOptions) -> Result<(), CliError> {
     report.finish()
 }
 
+/// What `probe project` writes.
+#[derive(Deserialize)]
+struct Harmonics {
+    order: usize,
+    sh: Vec<[f64; 3]>,
+}
+
 fn describe(path: &Path) -> Result<Value, InputError> {
-    let name = path.display().to_string();
-    let bytes = || memory::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")));
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let name = input::name_of(path);
+    let bytes = || input::read(path);
+    let extension = input::kind_of(path)?;
     match extension.as_str() {
         "probes" => Ok(of_probes(&read_probes(path)?)),
-        "json" if has_key(&bytes()?, "probes") => Ok(of_probes(&read_probes(path)?)),
-        "toml" | "json" => Ok(of_scene(&scene::load(path, &Overrides::default())?)),
+        "json" => of_json(path, &bytes()?),
+        "toml" => Ok(of_scene(&scene::load(path, &Overrides::default())?)),
         "obj" => Ok(of_mesh("obj", &read_obj(&name, &bytes()?)?)),
         "ply" => of_ply(path, &name),
         "gltf" | "glb" => of_gltf(&extension, &name, path, &bytes()?),
@@ -86,10 +96,51 @@ fn of_scene(scene: &Scene) -> Value {
     })
 }
 
-/// Whether a text is a JSON object with this key. A scene's JSON has comments now and then, which this reader refuses: no matter.
-fn has_key(text: &[u8], key: &str) -> bool {
-    let keys = serde_json::from_slice::<HashMap<String, IgnoredAny>>(text);
-    keys.is_ok_and(|keys| keys.contains_key(key))
+fn of_json(path: &Path, text: &[u8]) -> Result<Value, InputError> {
+    match JsonKind::of_text(text) {
+        Some(JsonKind::Probes) => Ok(of_probes(&read_probes(path)?)),
+        Some(JsonKind::Radiosity) => Ok(of_radiosity(&read_baked(path)?)),
+        Some(JsonKind::Harmonics) => of_harmonics(&input::name_of(path), text),
+        Some(JsonKind::Scene) | None => Ok(of_scene(&scene::load(path, &Overrides::default())?)),
+    }
+}
+
+fn of_radiosity(file: &BakedFile) -> Value {
+    let positions: Vec<DVec3> = file.positions.iter().copied().map(DVec3::from_array).collect();
+    json!({
+        "kind": "radiosity",
+        "surfaces": file.surfaces.len(),
+        "patches": file.patches,
+        "vertices": file.positions.len(),
+        "triangles": file.triangles.len(),
+        "error_bound": file.bound,
+        "bounds": bounds(&positions),
+        "units": { "bounds": "as the scene", "irradiance, radiosity, error_bound": "power per area, linear RGB" },
+        "geometry": file.geometry,
+        "light": file.light,
+    })
+}
+
+fn of_harmonics(name: &str, text: &[u8]) -> Result<Value, InputError> {
+    let help = "harmonics are {\"order\":2,\"sh\":[[r,g,b], …]}, as `pointillist probe project` writes them";
+    let file: Harmonics = json_words::parse(name, text, help)?;
+    if file.order.checked_add(1).and_then(|n| n.checked_pow(2)) != Some(file.sh.len()) {
+        let message = format!(
+            "`sh` has {} coefficients, which is not (order + 1)² for order {}",
+            file.sh.len(),
+            file.order
+        );
+        return Err(InputError::of_file(name, message).with_help(help));
+    }
+    // The first function is 1/(2√π) everywhere.
+    let mean = file.sh[0].map(|c| c / (2.0 * PI.sqrt()));
+    Ok(json!({
+        "kind": "harmonics",
+        "order": file.order,
+        "coefficients": file.sh.len(),
+        "mean_radiance": mean,
+        "units": { "sh": "radiance, linear RGB, real orthonormal basis" },
+    }))
 }
 
 fn of_probes(file: &ProbeFile) -> Value {
@@ -107,6 +158,7 @@ fn of_probes(file: &ProbeFile) -> Value {
         "fit": file.fit,
         "part": file.part,
         "bounds": bounds(&file.positions()),
+        "units": { "bounds": "as the scene", "sh": "radiance, linear RGB, real orthonormal basis" },
         "fingerprint": file.fingerprint,
     })
 }
@@ -180,8 +232,7 @@ fn of_ply(path: &Path, name: &str) -> Result<Value, InputError> {
     if summary.faces == 0 {
         return Ok(of_cloud(&summary));
     }
-    let bytes = memory::read(path).map_err(|e| InputError::of_file(name, format!("cannot be read: {e}")))?;
-    Ok(of_mesh("ply", &read_ply(name, &bytes)?))
+    Ok(of_mesh("ply", &read_ply(name, &input::read(path)?)?))
 }
 
 /// Broken points are counted and not an error: this command is for looking at files.
@@ -200,6 +251,7 @@ fn of_cloud(summary: &CloudSummary) -> Value {
         "normals": summary.has_normals,
         "radii": summary.has_radii,
         "bounds": summary.bounds.map(|corner| corner.to_array()),
+        "units": { "bounds": "as the file; clouds do not say their unit" },
         "warnings": summary.warnings,
     });
     if let Some(grid) = summary.grid {

@@ -1,12 +1,12 @@
 //! Commands that answer JSON lines: where lines come from, and where answers go.
 
 use super::Report;
-use super::report::{check_output, write_text};
+use super::report::write_text;
 use crate::error::CliError;
-use crate::input_error::InputError;
-use crate::json_lines::JsonLinesError;
+use crate::input::{cannot_read, is_standard, name_of};
+use crate::json_lines::{JsonLinesError, Lines};
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Write};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 /// Gives `run` the lines of `input` and where answers to `output` go; `-` is standard input and output.
@@ -17,20 +17,18 @@ pub(super) fn answer_lines(
     report: &Report<'_>,
     input: &Path,
     output: &Path,
-    run: impl FnOnce(&mut dyn BufRead, &mut dyn Write, &str) -> Result<(), JsonLinesError>,
+    run: impl FnOnce(&mut Lines<'_>, &mut dyn Write) -> Result<(), JsonLinesError>,
 ) -> Result<(), CliError> {
-    check_output(output)?;
-    let name = input.display().to_string();
-    let mut lines: Box<dyn BufRead> = if input == Path::new("-") {
+    let name = name_of(input);
+    let stream: Box<dyn Read> = if is_standard(input) {
         Box::new(io::stdin().lock())
     } else {
-        let file = File::open(input)
-            .map_err(|error| InputError::of_file(&name, format!("cannot be read: {error}")))?;
-        Box::new(BufReader::new(file))
+        Box::new(File::open(input).map_err(|error| cannot_read(&name, &error))?)
     };
+    let mut lines = Lines::new(stream, &name);
     let mut stopped = None;
     let answer = |output: &mut dyn Write| {
-        run(&mut *lines, output, &name).map_err(|error| {
+        run(&mut lines, output).map_err(|error| {
             let kind = match &error {
                 JsonLinesError::Write(error) => error.kind(),
                 _ => io::ErrorKind::Other,
@@ -40,7 +38,7 @@ pub(super) fn answer_lines(
         })
     };
     // On standard output the results of the lines before a bad one stay: they are already read.
-    let result = if output == Path::new("-") {
+    let result = if is_standard(output) {
         let mut output = io::BufWriter::new(io::stdout().lock());
         answer(&mut output)
             .and_then(|()| output.flush())

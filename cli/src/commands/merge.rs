@@ -3,9 +3,9 @@
 use super::Report;
 use super::probe::{is_probe_file, merge_probes};
 use super::render::{OutputFormat, write_exr, write_png};
-use super::report::check_output;
 use crate::error::CliError;
 use crate::image_io::{Channel, ExrFile, Frame, PngOptions, Stamp, Window};
+use crate::input::is_standard;
 use crate::input_error::InputError;
 use crate::memory;
 use crate::options::MergeOptions;
@@ -20,12 +20,12 @@ struct Part {
 }
 
 pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
-    if is_probe_file(&options.output) {
+    let report = Report::new(&options.common)?.reading(&options.parts)?.writing([&options.output])?;
+    let is_text = is_standard(&options.output) && options.parts.iter().all(|part| is_probe_file(part));
+    if is_text || is_probe_file(&options.output) {
         return merge_probes(options, &report);
     }
     let format = OutputFormat::of(&options.output)?;
-    check_output(&options.output)?;
     let parts = options.parts.iter().map(|path| report.stats.stage("load", || read_part(path)));
     let mut parts = parts.collect::<Result<Vec<_>, _>>()?;
     report.stats.count("parts", parts.len() as u64);

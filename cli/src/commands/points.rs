@@ -5,9 +5,9 @@ use super::render::{OutputFormat, is_there, write_exr, write_png};
 use super::report::check_output;
 use crate::error::CliError;
 use crate::image_io::{ExrFile, Frame, PngOptions, Precision, Stamp, Window};
-use crate::job::Progress;
+use crate::input::is_standard;
 use crate::memory;
-use crate::options::{CameraOptions, Common, PictureOptions, Vector};
+use crate::options::{CameraOptions, PictureOptions, Vector};
 use crate::scene::description::{CameraDescription, DEFAULT_FOV_DEG};
 use crate::scene::{Camera, Projection, frame_around};
 use cpu_time::ProcessTime;
@@ -43,14 +43,18 @@ pub(super) fn check_view(options: &CameraOptions) -> Result<(Window, Window), Cl
     options.windows(width, height)
 }
 
-/// `-o`, or the name of the first file: `bun.ply.gz` gives `bun.png`.
+/// `-o`, or the name of the first file: `bun.ply.gz` gives `bun.png`, and standard input `pointillist.png`.
 pub(super) fn output_path(given: Option<&Path>, first: &Path) -> PathBuf {
     let own = || {
         let name = PathBuf::from(first.file_name().unwrap_or_default());
         let name = if name.extension().is_some_and(|e| e == "gz") { name.with_extension("") } else { name };
         name.with_extension("png")
     };
-    given.map_or_else(own, Path::to_path_buf)
+    match given {
+        Some(path) => path.to_owned(),
+        None if is_standard(first) => PathBuf::from("pointillist.png"),
+        None => own(),
+    }
 }
 
 /// The camera of the options; what they leave open has all points in view. `fov_deg` is for options without one.
@@ -76,11 +80,10 @@ pub(super) fn camera<I: Iterator<Item = DVec3>>(
 /// Draws a frame as often as `--repeat` asks, and notes how long each took.
 pub(super) fn repeat(
     report: &Report<'_>,
-    common: &Common,
     times: u32,
     mut draw: impl FnMut() -> Result<(), CliError>,
 ) -> Result<(), CliError> {
-    let progress = Progress::new(common.progress_mode());
+    let progress = report.progress();
     progress.begin("draw", u64::from(times));
     for _ in 0..times {
         let (wall, cpu) = (Instant::now(), ProcessTime::try_now().ok());

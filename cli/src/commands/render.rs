@@ -6,7 +6,8 @@ use crate::error::CliError;
 use crate::image_io::{
     ExrFile, Frame, LayerKind, PngOptions, Precision, Stamp, Window, encode_png, write_atomically,
 };
-use crate::job::{Progress, RenderJob};
+use crate::input::is_standard;
+use crate::job::RenderJob;
 use crate::options::{LayerRequest, RenderOptions};
 use crate::scene::{self, Scene};
 use crate::{memory, pipeline};
@@ -28,6 +29,11 @@ impl OutputFormat {
         match extension.as_str() {
             "exr" => Ok(Self::Exr),
             "png" => Ok(Self::Png),
+            _ if is_standard(path) => {
+                let message =
+                    "-o -: a picture is no text, and goes to a file whose name ends in .png or .exr";
+                Err(CliError::Usage(message.to_owned()))
+            }
             _ => Err(CliError::Usage(format!("`{}`: a picture's name ends in .png or .exr", path.display()))),
         }
     }
@@ -66,7 +72,7 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
         report.note(&format!("{} is already there; --overwrite draws it again", output.display()));
         return report.finish();
     }
-    let progress = Progress::new(options.common.progress_mode());
+    let progress = report.progress();
     let result = pipeline::render(&scene, &job, &progress, &report.stats);
     progress.finish();
     let frame = result.map_err(|error| CliError::Failed(error.to_string()))?;
@@ -85,7 +91,7 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
 fn output_path(options: &RenderOptions) -> PathBuf {
     match (&options.output, &options.scene) {
         (Some(output), _) => output.clone(),
-        (None, Some(scene)) if scene != Path::new("-") => {
+        (None, Some(scene)) if !is_standard(scene) => {
             PathBuf::from(scene.with_extension("png").file_name().unwrap_or_default())
         }
         _ => PathBuf::from("pointillist.png"),

@@ -2,16 +2,19 @@
 
 use crate::error::CliError;
 use crate::image_io::{check_writable, write_atomically};
-use crate::job::Stats;
+use crate::input::is_standard;
+use crate::job::{Progress, Stats};
 use crate::memory;
 use crate::options::Common;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The running command's voice and clock.
 pub(super) struct Report<'a> {
     common: &'a Common,
     pub(super) stats: Stats,
+    /// Whether standard output is a result.
+    on_stdout: bool,
 }
 
 impl<'a> Report<'a> {
@@ -21,7 +24,41 @@ impl<'a> Report<'a> {
         common.memory.into_iter().for_each(memory::allow);
         common.stats.as_deref().map_or(Ok(()), check_output)?;
         start_threads(common.thread_count());
-        Ok(Self { common, stats })
+        let on_stdout = common.stats.as_deref().is_some_and(is_standard);
+        Ok(Self { common, stats, on_stdout })
+    }
+
+    /// Says what the command reads; refuses to read standard input twice.
+    pub(super) fn reading<'p>(self, inputs: impl IntoIterator<Item = &'p PathBuf>) -> Result<Self, CliError> {
+        if inputs.into_iter().filter(|path| is_standard(path)).count() > 1 {
+            let message = "`-` is given twice, but standard input can be read only once";
+            return Err(CliError::Usage(message.to_owned()));
+        }
+        Ok(self)
+    }
+
+    /// Says where results go beside `--stats`; refuses to put two of them on standard output, and files that cannot be written.
+    pub(super) fn writing<'p>(
+        mut self,
+        outputs: impl IntoIterator<Item = &'p PathBuf>,
+    ) -> Result<Self, CliError> {
+        let mut results = usize::from(self.on_stdout);
+        for path in outputs {
+            results += usize::from(is_standard(path));
+            check_output(path)?;
+        }
+        if results > 1 {
+            let message =
+                "two results go to standard output; name a file for all but one of -o, --stats and others";
+            return Err(CliError::Usage(message.to_owned()));
+        }
+        self.on_stdout = results == 1;
+        Ok(self)
+    }
+
+    /// Shows how far the command is, as the user wants it shown.
+    pub(super) fn progress(&self) -> Progress {
+        Progress::new(self.common.progress_mode(self.on_stdout))
     }
 
     /// Tells the user something worth knowing.
@@ -72,10 +109,15 @@ fn start_threads(count: usize) {
 
 /// Looks whether a file can be written, before any work is done for it; `-` is standard output.
 pub(super) fn check_output(path: &Path) -> Result<(), CliError> {
-    if path == Path::new("-") {
+    if is_standard(path) {
         return Ok(());
     }
     check_writable(path).map_err(|error| CliError::writing(&path.display().to_string(), &error))
+}
+
+/// What notes call a result.
+pub(super) fn name_of_output(path: &Path) -> String {
+    if is_standard(path) { "standard output".to_owned() } else { path.display().to_string() }
 }
 
 /// Writes text to a file as a whole, or to standard output for `-`.
@@ -83,10 +125,10 @@ pub(super) fn write_text(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), CliError> {
-    if path == Path::new("-") {
+    if is_standard(path) {
         let mut output = BufWriter::new(io::stdout().lock());
         let result = write(&mut output).and_then(|()| output.flush());
-        return result.map_err(|error| CliError::writing("standard output", &error));
+        return result.map_err(|error| CliError::writing(&name_of_output(path), &error));
     }
     write_atomically(path, |output| write(output))
         .map_err(|error| CliError::writing(&path.display().to_string(), &error))

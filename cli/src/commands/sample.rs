@@ -1,57 +1,61 @@
 //! `sample`.
 
 use super::Report;
-use super::report::check_output;
+use super::report::{name_of_output, write_text};
 use crate::cloud_io::{CloudPoint, PlyEncoding, write_ply};
 use crate::error::CliError;
-use crate::image_io::write_atomically;
+use crate::input::{is_standard, kind_of, name_of};
 use crate::input_error::InputError;
 use crate::memory;
 use crate::options::SampleOptions;
 use crate::scene::{self, NONE, Overrides, Scene, srgb_from_linear};
 use glam::{DVec3, Vec3};
-use pointillist_surfel::{Amount, Method, SurfacePoint, SurfelError, sample};
+use pointillist_surfel::{Amount, Method, SurfacePoint, SurfelError, sample_with};
 use rayon::prelude::*;
+use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
+/// Units of the progress bar, and the share of the time that choosing points takes, about; the rest is colours and writing.
+const PROGRESS_STEPS: u64 = 1000;
+const SAMPLED: f64 = 0.9;
+
 pub(super) fn run(options: &SampleOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
     let output = output_path(options);
-    if output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("ply")) {
-        return Err(CliError::Usage(format!("`{}`: a cloud's name ends in .ply", output.display())));
-    }
-    check_output(&output)?;
+    let report = Report::new(&options.common)?.writing([&output])?;
+    check_output(&output, options)?;
     check_memory(options)?;
-    let scene = report.stats.stage("load", || scene::load(&options.model, &overrides(options)))?;
+    let scene = report.stats.stage("load", || scene::load(&options.model, &overrides(options)?))?;
     scene.warnings.iter().for_each(|warning| report.warn(warning));
     if scene.materials.iter().any(|m| m.opacity_map.is_some() || m.surface.opacity < 1.0) {
         report.warn("opacity has no place in the cloud: what can be seen through becomes solid");
     }
+    let progress = report.progress();
+    progress.begin("sample", PROGRESS_STEPS);
     let points = report.stats.stage("sample", || {
-        sample(&scene.mesh.positions, &scene.mesh.triangles, &options.sampler())
+        let done = |share| progress.reach(SAMPLED * share);
+        sample_with(&scene.mesh.positions, &scene.mesh.triangles, &options.sampler(), &done)
             .map_err(|error| refusal(&options.model, error))
     })?;
+    progress.reach(SAMPLED);
     if points.is_empty() {
         report.warn("no ray meets the model; try a smaller --spacing, or --method poisson");
     }
     let cloud: Vec<CloudPoint> =
         report.stats.stage("attributes", || points.par_iter().map(|p| with_attributes(&scene, p)).collect());
     let encoding = if options.ascii { PlyEncoding::Ascii } else { PlyEncoding::Binary };
-    report.stats.stage("write", || {
-        write_atomically(&output, |file| write_ply(file, &cloud, encoding))
-            .map_err(|error| CliError::writing(&output.display().to_string(), &error))
-    })?;
+    report.stats.stage("write", || write_text(&output, |file| write_ply(file, &cloud, encoding)))?;
     report.stats.count("triangles", scene.mesh.triangles.len() as u64);
     report.stats.count("points", cloud.len() as u64);
+    progress.finish();
     let seconds = report.stats.elapsed().as_secs_f64();
-    report.note(&format!("{}: {} points in {seconds:.2} s", output.display(), cloud.len()));
+    report.note(&format!("{}: {} points in {seconds:.2} s", name_of_output(&output), cloud.len()));
     report.finish()
 }
 
 /// `bunny.obj` gives `bunny.points.ply`, which cannot be the model itself.
 fn output_path(options: &SampleOptions) -> PathBuf {
     let own = || {
-        let stem = options.model.file_stem().filter(|_| options.model != Path::new("-"));
+        let stem = options.model.file_stem().filter(|_| !is_standard(&options.model));
         let mut name = stem.unwrap_or("model".as_ref()).to_owned();
         name.push(".points.ply");
         PathBuf::from(name)
@@ -59,21 +63,33 @@ fn output_path(options: &SampleOptions) -> PathBuf {
     options.output.clone().unwrap_or_else(own)
 }
 
+/// Refuses names of other formats, and numbers of a binary file on a terminal.
+fn check_output(output: &Path, options: &SampleOptions) -> Result<(), CliError> {
+    if !is_standard(output) {
+        let is_ply = output.extension().is_some_and(|e| e.eq_ignore_ascii_case("ply"));
+        let message = || format!("`{}`: a cloud's name ends in .ply", output.display());
+        return if is_ply { Ok(()) } else { Err(CliError::Usage(message())) };
+    }
+    if !options.ascii && std::io::stdout().is_terminal() {
+        let message =
+            "-o -: a binary PLY is nothing for a terminal; add --ascii, or send it to a file or a pipe";
+        return Err(CliError::Usage(message.to_owned()));
+    }
+    Ok(())
+}
+
 /// A mesh alone has no say about shading: it gets smooth normals where its file has none.
-fn overrides(options: &SampleOptions) -> Overrides {
-    let is_mesh = options
-        .model
-        .extension()
-        .is_some_and(|e| ["obj", "ply"].iter().any(|kind| e.eq_ignore_ascii_case(kind)));
+fn overrides(options: &SampleOptions) -> Result<Overrides, InputError> {
+    let is_mesh = ["obj", "ply"].contains(&kind_of(&options.model)?.as_str());
     let smooth = is_mesh.then(|| ("sample".to_owned(), "render.shading=phong".to_owned()));
     let given = options.set.iter().map(|assignment| ("--set".to_owned(), assignment.clone()));
-    Overrides { assignments: smooth.into_iter().chain(given).collect() }
+    Ok(Overrides { assignments: smooth.into_iter().chain(given).collect() })
 }
 
 /// Whether the model or an option is to blame.
 fn refusal(model: &Path, error: SurfelError) -> CliError {
     match error {
-        SurfelError::NoArea { .. } => InputError::of_file(model.display().to_string(), error.to_string())
+        SurfelError::NoArea { .. } => InputError::of_file(name_of(model), error.to_string())
             .with_help("check that its triangles are not all lines or points")
             .into(),
         _ => CliError::Usage(error.to_string()),

@@ -13,7 +13,7 @@ use pointillist_ibpr as ibpr;
 const LAYERS: [PointLayer; 3] = [PointLayer::Normal, PointLayer::Position, PointLayer::Count];
 
 pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let report = Report::new(&options.common)?.reading(&options.files)?;
     let path = points::output_path(options.output.as_deref(), &options.files[0]);
     let target = Target::new(path, &options.picture, !options.layers.is_empty())?;
     let (region, window) = points::check_view(&options.camera)?;
@@ -77,7 +77,7 @@ fn draw(
         .map_err(usage)?;
     let frame_options = options.frame_options();
     let mut renderer = ibpr::Renderer::new();
-    points::repeat(report, &options.common, options.repeat, || {
+    points::repeat(report, options.repeat, || {
         renderer.draw(cloud, &view, &frame_options, frame).map_err(usage)
     })
 }

@@ -13,7 +13,7 @@ use pointillist_surfel as surfel;
 const LAYERS: [PointLayer; 2] = [PointLayer::Normal, PointLayer::Position];
 
 pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let report = Report::new(&options.common)?.reading(&options.clouds)?;
     let path = points::output_path(options.output.as_deref(), &options.clouds[0]);
     let target = Target::new(path, &options.picture, !options.layers.is_empty())?;
     let layers = layer_list(&options.layers, &LAYERS)
@@ -38,7 +38,7 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
         let usage = |error: surfel::SurfelError| CliError::Usage(error.to_string());
         let view = view(&camera, size).map_err(usage)?;
         let mut renderer = surfel::Renderer::new();
-        points::repeat(&report, &options.common, options.repeat, || {
+        points::repeat(&report, options.repeat, || {
             renderer.draw(&cloud, &view, &frame_options, &mut frame).map_err(usage)
         })
     })?;

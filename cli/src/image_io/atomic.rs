@@ -39,6 +39,8 @@ pub fn check_writable(path: &Path) -> io::Result<()> {
 
 /// Writes a file under a temporary name in the same folder and renames it once `write` has succeeded.
 ///
+/// A file that is replaced keeps its mode; a new one gets what the umask leaves.
+///
 /// Something that is there and no plain file (a pipe, a device) is written to as it is.
 ///
 /// # Errors
@@ -59,7 +61,12 @@ pub fn write_atomically(
     let temporary = temporary_for(path)?;
     let name = temporary.path().to_path_buf();
     temporaries().push(name.clone());
+    let keep_mode = |file: &File| match path.metadata() {
+        Ok(old) => file.set_permissions(old.permissions()),
+        Err(_) => Ok(()),
+    };
     let result = fill(temporary.as_file())
+        .and_then(|()| keep_mode(temporary.as_file()))
         .and_then(|()| temporary.persist(target_of(path)).map(drop).map_err(|e| e.error));
     temporaries().retain(|path| *path != name);
     result

@@ -1,6 +1,7 @@
 //! Reading any picture for its colours.
 
 use super::{ExrError, ExrFile, Window};
+use crate::input;
 use crate::input_error::InputError;
 use crate::memory;
 use crate::scene::linear_from_srgb;
@@ -86,9 +87,8 @@ enum Decoded {
 }
 
 fn decode(path: &Path) -> Result<Decoded, InputError> {
-    let name = path.display().to_string();
-    let bytes =
-        crate::memory::read(path).map_err(|e| InputError::of_file(&name, format!("cannot be read: {e}")))?;
+    let name = input::name_of(path);
+    let bytes = input::read(path)?;
     let fault = |message: String| {
         let error = InputError::of_file(&name, format!("cannot be decoded: {message}"));
         error.with_help("EXR, PNG, JPEG and HDR pictures can be read")

@@ -1,8 +1,7 @@
 //! 8-bit sRGB with straight alpha.
 
 use crate::scene::srgb_from_linear;
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder as _};
+use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent};
 use std::io::{self, Write};
 
 /// How linear colours become bytes.
@@ -28,7 +27,7 @@ pub fn encode_png(
 ) -> io::Result<()> {
     let gain = options.exposure_ev.exp2();
     let bytes: Vec<u8> = color.iter().flat_map(|&pixel| straight(pixel, options.background, gain)).collect();
-    encode(output, &bytes, width, height, ExtendedColorType::Rgba8)
+    encode(output, &bytes, width, height, ColorType::Rgba)
 }
 
 /// Writes encoded red, green and blue bytes.
@@ -37,20 +36,23 @@ pub fn encode_png(
 ///
 /// What the output says.
 pub fn encode_rgb_png(output: impl Write, bytes: &[u8], width: u32, height: u32) -> io::Result<()> {
-    encode(output, bytes, width, height, ExtendedColorType::Rgb8)
+    encode(output, bytes, width, height, ColorType::Rgb)
 }
 
-fn encode(
-    output: impl Write,
-    bytes: &[u8],
-    width: u32,
-    height: u32,
-    kind: ExtendedColorType,
-) -> io::Result<()> {
-    PngEncoder::new(output).write_image(bytes, width, height, kind).map_err(|error| match error {
-        image::ImageError::IoError(error) => error,
+fn encode(output: impl Write, bytes: &[u8], width: u32, height: u32, kind: ColorType) -> io::Result<()> {
+    let failed = |error: EncodingError| match error {
+        EncodingError::IoError(error) => error,
         other => io::Error::other(other.to_string()),
-    })
+    };
+    let mut encoder = Encoder::new(output, width, height);
+    encoder.set_color(kind);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Fast);
+    // Says that the bytes are sRGB: without it, viewers that manage colours may take them for the screen's own.
+    encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(bytes).map_err(failed)?;
+    writer.finish().map_err(failed)
 }
 
 /// The bytes of one pixel. Where nothing but background is seen the colour is kept, under alpha 0.

@@ -3,6 +3,7 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// Who is told about progress.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,6 +13,8 @@ pub enum ProgressMode {
     Auto,
     /// `openjd_progress: N` lines on standard output.
     OpenJd,
+    /// The same on standard error, because standard output is the result.
+    OpenJdOnStderr,
     /// Nobody.
     Off,
 }
@@ -20,11 +23,11 @@ pub enum ProgressMode {
 #[derive(Debug)]
 pub struct Progress {
     bar: Option<ProgressBar>,
-    lines: bool,
+    mode: ProgressMode,
     done: AtomicU64,
     total: AtomicU64,
     /// The last percentage printed, plus one; 0 before the first.
-    printed: AtomicU64,
+    printed: Mutex<u64>,
 }
 
 impl Progress {
@@ -36,13 +39,7 @@ impl Progress {
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
             bar
         });
-        Self {
-            bar,
-            lines: mode == ProgressMode::OpenJd,
-            done: AtomicU64::new(0),
-            total: AtomicU64::new(0),
-            printed: AtomicU64::new(0),
-        }
+        Self { bar, mode, done: AtomicU64::new(0), total: AtomicU64::new(0), printed: Mutex::new(0) }
     }
 
     /// Says what is going on and how many units of it there are; all stages that follow one another should be
@@ -67,6 +64,19 @@ impl Progress {
         self.print(done);
     }
 
+    /// Goes on to this share of all units, unless that would be back.
+    pub fn reach(&self, share: f64) {
+        let total = self.total.load(Ordering::Relaxed);
+        let wanted = (share.clamp(0.0, 1.0) * total as f64) as u64;
+        let before = self.done.fetch_max(wanted, Ordering::Relaxed);
+        if wanted > before {
+            if let Some(bar) = &self.bar {
+                bar.set_position(wanted);
+            }
+            self.print(wanted);
+        }
+    }
+
     /// Removes the bar, or prints the last line.
     pub fn finish(&self) {
         if let Some(bar) = &self.bar {
@@ -77,16 +87,23 @@ impl Progress {
 
     fn print(&self, done: u64) {
         let total = self.total.load(Ordering::Relaxed);
-        if !self.lines || total == 0 {
+        let is_lines = matches!(self.mode, ProgressMode::OpenJd | ProgressMode::OpenJdOnStderr);
+        if !is_lines || total == 0 {
             return;
         }
         let percent = (u128::from(done.min(total)) * 100 / u128::from(total)) as u64;
-        // Only the thread that raises the number prints it, so that the lines never go back.
-        let before = self.printed.fetch_max(percent + 1, Ordering::Relaxed);
-        if before < percent + 1 {
-            let mut out = std::io::stdout().lock();
+        // Held while the line is printed: a thread that raised the number but printed later would go back.
+        let mut printed = self.printed.lock().unwrap_or_else(PoisonError::into_inner);
+        if *printed < percent + 1 {
+            *printed = percent + 1;
+            let line = format!("openjd_progress: {percent}\n");
             // A reader that went away is no reason to stop drawing.
-            let _ = writeln!(out, "openjd_progress: {percent}").and_then(|()| out.flush());
+            let _ = if self.mode == ProgressMode::OpenJd {
+                let mut out = std::io::stdout().lock();
+                out.write_all(line.as_bytes()).and_then(|()| out.flush())
+            } else {
+                std::io::stderr().write_all(line.as_bytes())
+            };
         }
     }
 }

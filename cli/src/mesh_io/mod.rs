@@ -4,12 +4,14 @@
 
 pub mod gltf;
 mod mtl;
+mod names;
 mod obj;
 mod obj_lines;
 mod ply;
 mod triangulate;
 
 pub use mtl::{MtlMap, MtlMaterial, read_mtl};
+pub use names::names_of;
 pub use obj::read_obj;
 pub use ply::read_ply;
 pub use triangulate::triangulate;

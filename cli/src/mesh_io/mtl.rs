@@ -1,5 +1,6 @@
 //! MTL.
 
+use super::names::unquoted;
 use crate::input_error::InputError;
 use glam::Vec3;
 use std::io::Cursor;
@@ -81,7 +82,7 @@ const NOT_YET: [&str; 10] =
 pub fn read_mtl(name: &str, bytes: &[u8]) -> Result<Vec<MtlMaterial>, InputError> {
     let (plain, extras) = check(name, bytes)?;
     let (materials, _) = tobj::load_mtl_buf(&mut Cursor::new(plain.as_bytes()))
-        .map_err(|error| InputError::of_file(name, format!("not an MTL file: {error}")))?;
+        .map_err(|_| InputError::of_file(name, "not an MTL file"))?;
     // Neither loses a material that the other has; if ever, maps are missing and nothing is mixed up.
     let extras = extras.into_iter().chain(std::iter::repeat_with(MtlMaterial::default));
     Ok(materials.into_iter().zip(extras).map(|(material, extra)| convert(material, extra)).collect())
@@ -152,8 +153,9 @@ fn check(name: &str, bytes: &[u8]) -> Result<(String, Vec<MtlMaterial>), InputEr
 
 /// A map's line after its keyword.
 fn map(keyword: &'static str, text: &str, line: usize) -> Result<MtlMap, String> {
-    let file = file_name(text).to_owned();
-    let options = &text[..text.len() - file.len()];
+    let name = file_name(text);
+    let options = &text[..text.len() - name.len()];
+    let file = unquoted(name).to_owned();
     let mut words = options.split_whitespace();
     let (mut bump_multiplier, mut kind) = (None, None);
     while let Some(word) = words.next() {

@@ -57,7 +57,7 @@ fn fault_of(error: &LoadError, line: usize) -> LineFault {
         LoadError::NormalParseError => "not three numbers after `vn`",
         _ => "this line cannot be read",
     };
-    LineFault { line, message: format!("{message} ({error})"), help: "numbers are written like 1.5 or -2e-3" }
+    LineFault { line, message: message.to_owned(), help: "numbers are written like 1.5 or -2e-3" }
 }
 
 /// The line of the first number that is not finite.

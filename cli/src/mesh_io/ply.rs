@@ -153,8 +153,14 @@ fn check_count(name: &str, element: &str, count: usize, bytes: usize) -> Result<
 fn fault(name: &str, bytes: &[u8], error: &ParseError) -> InputError {
     let is_text = bytes.windows(12).take(200).any(|window| window == b"format ascii");
     match error.line() {
-        Some(line) if is_text => InputError::in_line(name, bytes, line, format!("not PLY: {error}")),
-        _ => InputError::of_file(name, format!("not PLY: {error}")),
+        Some(line) if is_text => InputError::in_line(name, bytes, line, "this line is not what the header says")
+            .with_help("a vertex is the numbers of its properties; a face is how many corners it has, and these: 3 0 1 2"),
+        _ => {
+            let message = error.to_string();
+            let first = message.lines().next().unwrap_or_default().trim_end_matches('.');
+            InputError::of_file(name, format!("not PLY: {first}"))
+                .with_help("the file was cut off, or its header is wrong; get or write it again")
+        }
     }
 }
 

@@ -36,7 +36,7 @@ pub struct Common {
 pub enum Progressive {
     /// A bar if standard error is a terminal
     Auto,
-    /// `openjd_progress: N` lines on standard output
+    /// `openjd_progress: N` lines on standard output, or on standard error if standard output is the result (`-o -`)
     Openjd,
     /// Nobody
     None,
@@ -61,9 +61,10 @@ impl Common {
         self.threads.map_or(processors, |threads| threads.min(processors.max(ALWAYS_ALLOWED)))
     }
 
-    /// The progress to show.
-    pub fn progress_mode(&self) -> ProgressMode {
+    /// The progress to show, `beside_result` if standard output is taken by a result.
+    pub fn progress_mode(&self, beside_result: bool) -> ProgressMode {
         match self.progress {
+            Some(Progressive::Openjd) if beside_result => ProgressMode::OpenJdOnStderr,
             Some(Progressive::Openjd) => ProgressMode::OpenJd,
             Some(Progressive::None) => ProgressMode::Off,
             None | Some(Progressive::Auto) if self.quiet => ProgressMode::Off,

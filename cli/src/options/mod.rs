@@ -137,7 +137,7 @@ pub enum Command {
         pointillist compare a.exr b.exr\n  \
         pointillist compare a.exr b.exr --diff difference.png --max-rmse 1e-3")]
     Compare(CompareOptions),
-    /// Say what a scene, mesh or image file holds, as JSON
+    /// Say what a scene, mesh, cloud, picture or baked file holds, as JSON
     #[command(after_help = "Examples:\n  pointillist info house.toml\n  pointillist info house.exr")]
     Info(InfoOptions),
     /// Read and validate a scene and everything it names; draw nothing
@@ -174,7 +174,7 @@ pub struct DiceOptions {
     /// File with a JSON object on each line; `-` is standard input.
     #[arg(value_name = "FILE", default_value = "-")]
     pub input: PathBuf,
-    /// One area and centroid for each cell in the place of pieces; accepts concave polygons.
+    /// One area and centroid for each cell in the place of pieces; accepts concave polygons, polygons that cross themselves, and holes: "rings":[[[x,y],…],…] in the place of "polygon", and "rule":"evenodd" (default) or "nonzero" says what is inside.
     #[arg(long)]
     pub areas: bool,
     /// Where results go.
@@ -209,7 +209,7 @@ pub struct CompareOptions {
 /// `info`.
 #[derive(Debug, clap::Args)]
 pub struct InfoOptions {
-    /// A scene (.toml, .json), mesh (.obj, .ply) or picture (.exr, .png, .jpg, .hdr).
+    /// A scene (.toml, .json), mesh (.obj, .ply, .gltf, .glb), cloud (.ply, .xyz, .conf, …), picture (.exr, .png, .jpg, .hdr), or what was baked: probes, radiosity, harmonics.
     pub file: PathBuf,
     /// Where results go.
     #[command(flatten)]
@@ -238,7 +238,7 @@ pub struct MergeOptions {
     /// EXR files that `render --tile` wrote, or files that `probe bake --part` wrote, in any order.
     #[arg(required = true, value_name = "PART")]
     pub parts: Vec<PathBuf>,
-    /// The whole: .exr or .png for a picture, .json or .probes for probes.
+    /// The whole: .exr or .png for a picture, .json, .probes or `-` (standard output) for probes.
     #[arg(short, long, value_name = "PATH")]
     pub output: PathBuf,
     /// For PNG: brighten by this many stops.

@@ -1,6 +1,7 @@
 //! `probe` and its commands.
 
 use super::{Common, TextOutput, Tile, values};
+use crate::input::is_standard;
 use clap::{Subcommand, ValueEnum};
 use pointillist_shprobe::sh;
 use std::path::PathBuf;
@@ -34,6 +35,9 @@ pub enum ProbeCommand {
         pointillist probe project px.png nx.png py.png ny.png pz.png nz.png -o sh.json")]
     Project(ProjectOptions),
     /// Divide space between points into Delaunay tetrahedra
+    ///
+    /// Prints `# tetrahedra N` and four indices a line, from 0; `# dimension 2` (1, 0) and triangles (segments, a point) where the
+    /// points span no more; `# tetrahedra 0` for no points.
     #[command(after_help = "Examples:\n  \
         pointillist probe tetra points.txt\n  \
         pointillist probe tetra points.bin -o cells.bin --locate queries.bin --stats stats.json")]
@@ -144,7 +148,8 @@ pub struct BakeOptions {
     /// Damp the harmonics of a probe where irradiance would be negative
     #[arg(long)]
     pub dering: bool,
-    /// Compute every shadow and texel within a pixel, not just enough of them for the sum
+    /// Compute every shadow and texel within a pixel, not just enough of them for the sum, and look with all pixels where 32 on a side are
+    /// enough: before the last bounce, and from the places of --fit
     #[arg(long)]
     pub thorough: bool,
     /// What to do with a probe inside of a solid
@@ -253,6 +258,13 @@ pub struct TetraOptions {
     /// What every command has.
     #[command(flatten)]
     pub common: Common,
+}
+
+impl TetraOptions {
+    /// Where cells go; nowhere if location is measured, unless a file is named.
+    pub fn result(&self) -> Option<&PathBuf> {
+        Some(&self.output.path).filter(|path| self.locate.is_none() || !is_standard(path))
+    }
 }
 
 /// `probe query`.

@@ -13,12 +13,12 @@ use std::str::FromStr;
 /// `render`.
 #[derive(Debug, clap::Args)]
 pub struct RenderOptions {
-    /// Scene file or mesh; `-` is a scene file on standard input.
+    /// Scene file or mesh; `-` is either on standard input.
     pub scene: Option<PathBuf>,
     /// The picture: .png or .exr (default: pointillist.png for the built-in scene, else SCENE with .png)
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
-    /// Override any key of the scene; the value is TOML
+    /// Override any key of the scene; the value is TOML, and a path is relative to the folder you are in
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// The view.

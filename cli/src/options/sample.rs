@@ -8,9 +8,9 @@ use std::path::PathBuf;
 /// `sample`.
 #[derive(Debug, clap::Args)]
 pub struct SampleOptions {
-    /// A mesh (.obj, .ply) or a scene (.toml, .json) with all its objects; `-` reads a scene from standard input
+    /// A mesh (.obj, .ply) or a scene (.toml, .json) with all its objects; `-` reads either from standard input
     pub model: PathBuf,
-    /// The cloud: .ply (default: the model's name with .points.ply)
+    /// The cloud: .ply, or `-` for PLY on standard output (default: the model's name with .points.ply)
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
     /// Points to make (default: 100000); with `--method ldi` about as many

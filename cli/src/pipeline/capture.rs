@@ -18,6 +18,8 @@ pub struct CaptureOptions {
     pub resolution: u32,
     /// Whether surfaces that glow are seen to glow.
     pub emission: bool,
+    /// Whether what comes straight from the scene's lights is seen.
+    pub lights: bool,
     /// Whether every shadow and texel within a pixel is computed, not just enough of them for a sum over all pixels.
     pub thorough: bool,
 }
@@ -29,6 +31,8 @@ pub struct Capture {
     pub size: usize,
     /// Linear radiance: one plane of `6 · size²` for each of red, green and blue.
     pub radiance: [Vec<f32>; 3],
+    /// What of it the lights make by themselves.
+    pub direct: [Vec<f32>; 3],
     /// The share of each pixel in which nothing is.
     pub sky: Vec<f32>,
     /// The share of each pixel that shows backs of surfaces.
@@ -56,10 +60,11 @@ impl Prepared<'_> {
     ) -> Result<Capture, PipelineError> {
         let size = options.resolution as usize;
         let economy = (!options.thorough).then_some(ECONOMY);
-        let style = Style { ambient, emission: options.emission, economy };
+        let style = Style { ambient, emission: options.emission, lights: options.lights, economy };
         let mut capture = Capture {
             size,
             radiance: std::array::from_fn(|_| Vec::with_capacity(6 * size * size)),
+            direct: std::array::from_fn(|_| Vec::with_capacity(6 * size * size)),
             sky: Vec::with_capacity(6 * size * size),
             back: Vec::with_capacity(6 * size * size),
             distance: Vec::with_capacity(6 * size * size),
@@ -91,7 +96,7 @@ impl Prepared<'_> {
         let target = position + forward * position.abs().max_element().max(1.0);
         let view = View::look_at(position, target, up, projection, resolution, resolution)?;
         let window = Window { x0: 0, y0: 0, x1: resolution, y1: resolution };
-        let job = RenderJob { region: window, window, layers: vec![LayerKind::Back] };
+        let job = RenderJob { region: window, window, layers: vec![LayerKind::Back, LayerKind::Direct] };
         self.draw(view, style, &job, &Progress::new(ProgressMode::Off), stats)
     }
 }
@@ -105,6 +110,8 @@ impl Capture {
             let from = y * n + (n - 1 - x);
             let [r, g, b, alpha] = frame.color[from];
             self.radiance.iter_mut().zip([r, g, b]).for_each(|(plane, v)| plane.push(v));
+            let direct = frame.layers[1].planes.iter().map(|plane| plane[from]);
+            self.direct.iter_mut().zip(direct).for_each(|(plane, v)| plane.push(v));
             self.sky.push(1.0 - alpha);
             self.back.push(frame.layers[0].planes[0][from]);
             let along = cube_direction(CubePoint { face, s: to_unit(x), t: to_unit(y) }).length() as f32;
@@ -124,6 +131,7 @@ impl Capture {
         let texels = self.size * self.size;
         let fill = |list: &mut Vec<f32>, value| list.extend(std::iter::repeat_n(value, texels));
         self.radiance.iter_mut().zip(background.to_array()).for_each(|(plane, v)| fill(plane, v));
+        self.direct.iter_mut().for_each(|plane| fill(plane, 0.0));
         fill(&mut self.sky, 1.0);
         fill(&mut self.back, 0.0);
         fill(&mut self.distance, f32::INFINITY);

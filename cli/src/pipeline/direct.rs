@@ -1,7 +1,7 @@
 //! Light that comes straight from the lights, asked for only where it can matter.
 
 use super::lights::LightSample;
-use super::shading::{Point, Shader, ShaderScratch};
+use super::shading::{Economy, Point, Shader, ShaderScratch};
 use crate::job::{Stats, ThreadClock};
 use glam::{DVec2, Vec3};
 use pointillist_micropoint::{Face, Fragment, Micropoint, Tile};
@@ -54,7 +54,7 @@ impl Shader<'_> {
             direct.receivers.clear();
             match self.economy {
                 None => ask_for_all(tile, &direct.arrivals, &mut direct.receivers),
-                Some(economy) => ask_for_some(tile, economy.shadows_per_pixel, direct),
+                Some(economy) => ask_for_some(tile, self.shadows_per_pixel(economy, light), direct),
             }
             let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
             screens.lit(viewer, &direct.receivers, &mut direct.shadow, &mut direct.lit);
@@ -75,6 +75,12 @@ impl Shader<'_> {
                     if sees_light(p.face_normal, to_light) { a.fraction / samples } else { 0.0 };
             }
         }
+    }
+
+    /// Samples of an area light are summed up as fragments are: together they get as many shadows as a light of one point, but each one.
+    fn shadows_per_pixel(&self, economy: Economy, light: &LightSample<'_>) -> usize {
+        let samples = self.scene.lights[light.light].light.samples().max(1) as usize;
+        economy.shadows_per_pixel.div_ceil(samples)
     }
 
     /// Radiance that a micropoint sends to the eye because of a light, without shadow.

@@ -36,6 +36,8 @@ pub fn buried(seen: &[Seen]) -> Vec<bool> {
 pub struct Seen {
     /// What arrives.
     pub radiance: Sh,
+    /// What of it surfaces reflect straight from the lights: the same whatever other light there is.
+    pub direct: Sh,
     /// The share of sky.
     pub sky: Sh<f64>,
     /// The share of all directions in which the back of a surface is seen.
@@ -70,6 +72,31 @@ pub fn look_all(
     positions.par_iter().map(one).collect()
 }
 
+/// Looks around again in other ambient light. Shadows are most of the time of a look, and are as they were `before`: only what does not come
+/// straight from the lights is looked at.
+///
+/// # Errors
+/// As [`look_all`].
+pub fn look_again(
+    prepared: &Prepared<'_>,
+    positions: &[DVec3],
+    options: LookOptions,
+    ambient: Ambient<'_>,
+    before: &[Seen],
+    progress: &Progress,
+    stats: &Stats,
+) -> Result<Vec<Seen>, PipelineError> {
+    let capture = CaptureOptions { lights: false, ..options.capture };
+    let options = LookOptions { capture, distances: 0, ..options };
+    let rest = look_all(prepared, positions, options, ambient, progress, stats)?;
+    let sum = |(rest, before): (Seen, &Seen)| {
+        let both =
+            rest.radiance.coefficients().iter().zip(before.direct.coefficients()).map(|(a, b)| *a + *b);
+        Ok(Seen { radiance: Sh::new(both.collect())?, ..before.clone() })
+    };
+    rest.into_iter().zip(before).map(sum).collect()
+}
+
 fn seen(
     capture: &Capture,
     projector: &CubeProjector,
@@ -83,6 +110,7 @@ fn seen(
     };
     Ok(Seen {
         radiance: projector.project(&cube)?,
+        direct: projector.project(&CubeMap::from_planes(capture.size, capture.direct.clone())?)?,
         back_share: capture.back_share(),
         sky: projector.project_plane(&capture.sky)?,
         distances: map,
@@ -104,7 +132,7 @@ pub fn fingerprints(
     ambient: Ambient<'_>,
     stats: &Stats,
 ) -> Result<Vec<u64>, PipelineError> {
-    let options = CaptureOptions { resolution: WATCHED, emission, thorough: false };
+    let options = CaptureOptions { resolution: WATCHED, emission, lights: true, thorough: false };
     let one = |&position: &DVec3| {
         let capture = prepared.capture(position, options, ambient, stats)?;
         let mut hash = XxHash3_64::default();

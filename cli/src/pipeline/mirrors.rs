@@ -52,7 +52,8 @@ impl Prepared<'_> {
         for ((object, material), (low, high)) in found {
             let geometry = self.surfaces.geometry_without(self.scene, object)?;
             let others = self.with_geometry(geometry);
-            let options = CaptureOptions { resolution: RESOLUTION, emission: true, thorough: true };
+            let options =
+                CaptureOptions { resolution: RESOLUTION, emission: true, lights: true, thorough: true };
             let middle = low + 0.5 * (high - low);
             let capture = others.capture(middle, options, others.ambient(), stats)?;
             let [r, g, b] = &capture.radiance;

@@ -22,7 +22,7 @@ mod surfaces;
 
 pub use ambient::Ambient;
 pub use capture::{Capture, CaptureOptions};
-pub use look::{LookOptions, Seen, buried, fingerprints, look_all};
+pub use look::{LookOptions, Seen, buried, fingerprints, look_again, look_all};
 pub use prepared::Prepared;
 
 use crate::image_io::Frame;

@@ -95,7 +95,11 @@ impl<'a> Prepared<'a> {
     ) -> Result<Frame, PipelineError> {
         let renderer = Renderer::new(&self.geometry, &*self.surfaces, view, options(self.scene))?;
         let mut clock = ThreadClock::start();
-        let lights = light_samples(self.scene, &self.geometry, &self.surfaces, renderer.lens())?;
+        let lights = if style.lights {
+            light_samples(self.scene, &self.geometry, &self.surfaces, renderer.lens())?
+        } else {
+            vec![]
+        };
         clock.book(stats, "lights");
         let background = Background::new(self.scene, (*self.environment).as_ref(), &view);
         let shader = Shader::new(self, &lights, &view, style);
@@ -118,7 +122,7 @@ impl<'a> Prepared<'a> {
 
     /// The style of an ordinary picture.
     pub(super) fn plain_style(&self) -> Style<'_> {
-        Style { ambient: self.ambient(), emission: true, economy: None }
+        Style { ambient: self.ambient(), emission: true, lights: true, economy: None }
     }
 }
 

@@ -24,6 +24,8 @@ pub(super) struct Style<'a> {
     pub(super) ambient: Ambient<'a>,
     /// Surfaces that glow are seen to glow.
     pub(super) emission: bool,
+    /// What comes straight from the lights is seen.
+    pub(super) lights: bool,
     /// For pictures that are only summed up: fewer questions about details within a pixel.
     pub(super) economy: Option<Economy>,
 }
@@ -111,7 +113,7 @@ impl<'a> Shader<'a> {
         view: &View,
         style: &Style<'a>,
     ) -> Self {
-        let Style { ambient, emission, economy } = *style;
+        let Style { ambient, emission, economy, .. } = *style;
         Self {
             scene: prepared.scene,
             surfaces: &prepared.surfaces,

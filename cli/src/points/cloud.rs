@@ -1,6 +1,7 @@
 //! Clouds for `surfel`: files in, points with what they have out.
 
 use crate::cloud_io::{self, CloudOptions};
+use crate::input;
 use crate::input_error::InputError;
 use crate::memory::Meter;
 use glam::{DVec3, Vec3};
@@ -62,7 +63,7 @@ impl PointSet {
                 .add(taken, || "its points take".to_owned())
                 .map_err(|error| error.in_file(path.display().to_string()))
         })?;
-        let name = path.display();
+        let name = input::name_of(path);
         let mut warn = |warning: &str| self.warnings.push(format!("{name}: {warning}"));
         summary.warnings.iter().for_each(|warning| warn(warning));
         if summary.dropped > 0 {
@@ -102,8 +103,7 @@ impl PointSet {
             _ => 0,
         };
         let file = self.files.iter().rev().find(|(_, first)| *first <= index);
-        let (name, first) =
-            file.map_or((String::new(), 0), |(path, first)| (path.display().to_string(), *first));
+        let (name, first) = file.map_or((String::new(), 0), |(path, first)| (input::name_of(path), *first));
         let number = index - first;
         let (message, help) = match error {
             SurfelError::BadNormal { .. } => (

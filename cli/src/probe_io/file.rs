@@ -1,8 +1,10 @@
 //! A whole file of probes.
 
 use super::ProbeEntry;
+use crate::input;
 use crate::input_error::InputError;
-use crate::scene::read_file;
+use crate::json_kind::JsonKind;
+use crate::json_words;
 use glam::DVec3;
 use pointillist_shprobe::sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, ProbeError};
@@ -126,9 +128,7 @@ fn refused(name: &str, error: &ProbeError) -> InputError {
 /// # Errors
 /// A file that is missing or not one of probes, with the place and the field.
 pub fn read_probes(path: &Path) -> Result<ProbeFile, InputError> {
-    let name = path.display().to_string();
-    let bytes = read_file(path)?;
-    parse_probes(&name, &bytes)
+    parse_probes(&input::name_of(path), &input::read(path)?)
 }
 
 /// Reads JSON or binary from memory; `name` is what it is called in messages.
@@ -136,28 +136,22 @@ pub fn read_probes(path: &Path) -> Result<ProbeFile, InputError> {
 /// # Errors
 /// As [`read_probes`].
 pub fn parse_probes(name: &str, bytes: &[u8]) -> Result<ProbeFile, InputError> {
-    if let Some(packed) = bytes.strip_prefix(MAGIC) {
-        let mut reader = rmp_serde::Deserializer::new(packed);
-        return serde_path_to_error::deserialize(&mut reader).map_err(|error| {
-            let message = format!("`{}`: {}", error.path(), error.inner());
-            InputError::of_file(name, message).with_help("the file is damaged; bake it again")
-        });
-    }
-    let mut reader = serde_json::Deserializer::from_slice(bytes);
-    let file: ProbeFile = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+    let Some(packed) = bytes.strip_prefix(MAGIC) else {
+        let help = "probes are {\"probes\":[{\"position\":[x,y,z], …}, …]}";
+        return json_words::parse(name, bytes, help)
+            .map_err(|error| JsonKind::explain(JsonKind::Probes, name, bytes, error));
+    };
+    let mut reader = rmp_serde::Deserializer::new(packed);
+    serde_path_to_error::deserialize(&mut reader).map_err(|error| {
         let field = error.path().to_string();
-        let inner = error.inner();
-        let line = inner.line();
-        let what = inner.to_string();
-        let what = what.rsplit_once(" at line ").map_or(what.as_str(), |(what, _)| what);
-        let message = if field == "." { what.to_owned() } else { format!("`{field}`: {what}") };
-        InputError::in_line(name, bytes, line, message)
-            .with_help("probes are {\"probes\":[{\"position\":[x,y,z], …}, …]}")
-    })?;
-    reader
-        .end()
-        .map_err(|error| InputError::in_line(name, bytes, error.line(), "more text after the probes"))?;
-    Ok(file)
+        let message = match error.inner() {
+            rmp_serde::decode::Error::Syntax(what) if field != "." => {
+                format!("`{field}` {}", json_words::after_field(&json_words::plain(what)))
+            }
+            _ => "these are no probes, or not all of them".to_owned(),
+        };
+        InputError::of_file(name, message).with_help("the file is damaged; bake it again")
+    })
 }
 
 /// Writes probes, `binary` or as JSON with a line for each probe.

@@ -2,8 +2,8 @@
 
 use super::read_probes;
 use crate::coordinate::LARGEST;
+use crate::input;
 use crate::input_error::InputError;
-use crate::scene::read_file;
 use glam::DVec3;
 use pointillist_shprobe::Partition;
 use std::io::{self, Write};
@@ -14,8 +14,7 @@ use std::path::Path;
 /// # Errors
 /// What is wrong with the file, with its line.
 pub fn read_points(path: &Path) -> Result<Vec<DVec3>, InputError> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    match extension.as_str() {
+    match input::kind_of(path)?.as_str() {
         "json" | "probes" => Ok(read_probes(path)?.positions()),
         "bin" => read_raw(path),
         _ => Ok(read_rows::<3>(path, "x y z")?.into_iter().map(DVec3::from_array).collect()),
@@ -23,7 +22,7 @@ pub fn read_points(path: &Path) -> Result<Vec<DVec3>, InputError> {
 }
 
 fn read_raw(path: &Path) -> Result<Vec<DVec3>, InputError> {
-    let bytes = read_file(path)?;
+    let bytes = input::read(path)?;
     let (points, rest) = bytes.as_chunks::<24>();
     if !rest.is_empty() {
         let message = format!("has {} bytes, which is no multiple of 24", bytes.len());
@@ -46,14 +45,7 @@ fn read_raw(path: &Path) -> Result<Vec<DVec3>, InputError> {
 /// # Errors
 /// A line that is not `N` finite numbers, which are called `names`.
 pub fn read_rows<const N: usize>(path: &Path, names: &str) -> Result<Vec<[f64; N]>, InputError> {
-    let (name, bytes) = if path == Path::new("-") {
-        let mut bytes = vec![];
-        let read = io::Read::read_to_end(&mut io::stdin().lock(), &mut bytes);
-        read.map_err(|error| InputError::of_file("standard input", format!("cannot be read: {error}")))?;
-        ("standard input".to_owned(), bytes)
-    } else {
-        (path.display().to_string(), read_file(path)?)
-    };
+    let (name, bytes) = (input::name_of(path), input::read(path)?);
     let mut rows = vec![];
     for (i, line) in bytes.split(|&b| b == b'\n').enumerate() {
         let text = String::from_utf8_lossy(line);

@@ -1,7 +1,9 @@
 //! The baked file.
 
+use crate::input;
 use crate::input_error::InputError;
-use crate::scene::read_file;
+use crate::json_kind::JsonKind;
+use crate::json_words;
 use pointillist_radiosity::Baked;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
@@ -148,11 +150,7 @@ pub(super) const BAKE: &str = "bake it with `pointillist radiosity SCENE -o bake
 /// # Errors
 /// A file that is missing or holds something else, with the field.
 pub fn read_baked(path: &Path) -> Result<BakedFile, InputError> {
-    let bytes = read_file(path)?;
-    let mut reader = serde_json::Deserializer::from_slice(&bytes);
-    let name = path.display().to_string();
-    serde_path_to_error::deserialize(&mut reader).map_err(|error| {
-        let message = format!("no baked radiosity: `{}`: {}", error.path(), error.inner());
-        InputError::of_file(name, message).with_help(BAKE)
-    })
+    let (name, bytes) = (input::name_of(path), input::read(path)?);
+    json_words::parse(&name, &bytes, BAKE)
+        .map_err(|error| JsonKind::explain(JsonKind::Radiosity, &name, &bytes, error))
 }

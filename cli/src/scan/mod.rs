@@ -5,6 +5,7 @@ mod mesh_points;
 
 use crate::cloud_io::{self, CloudOptions, Pose};
 use crate::error::CliError;
+use crate::input;
 use crate::input_error::InputError;
 use crate::memory::Meter;
 use crate::scene::Camera;
@@ -64,7 +65,7 @@ impl ScanSet {
         let mut set = Self::default();
         let mut meshes = vec![];
         for path in paths {
-            match path.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
+            match input::kind_of(path)?.as_str() {
                 "conf" => {
                     let conf = cloud_io::read_conf(path)?;
                     set.warnings.extend(conf.warnings);
@@ -129,7 +130,7 @@ impl ScanSet {
                 .add(taken, || "its points take".to_owned())
                 .map_err(|error| error.in_file(path.display().to_string()))
         })?;
-        let name = path.display();
+        let name = input::name_of(path);
         self.warnings.extend(summary.warnings.iter().map(|warning| format!("{name}: {warning}")));
         self.dropped += summary.dropped;
         scan.spacing = options.spacing.or(summary.grid.and_then(|grid| grid.spacing));

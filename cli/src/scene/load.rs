@@ -1,9 +1,10 @@
 //! From a path and options to a [`Scene`].
 
-use super::text::{Document, Format};
+use super::text::{Document, Format, Value};
 use super::{Description, Scene, resolve};
+use crate::input;
 use crate::input_error::InputError;
-use std::io::Read;
+use crate::json_kind::JsonKind;
 use std::path::{Path, PathBuf};
 
 /// Changes to a scene that come from the command line.
@@ -62,28 +63,24 @@ pub(super) fn apply(document: &mut Document, overrides: &Overrides) -> Result<()
 }
 
 fn read_document(path: &Path) -> Result<(Document, Kind, PathBuf), InputError> {
-    let name = path.display().to_string();
-    if name == "-" {
-        let mut text = String::new();
-        std::io::stdin()
-            .read_to_string(&mut text)
-            .map_err(|error| InputError::of_file("standard input", error.to_string()))?;
-        let format = if text.trim_start().starts_with('{') { Format::Json } else { Format::Toml };
-        return Ok((Document::parse("standard input", &text, format)?, Kind::Text(format), PathBuf::new()));
-    }
+    let name = input::name_of(path);
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     match kind_of(path)? {
         Kind::Text(format) => {
-            let text = String::from_utf8(read_file(path)?).map_err(|error| {
+            let text = String::from_utf8(input::read(path)?).map_err(|error| {
                 let at = error.utf8_error().valid_up_to();
                 let line = error.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count() + 1;
                 InputError::in_line(&name, error.as_bytes(), line, "not UTF-8 text")
             })?;
-            Ok((Document::parse(&name, &text, format)?, Kind::Text(format), folder))
+            let document = Document::parse(&name, &text, format)?;
+            refuse_results(&document, format)?;
+            Ok((document, Kind::Text(format), folder))
         }
         Kind::Mesh => {
             // Opened here, so that a missing file is an error about the file and not about a text nobody wrote.
-            std::fs::File::open(path).map_err(|error| cannot_read(&name, &error))?;
+            if !input::is_standard(path) {
+                std::fs::File::open(path).map_err(|error| input::cannot_read(&name, &error))?;
+            }
             let file = path.file_name().unwrap_or_default().to_string_lossy();
             // A JSON string is a TOML string, too, whatever characters the name holds.
             let text = format!("[[object]]\nmesh = {}\n", serde_json::Value::from(file.as_ref()));
@@ -92,27 +89,51 @@ fn read_document(path: &Path) -> Result<(Document, Kind, PathBuf), InputError> {
     }
 }
 
+/// A JSON file may be what another command wrote; as a scene it would have nothing but unknown keys.
+fn refuse_results(document: &Document, format: Format) -> Result<(), InputError> {
+    let Value::Table(entries) = &document.root().value else { return Ok(()) };
+    match JsonKind::of_keys(entries.iter().map(|(key, _)| key.name.as_str())) {
+        kind if format == Format::Json && kind != JsonKind::Scene => {
+            Err(kind.misplaced(document.name(), JsonKind::Scene))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn kind_of(path: &Path) -> Result<Kind, InputError> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    match extension.as_str() {
+    match input::kind_of(path)?.as_str() {
         "toml" => Ok(Kind::Text(Format::Toml)),
         "json" => Ok(Kind::Text(Format::Json)),
         "obj" | "ply" | "glb" | "gltf" => Ok(Kind::Mesh),
-        _ => {
-            let name = path.display().to_string();
-            let message = "the name does not say what kind of scene this is";
-            Err(InputError::of_file(name, message)
-                .with_help("scenes end in .toml, .json, .obj, .ply, .gltf or .glb"))
+        kind => {
+            let name = input::name_of(path);
+            let (message, help) = no_scene(kind);
+            Err(InputError::of_file(name, message).with_help(help))
         }
     }
 }
 
-/// The bytes of a file.
-pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
-    crate::memory::read(path).map_err(|error| cannot_read(&path.display().to_string(), &error))
+/// What a file with this ending is in the place of a scene, and what it is for.
+fn no_scene(ending: &str) -> (&'static str, &'static str) {
+    match ending {
+        "gz" | "xyz" | "txt" | "asc" | "pts" | "csv" | "las" | "laz" | "e57" | "conf" => {
+            ("this is a cloud of points, not a scene", DRAW_CLOUD)
+        }
+        "probes" => (
+            "these are light probes, not a scene",
+            "a scene names them by [ambient] probes = \"FILE\"; `pointillist probe` bakes and queries them",
+        ),
+        "exr" | "png" | "jpg" | "jpeg" | "hdr" => (
+            "this is a picture, not a scene",
+            "`pointillist compare` and `pointillist probe project` read pictures; scenes name them as textures",
+        ),
+        _ => (
+            "the name does not say what kind of scene this is",
+            "scenes end in .toml, .json, .obj, .ply, .gltf or .glb",
+        ),
+    }
 }
 
-fn cannot_read(name: &str, error: &std::io::Error) -> InputError {
-    let error = InputError::of_file(name, format!("cannot be read: {error}"));
-    error.with_help("check the path; it is taken from the folder you are in")
-}
+/// The way out for a cloud where a mesh is wanted.
+pub(super) const DRAW_CLOUD: &str = "`pointillist scan FILE` draws points as closed surfaces, `pointillist surfel FILE` as discs; \
+     `pointillist info FILE` says what the file holds";

@@ -5,17 +5,19 @@ use super::description::{
     TextureReference,
 };
 use super::measured::MeasuredTable;
-use super::resolve::{load_texture, read_file};
+use super::resolve::load_texture;
+use super::text::nearest;
 use super::textures::{Purpose, TextureTable};
 use super::{
     Bump, BumpHeight, Channel, Details, Map, Material, MeasuredBrdf, NONE, Surroundings, gltf_materials,
     mtl_materials,
 };
+use crate::input;
 use crate::input_error::InputError;
 use crate::mesh_io::gltf::GltfModel;
-use crate::mesh_io::{FileMesh, MtlMaterial, read_mtl};
+use crate::mesh_io::{FileMesh, MtlMaterial, names_of, read_mtl};
 use pointillist_shade as shade;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
 /// The materials of a scene, made when they are first needed.
@@ -27,6 +29,8 @@ pub(super) struct MaterialTable<'a> {
     of_mtl: HashMap<(PathBuf, String), u32>,
     default: Option<u32>,
     measured: MeasuredTable,
+    /// Names that faces of meshes have, where the scene does not replace them.
+    of_meshes: BTreeSet<String>,
 }
 
 /// An MTL, read.
@@ -46,6 +50,7 @@ impl<'a> MaterialTable<'a> {
             of_mtl: HashMap::new(),
             default: None,
             measured: MeasuredTable::default(),
+            of_meshes: BTreeSet::new(),
         }
     }
 
@@ -56,6 +61,24 @@ impl<'a> MaterialTable<'a> {
 
     pub(super) fn into_materials(self) -> Vec<Material> {
         self.list
+    }
+
+    /// Materials that the scene describes and nothing has, once all objects are resolved.
+    pub(super) fn unmatched(&self) -> Vec<InputError> {
+        let names: Vec<&str> = self.of_meshes.iter().map(String::as_str).filter(|n| !n.is_empty()).collect();
+        let help = |name: &str| match nearest(name, &names) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None if names.is_empty() => {
+                format!("faces without a material get it by `material = \"{name}\"` in [[object]]")
+            }
+            None => format!("materials of the meshes are {}", names.join(", ")),
+        };
+        let unmatched = |(name, found): &(String, MaterialDescription)| {
+            let message = format!("`material.{name}` matches no material of the scene's meshes");
+            self.description.document.error(found.span, message).with_help(help(name))
+        };
+        let all = self.description.materials.iter();
+        all.filter(|(name, _)| !self.of_scene.contains_key(name.as_str())).map(unmatched).collect()
     }
 
     /// For each material name of `file`, the number of its material; `NONE` for one that no face has.
@@ -85,6 +108,7 @@ impl<'a> MaterialTable<'a> {
                 numbers.push(NONE);
                 continue;
             }
+            self.of_meshes.insert(name.clone());
             let mut number = self.of_scene(name, textures)?;
             if number.is_none() {
                 number = self.of_libraries(name, &libraries, textures, warnings)?;
@@ -218,11 +242,11 @@ impl<'a> MaterialTable<'a> {
     }
 
     fn measured_of(&mut self, file: &FileReference) -> Result<MeasuredBrdf, InputError> {
-        let path = self.folder.join(&file.path);
+        let path = file.path_from(self.folder);
         self.measured.load(&path).map_err(|fault| {
             let message = format!("measured BRDF `{}` {fault}", path.display());
             let error = self.description.document.error(file.span, message);
-            error.with_help("paths are relative to the scene file; MERL's binary format can be read")
+            error.with_help(format!("{}; MERL's binary format can be read", file.relative_to()))
         })
     }
 
@@ -264,12 +288,12 @@ fn read_libraries(
     // By path, so that a library that is named in front of every group is read once.
     let mut libraries: BTreeMap<PathBuf, Library> = BTreeMap::new();
     for names in &file.material_files {
-        // `mtllib a b` may be two files or one with a space in its name.
+        // `mtllib a b` may be two files or one with a space in its name; quotes settle it.
         let whole = folder.join(names);
         let paths = if whole.exists() {
             vec![whole]
         } else {
-            names.split_whitespace().map(|name| folder.join(name.replace('\\', "/"))).collect()
+            names_of(names).into_iter().map(|name| folder.join(name.replace('\\', "/"))).collect()
         };
         for path in paths {
             if libraries.contains_key(&path) {
@@ -282,7 +306,7 @@ fn read_libraries(
                 }
                 continue;
             }
-            let bytes = read_file(&path)?;
+            let bytes = input::read(&path)?;
             let materials = read_mtl(&path.display().to_string(), &bytes)?;
             libraries.insert(path.clone(), Library { path, bytes, materials });
         }

@@ -29,12 +29,12 @@ pub use fingerprint::{
     of_geometry as geometry_fingerprint, of_light as light_fingerprint, of_sources as source_fingerprint,
 };
 pub(crate) use framing::around as frame_around;
-pub(crate) use load::read_file;
 pub use load::{Overrides, load, load_to_bake};
 pub use measured::MeasuredBrdf;
 pub use text::Format;
 pub use texture_lookup::{linear_from_srgb, srgb_from_linear};
 
+use crate::input_error::InputError;
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade as shade;
 use std::path::PathBuf;
@@ -61,9 +61,11 @@ pub struct Scene {
     pub lights: Vec<LightSource>,
     /// Light that does not come straight from the lights.
     pub ambient: AmbientLight,
+    /// Materials of the scene file or of options that no mesh has. They are among the warnings, too.
+    pub unmatched: Vec<InputError>,
     /// What was odd but not wrong, for the user to read.
     pub warnings: Vec<String>,
-    /// A hash of everything above but the warnings: equal scenes draw equal pictures.
+    /// A hash of everything above but what is there to be read: equal scenes draw equal pictures.
     pub fingerprint: u64,
 }
 

@@ -4,13 +4,14 @@ use super::builtin::Generated;
 use super::description::{
     AmbientDescription, Description, FileReference, ObjectDescription, RenderDescription, TextureReference,
 };
+use super::load::DRAW_CLOUD;
 use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene, SkyLight};
-use super::{auto_uv, fingerprint, framing, gltf_scene, load, plain_model, smooth};
+use super::{auto_uv, fingerprint, framing, gltf_scene, plain_model, smooth};
 use crate::coordinate::{LARGEST, is_usable};
+use crate::input;
 use crate::input_error::InputError;
-use crate::memory;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::probe_io::read_probes;
 use crate::radiosity::{Lightmap, read_baked};
@@ -54,6 +55,8 @@ pub(super) fn resolve(
     } else {
         Interpolation::Phong
     });
+    let unmatched = builder.materials.unmatched();
+    builder.warnings.extend(unmatched.iter().map(InputError::to_string));
     let mut lights = lights(description);
     if is_plain_model && lights.is_empty() {
         lights = model.map(|model| gltf_scene::lights(&model)).unwrap_or_default();
@@ -68,6 +71,7 @@ pub(super) fn resolve(
         },
         mesh: builder.mesh,
         materials: builder.materials.into_materials(),
+        unmatched,
         textures: builder.textures.into_textures(),
         lights,
         ambient: AmbientLight::Color(Vec3::ZERO),
@@ -93,12 +97,12 @@ fn ambient_file(
     file: &FileReference,
     help: &str,
 ) -> Result<(PathBuf, u64), InputError> {
-    let path = folder.join(&file.path);
-    if !path.is_file() {
+    let path = file.path_from(folder);
+    if !input::is_standard(&path) && !path.is_file() {
         let message = format!("`{}` is not there", path.display());
         return Err(description.document.error(file.span, message).with_help(help));
     }
-    let fingerprint = twox_hash::XxHash3_64::oneshot(&super::read_file(&path)?);
+    let fingerprint = twox_hash::XxHash3_64::oneshot(&input::read(&path)?);
     Ok((path, fingerprint))
 }
 
@@ -199,7 +203,7 @@ impl<'a> Builder<'a> {
     }
 
     fn add(&mut self, object: &ObjectDescription) -> Result<(), InputError> {
-        let path = self.folder.join(&object.mesh.path);
+        let path = object.mesh.path_from(self.folder);
         let file = self.file_mesh(&path, &object.mesh)?;
         let materials =
             self.materials.resolve(object, &file, &path, &mut self.textures, &mut self.warnings)?;
@@ -214,16 +218,16 @@ impl<'a> Builder<'a> {
             return Ok(Rc::new(mesh));
         }
         let document = &self.description.document;
-        let name = path.display().to_string();
-        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let name = input::name_of(path);
+        let extension = input::kind_of(path)?;
         if !["obj", "ply", "gltf", "glb"].contains(&extension.as_str()) {
             let message = format!("`{}` is not a kind of mesh that can be read", reference.path);
             let error = document.error(reference.span, message);
             return Err(error.with_help("meshes end in .obj, .ply, .gltf or .glb"));
         }
-        let bytes = memory::read(path).map_err(|error| {
-            let message = format!("mesh `{name}` cannot be read: {error}");
-            document.error(reference.span, message).with_help("paths are relative to the scene file")
+        let bytes = input::read(path).map_err(|error| {
+            let message = format!("mesh `{name}` {}", error.message);
+            document.error(reference.span, message).with_help(reference.relative_to())
         })?;
         let mesh = match extension.as_str() {
             "obj" => read_obj(&name, &bytes)?,
@@ -234,8 +238,17 @@ impl<'a> Builder<'a> {
             self.warnings.extend_from_slice(&model.warnings);
         }
         if mesh.triangles.is_empty() {
-            return Err(InputError::of_file(name, "the mesh has no faces")
-                .with_help("a mesh needs at least one triangle"));
+            let points = mesh.positions.len();
+            return Err(if extension == "ply" && points > 0 {
+                InputError::of_file(
+                    name,
+                    format!("this is a cloud of {points} points, not a mesh: it has no faces"),
+                )
+                .with_help(DRAW_CLOUD)
+            } else {
+                InputError::of_file(name, "the mesh has no faces")
+                    .with_help("a mesh needs at least one triangle")
+            });
         }
         let mesh = Rc::new(mesh);
         self.meshes.insert(path.to_path_buf(), Rc::clone(&mesh));
@@ -328,12 +341,10 @@ pub(super) fn load_texture(
     reference: &TextureReference,
     purpose: Purpose,
 ) -> Result<usize, InputError> {
-    let path = folder.join(&reference.file.path);
+    let path = reference.file.path_from(folder);
     textures.load(&path, purpose).map_err(|fault| {
         let message = format!("texture `{}` {fault}", path.display());
         let error = description.document.error(reference.file.span, message);
-        error.with_help("paths are relative to the scene file; PNG, JPEG, HDR and EXR can be read")
+        error.with_help(format!("{}; PNG, JPEG, HDR and EXR can be read", reference.file.relative_to()))
     })
 }
-
-pub(super) use load::read_file;

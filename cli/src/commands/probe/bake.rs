@@ -4,6 +4,7 @@ use super::rounds::{Lit, Rounds};
 use super::solids::{Outcome, Solids};
 use super::{check_output, failed, overrides, write};
 use crate::commands::Report;
+use crate::commands::report::name_of_output;
 use crate::error::CliError;
 use crate::memory;
 use crate::options::{BakeOptions, What};
@@ -17,7 +18,9 @@ use std::path::Path;
 use twox_hash::XxHash3_64;
 
 pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let report = Report::new(&options.common)?
+        .reading([&options.scene, &options.probes])?
+        .writing([&options.output])?;
     check_output(&options.output)?;
     if options.part.is_some() && options.bounces > 0 {
         let message = "--part needs --bounces 0: a bounce needs the light of all probes; \
@@ -45,7 +48,7 @@ pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
     let baked = file.probes.len() - kept.iter().filter(|&&k| k).count();
     report.note(&format!(
         "{}: {} probes, {baked} of them baked, in {seconds:.2} s",
-        options.output.display(),
+        name_of_output(&options.output),
         file.probes.len()
     ));
     report.finish()

@@ -2,7 +2,9 @@
 
 use super::{check_output, write};
 use crate::commands::Report;
+use crate::commands::report::name_of_output;
 use crate::error::CliError;
+use crate::input::{is_standard, name_of};
 use crate::options::MergeOptions;
 use crate::probe_io::{ProbeFile, read_probes};
 
@@ -11,8 +13,8 @@ pub(in crate::commands) fn merge_probes(options: &MergeOptions, report: &Report<
     check_output(&options.output)?;
     let mut parts = vec![];
     for path in &options.parts {
-        let name = path.display().to_string();
-        if !path.exists() {
+        let name = name_of(path);
+        if !is_standard(path) && !path.exists() {
             return Err(CliError::Parts(format!("part {name} is missing")));
         }
         let file = report.stats.stage("load", || read_probes(path))?;
@@ -46,7 +48,7 @@ pub(in crate::commands) fn merge_probes(options: &MergeOptions, report: &Report<
     }
     report.stats.count("parts", parts.len() as u64);
     report.stats.stage("write", || write(&options.output, &whole))?;
-    report.note(&format!("{} parts joined in {}", parts.len(), options.output.display()));
+    report.note(&format!("{} parts joined in {}", parts.len(), name_of_output(&options.output)));
     report.finish()
 }
 

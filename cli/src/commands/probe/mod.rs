@@ -11,9 +11,10 @@ mod tetra;
 
 pub(super) use merge::merge_probes;
 
-use super::report::{self, write_text};
+use super::report::write_text;
 use crate::error::CliError;
 use crate::image_io::write_atomically;
+use crate::input::is_standard;
 use crate::options::ProbeCommand;
 use crate::pipeline::PipelineError;
 use crate::probe_io::{ProbeFile, write_probes};
@@ -43,16 +44,16 @@ pub(super) fn is_probe_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json") || e.eq_ignore_ascii_case("probes"))
 }
 
-/// Refuses names that say nothing about how probes are written, and files that cannot be written.
+/// Refuses names that say nothing about how probes are written.
 fn check_output(path: &Path) -> Result<(), CliError> {
-    if path == Path::new("-") || is_probe_file(path) {
-        return report::check_output(path);
+    if is_standard(path) || is_probe_file(path) {
+        return Ok(());
     }
     Err(CliError::Usage(format!("`{}`: a file of probes ends in .json or .probes", path.display())))
 }
 
 fn write(path: &Path, file: &ProbeFile) -> Result<(), CliError> {
-    if path == Path::new("-") {
+    if is_standard(path) {
         return write_text(path, |output| write_probes(output, file, false));
     }
     let binary = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("probes"));

@@ -3,12 +3,13 @@
 use super::solids::{Outcome, Solids};
 use super::{check_output, failed, overrides, write};
 use crate::commands::Report;
+use crate::commands::report::name_of_output;
 use crate::error::CliError;
+use crate::input::name_of;
 use crate::input_error::InputError;
-use crate::job::Progress;
 use crate::memory;
 use crate::options::{Inside, PlaceOptions, Strategy};
-use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_all};
+use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_again, look_all};
 use crate::probe_io::ProbeFile;
 use crate::scene::{self, NONE, Scene};
 use glam::DVec3;
@@ -23,17 +24,24 @@ const LIFT: f64 = 0.02;
 const CANDIDATES: usize = 8;
 
 pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let report = Report::new(&options.common)?.writing([&options.output])?;
     check_output(&options.output)?;
     check_memory(options)?;
     let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
     scene.warnings.iter().for_each(|warning| report.warn(warning));
     if scene.mesh.positions.is_empty() && options.low.is_none() {
-        let error = InputError::of_file(options.scene.display().to_string(), "the scene is empty");
+        let error = InputError::of_file(name_of(&options.scene), "the scene is empty");
         return Err(error.with_help("say which box to fill with --low and --high").into());
     }
     let prepared = Prepared::new(&scene, &report.stats).map_err(failed)?;
     let positions = candidates(&scene, options);
+    if options.strategy == Strategy::Vertices && positions.len() < options.count as usize {
+        let (count, found) = (options.count, positions.len());
+        report.warn(&format!(
+            "--count {count}, but the scene has only {found} different vertices; \
+             --strategy grid, random and cluster place more"
+        ));
+    }
     let positions = settle(&positions, &prepared, &scene, options, &report)?;
     let positions = match options.strategy {
         Strategy::Cluster => cluster(&prepared, &positions, options, &report)?,
@@ -45,7 +53,11 @@ pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
     report.stats.count("probes", positions.len() as u64);
     report.stats.stage("write", || write(&options.output, &ProbeFile::of_positions(&positions)))?;
     let seconds = report.stats.elapsed().as_secs_f64();
-    report.note(&format!("{}: {} probes in {seconds:.2} s", options.output.display(), positions.len()));
+    report.note(&format!(
+        "{}: {} probes in {seconds:.2} s",
+        name_of_output(&options.output),
+        positions.len()
+    ));
     report.finish()
 }
 
@@ -157,15 +169,14 @@ fn cluster(
     report: &Report<'_>,
 ) -> Result<Vec<DVec3>, CliError> {
     let broken = |error: ProbeError| CliError::Failed(error.to_string());
-    let capture = CaptureOptions { resolution: options.resolution, emission: false, thorough: false };
+    let capture =
+        CaptureOptions { resolution: options.resolution, emission: false, lights: true, thorough: false };
     let look = LookOptions { capture, order: 2, distances: pointillist_shprobe::DEFAULT_DISTANCE_SIZE };
-    let progress = Progress::new(options.common.progress_mode());
+    let progress = report.progress();
     progress.begin("look", 2 * candidates.len() as u64);
     let stats = &report.stats;
-    let light = |ambient: Ambient<'_>, at: &[DVec3]| {
-        stats.stage("look", || look_all(prepared, at, look, ambient, &progress, stats)).map_err(failed)
-    };
-    let seen = light(prepared.ambient(), candidates)?;
+    let first = || look_all(prepared, candidates, look, prepared.ambient(), &progress, stats);
+    let seen = stats.stage("look", first).map_err(failed)?;
     let out = match options.inside {
         Inside::Keep => vec![false; candidates.len()],
         _ => buried(&seen),
@@ -173,9 +184,11 @@ fn cluster(
     let candidates: Vec<DVec3> =
         candidates.iter().zip(&out).filter(|(_, out)| !**out).map(|(p, _)| *p).collect();
     stats.skip("candidates_in_walls", out.iter().filter(|&&b| b).count() as u64);
-    let (direct, distances) = split(seen.into_iter().zip(out).filter(|(_, out)| !out).map(|(seen, _)| seen));
+    let seen: Vec<Seen> = seen.into_iter().zip(out).filter(|(_, out)| !out).map(|(seen, _)| seen).collect();
+    let (direct, distances) = split(seen.iter().cloned());
     let field = Field::new(&candidates, &direct).and_then(|f| f.with_distances(distances)).map_err(broken)?;
-    let (radiance, distances) = split(light(Ambient::Probes(&field), &candidates)?);
+    let again = || look_again(prepared, &candidates, look, Ambient::Probes(&field), &seen, &progress, stats);
+    let (radiance, distances) = split(stats.stage("look", again).map_err(failed)?);
     progress.finish();
     let known = place::Candidates {
         positions: &candidates,

@@ -1,7 +1,7 @@
 //! `probe project`.
 
 use crate::commands::Report;
-use crate::commands::report::{check_output, write_text};
+use crate::commands::report::write_text;
 use crate::error::CliError;
 use crate::image_io::{Levels, read_levels, read_picture};
 use crate::input_error::InputError;
@@ -12,8 +12,7 @@ use pointillist_shprobe::sh::{CubeMap, CubeProjector, Panorama, PanoramaProjecto
 use std::path::Path;
 
 pub(super) fn run(options: &ProjectOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
-    check_output(&options.output.path)?;
+    let report = Report::new(&options.common)?.reading(&options.images)?.writing([&options.output.path])?;
     let response = response(&options.response)?;
     let images = options.images.iter().map(|path| read(path, &response, options.exposure, &report));
     let images = report.stats.stage("load", || images.collect::<Result<Vec<_>, _>>())?;

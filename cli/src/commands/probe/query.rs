@@ -1,17 +1,19 @@
 //! `probe query`.
 
 use crate::commands::Report;
-use crate::commands::report::{check_output, write_text};
+use crate::commands::report::write_text;
 use crate::error::CliError;
+use crate::input::name_of;
 use crate::options::QueryOptions;
 use crate::probe_io::{read_probes, read_rows};
 use glam::{DVec3, Vec3};
 use pointillist_shprobe::{Field, Hint, ProbeError};
 
 pub(super) fn run(options: &QueryOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
-    check_output(&options.output.path)?;
-    let name = options.probes.display().to_string();
+    let report = Report::new(&options.common)?
+        .reading([&options.probes, &options.points])?
+        .writing([&options.output.path])?;
+    let name = name_of(&options.probes);
     let file = report.stats.stage("load", || read_probes(&options.probes))?;
     let field = report.stats.stage("load", || file.field(&name))?;
     let rows = report.stats.stage("load", || read_rows::<6>(&options.points, "x y z nx ny nz"))?;

@@ -1,29 +1,29 @@
 //! `probe tetra`.
 
 use crate::commands::Report;
-use crate::commands::report::{check_output, write_text};
+use crate::commands::report::write_text;
 use crate::error::CliError;
+use crate::input::name_of;
 use crate::input_error::InputError;
 use crate::job::ThreadClock;
 use crate::options::TetraOptions;
 use crate::probe_io::{format_cells, read_points};
 use glam::{DVec3, dvec3};
-use pointillist_shprobe::{Delaunay, Hint, Locator, Partition, ProbeError};
+use pointillist_shprobe::{Delaunay, Hint, Locator, Partition, ProbeError, Tetrahedra};
 use std::f64::consts::TAU;
-use std::path::Path;
 
 pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
-    check_output(&options.output.path)?;
+    let report = Report::new(&options.common)?
+        .reading(std::iter::once(&options.points).chain(&options.locate))?
+        .writing(options.result())?;
     let points = report.stats.stage("load", || read_points(&options.points))?;
-    let name = options.points.display().to_string();
+    let name = name_of(&options.points);
     let refused = |error: ProbeError| {
         let error = InputError::of_file(&name, error.to_string());
         CliError::Input(error.with_help("points are finite numbers, `x y z` a line"))
     };
     let start = std::time::Instant::now();
-    let partition =
-        report.stats.stage("build", || Delaunay::new(&points).map(|d| d.partition())).map_err(refused)?;
+    let partition = report.stats.stage("build", || partition(&points)).map_err(refused)?;
     report.stats.figure("build_s", start.elapsed().as_secs_f64());
     let cells = match &partition {
         Partition::Tetrahedra(t) => t.corners.len(),
@@ -38,14 +38,26 @@ pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
         measure(&points, &partition, &queries, &report);
     }
     let binary = options.output.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bin"));
-    if options.output.path != Path::new("-") || options.locate.is_none() {
-        write_text(&options.output.path, |output| format_cells(output, &partition, binary))?;
+    if let Some(path) = options.result() {
+        write_text(path, |output| format_cells(output, &partition, binary))?;
     }
     report.finish()
 }
 
+/// The cells between points; none if there are no points, which is no fault of the caller's.
+fn partition(points: &[DVec3]) -> Result<Partition, ProbeError> {
+    if points.is_empty() {
+        return Ok(Partition::Tetrahedra(Tetrahedra { corners: vec![], neighbours: vec![] }));
+    }
+    Delaunay::new(points).map(|d| d.partition())
+}
+
 /// Millions of queries a second of processor time of one thread: one by one, and along a path from cell to cell.
 fn measure(points: &[DVec3], partition: &Partition, queries: &[DVec3], report: &Report<'_>) {
+    if points.is_empty() {
+        ["locate_random_mqps", "locate_coherent_mqps"].iter().for_each(|name| report.stats.figure(name, 0.0));
+        return;
+    }
     let locator = report.stats.stage("index", || Locator::new(points, partition));
     let locator = locator.expect("the partition is of these points");
     let rate = |run: &dyn Fn() -> f64| {

@@ -1,8 +1,9 @@
 //! `radiosity SCENE`.
 
 use crate::commands::Report;
-use crate::commands::report::{check_output, write_text};
+use crate::commands::report::{name_of_output, write_text};
 use crate::error::CliError;
+use crate::input::{is_standard, name_of};
 use crate::job::Progress;
 use crate::memory;
 use crate::options::{FormFactorKind, LinkKind, RadiosityBakeOptions, SolveMethod};
@@ -11,17 +12,23 @@ use crate::scene::{self, Overrides, Scene};
 use glam::DVec3;
 use pointillist_radiosity as radiosity;
 use pointillist_radiosity::{
-    HemicubeKind, RadiosityError, Rgb, SceneOptions, Solution, SolveOptions, Transport,
+    Baked, HemicubeKind, RadiosityError, Rgb, SceneOptions, Solution, SolveOptions, Transport,
 };
 use std::path::Path;
 
 /// Patches along the scene's longest side, unless said otherwise.
 const PATCHES_ACROSS: f64 = 32.0;
+/// Units of the progress bar, and shares of the time after which direct light, form factors and the solution are there, about.
+const PROGRESS_STEPS: u64 = 1000;
+const LIT: f64 = 0.1;
+const LINKED: f64 = 0.5;
+const SOLVED: f64 = 0.55;
 /// Scenes with more patches are linked by groups, unless said otherwise.
 const MOST_FULL: usize = 1000;
 
 pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
-    let report = Report::new(&options.common)?;
+    let report =
+        Report::new(&options.common)?.writing(std::iter::once(&options.output).chain(&options.factors))?;
     check(options)?;
     let Some(path) = &options.scene else {
         return Err(CliError::Usage("SCENE is missing".to_owned()));
@@ -30,14 +37,20 @@ pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     let overrides = Overrides { assignments };
     let scene = report.stats.stage("load", || scene::load_to_bake(path, &overrides))?;
     scene.warnings.iter().for_each(|warning| report.warn(warning));
-    let surfaces = report.stats.stage("load", || scene_surfaces(&scene, &path.display().to_string()))?;
+    let surfaces = report.stats.stage("load", || scene_surfaces(&scene, &name_of(path)))?;
     if surfaces.translucent > 0 {
         let count = surfaces.translucent;
         report.warn(&format!("{count} triangles let most light through and are left out"));
     }
     let bake = Bake { options, report: &report, scene: &scene, surfaces: &surfaces };
-    let (transport, direct, solution) = bake.solve()?;
-    bake.write(&transport, &direct, &solution)?;
+    let progress = report.progress();
+    let (transport, direct, solution) = bake.solve(&progress)?;
+    let baked = report.stats.stage("gather", || {
+        transport.bake_with(&solution, &direct, &|share| progress.reach(SOLVED + (1.0 - SOLVED) * share))
+    });
+    progress.finish();
+    bake.tell(&transport, &solution);
+    bake.write(&transport, &baked, &solution)?;
     report.finish()
 }
 
@@ -53,9 +66,8 @@ fn check(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     }
     let output = &options.output;
     let known = output.extension().is_some_and(|e| e == "json" || e == "ply");
-    if known || output == Path::new("-") {
-        options.factors.as_deref().map_or(Ok(()), check_output)?;
-        return check_output(output);
+    if known || is_standard(output) {
+        return Ok(());
     }
     Err(CliError::Usage(format!("`{}`: baked light ends in .json or .ply", output.display())))
 }
@@ -79,16 +91,15 @@ struct Bake<'a> {
 }
 
 impl Bake<'_> {
-    fn solve(&self) -> Result<(Transport, Vec<Rgb>, Solution), CliError> {
+    fn solve(&self, progress: &Progress) -> Result<(Transport, Vec<Rgb>, Solution), CliError> {
         let Self { options, report, .. } = self;
-        let progress = Progress::new(options.common.progress_mode());
-        progress.begin("radiosity", 3);
+        progress.begin("radiosity", PROGRESS_STEPS);
         let stats = &report.stats;
         let mut patches = stats.stage("divide", || self.divided())?;
         let lamps = Lamps::new(self.scene);
         let direct = stats.stage("direct", || with_lamps(&lamps, |list| patches.direct(list)));
         let direct = direct.map_err(|e| self.refused(&e))?;
-        progress.advance(1);
+        progress.reach(LIT);
         let kind = match options.form_factor {
             FormFactorKind::Analytic => None,
             FormFactorKind::Hemicube => Some(HemicubeKind::Exact),
@@ -99,14 +110,13 @@ impl Bake<'_> {
             Some(kind) => patches.transport_by_hemicubes(kind, options.resolution as usize, &direct),
         });
         let (transport, direct) = linked.map_err(|e| self.refused(&e))?;
-        progress.advance(1);
+        progress.reach(LINKED);
         let solution = stats.stage("solve", || match options.method {
             SolveMethod::GaussSeidel => transport.gauss_seidel(&direct, &SolveOptions::DEFAULT),
             SolveMethod::Progressive => transport.progressive(&direct, &[], &SolveOptions::DEFAULT),
         });
         let solution = solution.map_err(|e| self.refused(&e))?;
-        progress.finish();
-        self.tell(&transport, &solution);
+        progress.reach(SOLVED);
         Ok((transport, direct, solution))
     }
 
@@ -165,7 +175,7 @@ impl Bake<'_> {
         let face = self.surfaces.faces[surface][0] as usize;
         let object = &mesh.objects[mesh.object_of[face] as usize].name;
         let material = &self.scene.materials[mesh.material_of[face] as usize].name;
-        let name = self.options.scene.as_deref().unwrap_or(Path::new("")).display().to_string();
+        let name = self.options.scene.as_deref().map(name_of).unwrap_or_default();
         let message = format!("triangle {face} (of `{object}`, material `{material}`): {error}");
         CliError::Input(crate::input_error::InputError::of_file(name, message))
     }
@@ -233,13 +243,12 @@ impl Bake<'_> {
         }
     }
 
-    fn write(&self, transport: &Transport, direct: &[Rgb], solution: &Solution) -> Result<(), CliError> {
+    fn write(&self, transport: &Transport, baked: &Baked, solution: &Solution) -> Result<(), CliError> {
         let Self { options, report, .. } = self;
         if let Some(path) = &options.factors {
             report.stats.stage("write", || write_factors(path, transport))?;
         }
-        let baked = report.stats.stage("gather", || transport.bake(solution, direct));
-        let mut file = BakedFile::new(&baked, &self.surfaces.faces);
+        let mut file = BakedFile::new(baked, &self.surfaces.faces);
         file.geometry = format!("{:016x}", scene::geometry_fingerprint(&self.scene.mesh));
         let Scene { materials, textures, lights, .. } = self.scene;
         file.light = format!("{:016x}", scene::source_fingerprint(materials, textures, lights));
@@ -257,7 +266,7 @@ impl Bake<'_> {
         })?;
         let seconds = report.stats.elapsed().as_secs_f64();
         let vertices = file.positions.len();
-        report.note(&format!("{}: {vertices} vertices in {seconds:.2} s", path.display()));
+        report.note(&format!("{}: {vertices} vertices in {seconds:.2} s", name_of_output(path)));
         Ok(())
     }
 }

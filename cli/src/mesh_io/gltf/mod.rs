@@ -16,6 +16,7 @@ pub use walk::{GltfCamera, GltfLight};
 
 use super::FileMesh;
 use crate::input_error::InputError;
+use crate::json_words::plain;
 use ::gltf::json::Root;
 use ::gltf::{Document, Gltf};
 use bytes::Buffers;
@@ -85,13 +86,18 @@ fn check_header(bytes: &[u8]) -> Result<(), String> {
 /// Reads the document and checks it, first for what the schema's own check takes for granted.
 fn parse(bytes: &[u8]) -> Result<Gltf, String> {
     let wrong = |error: &dyn std::fmt::Display| format!("not a glTF: {error}");
+    let not_json = |error: ::gltf::json::Error| {
+        let what = plain(&error.to_string());
+        let subject = if what.starts_with("is ") { "what stands there " } else { "" };
+        format!("not a glTF: line {}, column {}: {subject}{what}", error.line(), error.column())
+    };
     let (json, blob) = if bytes.starts_with(b"glTF") {
         let glb = ::gltf::Glb::from_slice(bytes).map_err(|e| wrong(&e))?;
         (glb.json, glb.bin.map(std::borrow::Cow::into_owned))
     } else {
         (bytes.into(), None)
     };
-    let root: Root = ::gltf::json::deserialize::from_slice(&json).map_err(|e| wrong(&e))?;
+    let root: Root = ::gltf::json::deserialize::from_slice(&json).map_err(not_json)?;
     check::check(&root)?;
     let document = Document::from_json(root).map_err(|e| wrong(&e))?;
     Ok(Gltf { document, blob })

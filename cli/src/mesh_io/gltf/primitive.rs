@@ -79,7 +79,7 @@ fn attribute<const N: usize>(
     if list.len() == count {
         return Ok(Some(list));
     }
-    Err(format!("{} of {semantic:?} for {count} vertices", list.len()))
+    Err(format!("{} of {} for {count} vertices", list.len(), semantic.to_string()))
 }
 
 fn append_normals(

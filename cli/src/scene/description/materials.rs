@@ -3,7 +3,7 @@
 use super::{FileReference, file};
 use crate::input_error::InputError;
 use crate::scene::Transmission;
-use crate::scene::text::Table;
+use crate::scene::text::{Span, Table};
 use glam::Vec3;
 use pointillist_shade::{AutoUv, DIELECTRIC_REFLECTANCE, Material, Model, Wrap};
 
@@ -22,6 +22,8 @@ pub struct TextureReference {
 /// A material of the scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaterialDescription {
+    /// The place of its name.
+    pub span: Span,
     /// Model and constants.
     pub surface: Material,
     /// Multiplies the diffuse albedo.
@@ -101,10 +103,10 @@ const DEFAULT_INDEX: f64 = 1.5;
 
 pub(super) fn read_all(root: &mut Table<'_>) -> Result<Vec<(String, MaterialDescription)>, InputError> {
     let tables = root.named_tables("material")?;
-    tables.into_iter().map(|(name, table)| Ok((name.to_owned(), read(table)?))).collect()
+    tables.into_iter().map(|(name, table)| Ok((name.name.clone(), read(name.span, table)?))).collect()
 }
 
-fn read(mut table: Table<'_>) -> Result<MaterialDescription, InputError> {
+fn read(span: Span, mut table: Table<'_>) -> Result<MaterialDescription, InputError> {
     let model = table.choice("model", &MODELS)?.unwrap_or(ModelName::Formula(Model::Lambert));
     let srgb = table.choice("color_space", &[("srgb", true), ("linear", false)])?.unwrap_or(true);
     table.choice("filter", &[("texel", ())])?;
@@ -115,6 +117,7 @@ fn read(mut table: Table<'_>) -> Result<MaterialDescription, InputError> {
         Ok(file(&mut table, key)?.map(|file| TextureReference { file, srgb }))
     };
     let mut found = MaterialDescription {
+        span,
         surface: Material::default(),
         diffuse_map: texture("diffuse_map")?,
         opacity_map: texture("opacity_map")?,

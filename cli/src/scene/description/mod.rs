@@ -16,6 +16,7 @@ pub use render::RenderDescription;
 use super::text::{Document, Format, Span, Table};
 use crate::input_error::InputError;
 use glam::Vec3;
+use std::path::{Path, PathBuf};
 
 /// Width and height of a picture whose scene does not say.
 pub const DEFAULT_SIZE: [u32; 2] = [960, 540];
@@ -26,10 +27,26 @@ pub const LARGEST_SIDE: u32 = 1_000_000;
 /// A file named by a key, and where it is named.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileReference {
-    /// As written, relative to the scene file.
+    /// As written.
     pub path: String,
-    /// The place of the path in the scene file.
+    /// The place of the path in the scene file or in an option.
     pub span: Span,
+}
+
+impl FileReference {
+    /// The file: relative to the scene file in `folder`, or to where the user stands if an option names it.
+    pub fn path_from(&self, folder: &Path) -> PathBuf {
+        if self.span.is_in_option() { PathBuf::from(&self.path) } else { folder.join(&self.path) }
+    }
+
+    /// What the path is relative to, for messages.
+    pub fn relative_to(&self) -> &'static str {
+        if self.span.is_in_option() {
+            "a path in an option is relative to the folder you are in"
+        } else {
+            "paths are relative to the scene file"
+        }
+    }
 }
 
 /// A scene file, read.

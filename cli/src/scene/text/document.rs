@@ -26,6 +26,13 @@ pub struct Span {
     pub(super) end: usize,
 }
 
+impl Span {
+    /// Whether it lies in an option such as `--set`, not in the scene file.
+    pub fn is_in_option(self) -> bool {
+        self.origin > 0
+    }
+}
+
 /// A value and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {

@@ -10,3 +10,4 @@ mod table;
 pub use document::{Document, Key, Node, Span, Value};
 pub use formats::Format;
 pub use table::Table;
+pub(super) use table::nearest;

@@ -251,14 +251,14 @@ impl<'a> Table<'a> {
     /// # Errors
     ///
     /// See above.
-    pub fn named_tables(&mut self, key: &'static str) -> Result<Vec<(&'a str, Table<'a>)>, InputError> {
+    pub fn named_tables(&mut self, key: &'static str) -> Result<Vec<(&'a Key, Table<'a>)>, InputError> {
         let Some(node) = self.get(key) else { return Ok(Vec::new()) };
         let Value::Table(entries) = &node.value else {
             return Err(self.wrong(key, node, "a table").with_help(format!("write [{key}.NAME]")));
         };
         let read = |(name, node): &'a (Key, Node)| {
             let path = format!("{key}.{}", name.name);
-            Ok((name.name.as_str(), Table::new(self.document, node, &path)?))
+            Ok((name, Table::new(self.document, node, &path)?))
         };
         entries.iter().map(read).collect()
     }
@@ -298,12 +298,14 @@ impl<'a> Table<'a> {
 const LARGEST_NUMBER: f64 = 1e30;
 
 /// The word that was probably meant, if one is near enough.
-fn nearest<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
+pub(in crate::scene) fn nearest<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
     /// Found by trial: "colour" finds "color" and "fob" finds "fov", but "banana" finds nothing.
     const NEAR: f64 = 0.65;
+    let found = found.to_lowercase();
     let similarity = |word: &str| {
-        let edits = strsim::normalized_damerau_levenshtein(&found.to_lowercase(), word);
-        edits.max(strsim::jaro_winkler(&found.to_lowercase(), word) - 0.1)
+        let word = word.to_lowercase();
+        let edits = strsim::normalized_damerau_levenshtein(&found, &word);
+        edits.max(strsim::jaro_winkler(&found, &word) - 0.1)
     };
     let scored = words.iter().map(|&word| (similarity(word), word));
     scored.filter(|(score, _)| *score >= NEAR).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, word)| word)
