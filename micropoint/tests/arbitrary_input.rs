@@ -123,9 +123,12 @@ proptest! {
         if let Ok(sums) = TexelSums::<1>::new(w, h, wrap, texel) {
             let corners: Vec<_> = corners.iter()
                 .map(|c| TexelCorner { grid: dvec2(c.0, c.1), rational: c.2, texel: dvec2(c.3, c.4) }).collect();
-            let _ = sums.mean(&corners);
-            for c in &corners {
-                let _ = sums.texel(c.texel.x, c.texel.y);
+            let texels = (0..h).flat_map(|y| (0..w).map(move |x| (x, y))).map(|(x, y)| f64::from(texel(x, y)[0]));
+            let (least, most) = texels.fold((f64::INFINITY, 0.0), |(l, m): (f64, f64), v| (l.min(v), m.max(v)));
+            let mut means = vec![sums.mean(&corners)[0]];
+            means.extend(corners.iter().map(|c| sums.texel(c.texel.x, c.texel.y)[0]));
+            for mean in means {
+                prop_assert!(least <= mean && mean <= most, "{mean} is not from {least} to {most}");
             }
         }
     }
