@@ -102,7 +102,7 @@ enum Refusal {
 }
 
 fn answer(text: &str, output: &mut dyn Write, areas: bool, scratch: &mut Accumulator) -> Result<(), Refusal> {
-    let request: Request = serde_json::from_str(text).map_err(Refusal::Json)?;
+    let request: Request = serde_json::from_str(text.trim_end()).map_err(Refusal::Json)?;
     let rings = request.outlines(areas)?;
     let of_dice = |error: DiceError| Refusal::Dice(error, value_at_fault(error, &request));
     let [[x0, y0], [dx, dy]] = [request.grid.origin, request.grid.cell];
