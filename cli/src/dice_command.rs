@@ -4,7 +4,7 @@ use std::io::Write;
 
 use crate::json_lines::{JsonLinesError, Lines, shorten, strip_place};
 use glam::{DVec2, dvec2};
-use pointillist_dice::{Accumulator, DiceError, FillRule, Grid, accumulate_filled, split};
+use pointillist_dice::{Accumulator, CellWindow, DiceError, FillRule, Grid, accumulate_filled, split};
 use serde::{Deserialize, Serialize};
 
 /// One line of the input.
@@ -35,11 +35,20 @@ enum Rule {
 struct GridFields {
     origin: [f64; 2],
     cell: [f64; 2],
+    /// Columns and rows from cell (0, 0) on that are asked for; all cells if it is not given.
+    size: Option<[u32; 2]>,
 }
 
 impl Default for GridFields {
     fn default() -> Self {
-        Self { origin: [0.0, 0.0], cell: [1.0, 1.0] }
+        Self { origin: [0.0, 0.0], cell: [1.0, 1.0], size: None }
+    }
+}
+
+impl GridFields {
+    fn window(&self) -> CellWindow {
+        let end = |count: u32| i32::try_from(count).unwrap_or(i32::MAX);
+        self.size.map_or(CellWindow::ALL, |[nx, ny]| CellWindow { x0: 0, y0: 0, x1: end(nx), y1: end(ny) })
     }
 }
 
@@ -65,7 +74,7 @@ const EXAMPLE: &str =
 /// its pieces, or with `areas` its cells. Numbers read back to the same value.
 ///
 /// `areas` takes concave polygons, polygons that cross themselves, and `rings` in the place of `polygon`; `rule` says what is inside:
-/// `evenodd` (the default) or `nonzero`.
+/// `evenodd` (the default) or `nonzero`. With `size` in the grid only that many columns and rows are answered and paid for.
 ///
 /// Answers are handed on whenever the next line is not there yet, so that it may depend on them.
 ///
@@ -93,11 +102,11 @@ enum Refusal {
 }
 
 fn answer(text: &str, output: &mut dyn Write, areas: bool, scratch: &mut Accumulator) -> Result<(), Refusal> {
-    let request: Request = serde_json::from_str(text).map_err(Refusal::Json)?;
+    let request: Request = serde_json::from_str(text.trim_end()).map_err(Refusal::Json)?;
     let rings = request.outlines(areas)?;
     let of_dice = |error: DiceError| Refusal::Dice(error, value_at_fault(error, &request));
     let [[x0, y0], [dx, dy]] = [request.grid.origin, request.grid.cell];
-    let grid = Grid::new(dvec2(x0, y0), dvec2(dx, dy)).map_err(of_dice)?;
+    let grid = Grid::new(dvec2(x0, y0), dvec2(dx, dy)).map_err(of_dice)?.with_window(request.grid.window());
     if areas {
         write_cells(&rings, request.fill_rule(), &grid, scratch, output, of_dice)
     } else {
@@ -258,7 +267,9 @@ impl Refusal {
 fn way_out(error: DiceError) -> &'static str {
     match error {
         DiceError::BadGrid { .. } => "give grid.cell two positive numbers and grid.origin two finite ones",
-        DiceError::TooManyCells { .. } => "use a larger grid.cell, or clip the polygon first",
+        DiceError::TooManyCells { .. } => {
+            "use a larger grid.cell, or limit the answer with grid.size, the numbers of columns and rows"
+        }
         DiceError::OutOfRange { .. } => "move grid.origin to the polygon, or use a larger grid.cell",
         _ => "coordinates must be finite numbers",
     }
@@ -297,6 +308,22 @@ mod tests {
         let x = "0.19844004278856286";
         let pieces = answer(&format!(r#"{{"polygon":[[{x},0],[1,0],[1,1]]}}"#), false).unwrap();
         assert!(pieces.contains(x), "{pieces}");
+    }
+
+    #[test]
+    fn a_size_limits_the_answer_to_its_window() {
+        let square = "[[-1,-1],[4e8,-1],[4e8,4e8],[-1,4e8]]";
+        let sized = |nx: i64| format!(r#"{{"polygon":{square},"grid":{{"size":[{nx},1]}}}}"#);
+        let pieces = answer(&sized(2), false).unwrap();
+        assert_eq!(pieces.matches(r#""area":1.0"#).count(), 2, "{pieces}");
+        let cells = r#"{"cells":[{"cell":[0,0],"area":1.0,"centroid":[0.5,0.5]}]}"#;
+        assert_eq!(answer(&sized(1), true).unwrap(), format!("{cells}\n"));
+        assert_eq!(answer(&sized(0), true).unwrap(), "{\"cells\":[]}\n");
+        let rings = r#"[[[0,0],[9e7,0],[9e7,9e7],[0,9e7]],[[0,0],[1,0],[1,1],[0,1]]]"#;
+        let holed = answer(&format!(r#"{{"rings":{rings},"grid":{{"size":[2,1]}}}}"#), true).unwrap();
+        assert_eq!(holed, cells.replace("[0,0]", "[1,0]").replace("[0.5", "[1.5") + "\n");
+        let message = answer(&sized(-1), true).unwrap_err();
+        assert!(message.contains("-1") && !message.contains("u32"), "{message}");
     }
 
     #[test]

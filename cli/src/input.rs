@@ -2,6 +2,7 @@
 
 use crate::input_error::InputError;
 use crate::memory;
+use flate2::read::GzDecoder;
 use std::io::Read as _;
 use std::path::Path;
 use std::sync::OnceLock;
@@ -63,14 +64,16 @@ pub fn kind_of(path: &Path) -> Result<String, InputError> {
     if is_standard(path) {
         return standard().map(|bytes| kind_of_content(bytes).to_owned());
     }
-    Ok(path.extension().unwrap_or_default().to_string_lossy().to_lowercase())
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let kind =
+        if name.ends_with(".ply.gz") { "ply.gz" } else { name.rsplit_once('.').map_or("", |(_, end)| end) };
+    Ok(kind.to_owned())
 }
 
 /// What begins each kind of file that is known by its first bytes.
-const MARKS: [(&[u8], &str); 12] = [
+const MARKS: [(&[u8], &str); 11] = [
     (b"ply\n", "ply"),
     (b"ply\r", "ply"),
-    (b"\x1f\x8b", "gz"),
     (b"glTF", "glb"),
     (b"LASF", "las"),
     (b"ASTM-E57", "e57"),
@@ -90,6 +93,11 @@ const CONF: [&str; 3] = ["bmesh", "mesh", "camera"];
 fn kind_of_content(bytes: &[u8]) -> &'static str {
     if let Some((_, kind)) = MARKS.iter().find(|(mark, _)| bytes.starts_with(mark)) {
         return kind;
+    }
+    if bytes.starts_with(b"\x1f\x8b") {
+        let mut head = [0; 3];
+        let is_ply = GzDecoder::new(bytes).read_exact(&mut head).is_ok() && head == *b"ply";
+        return if is_ply { "ply.gz" } else { "gz" };
     }
     let lines = bytes.split(|&b| b == b'\n').map(|line| String::from_utf8_lossy(line).trim().to_owned());
     let Some(line) = lines.into_iter().find(|line| !line.is_empty() && !line.starts_with('#')) else {

@@ -134,3 +134,38 @@ fn options_are_named_as_they_were_typed_before_anything_is_loaded() {
         folder.fails(line, 2, pieces);
     }
 }
+
+#[test]
+fn whole_numbers_of_options_are_asked_for_in_plain_words() {
+    let folder = Folder::new();
+    for (line, option, wanted) in [
+        (&["radiosity", "gone.toml", "--max-patches", "1e11"][..], "--max-patches", "from 1 to"),
+        (&["probe", "place", "gone.toml", "--count", "1e12"], "--count", "from 1 to 16777216"),
+        (&["scan", "gone.ply", "--depth-layers", "99"], "--depth-layers", "from 1 to 8"),
+        (&["sample", "gone.ply", "--seed", "x"], "--seed", "from 0 to"),
+    ] {
+        folder.fails(line, 2, &[option, line[line.len() - 1], "must be a whole number", wanted]);
+    }
+}
+
+#[test]
+fn a_spacing_that_asks_for_too_many_points_is_named() {
+    let folder = Folder::new();
+    for method in ["ldi", "poisson"] {
+        let line = ["sample", "triangle.obj", "--spacing", "1e-9", "--method", method];
+        folder.fails(&line, 2, &["--spacing 0.000000001", "larger --spacing"]);
+    }
+}
+
+#[test]
+fn a_query_without_a_normal_shows_its_line() {
+    let folder = Folder::new();
+    folder.prints(&["probe", "place", "scene.toml", "--grid", "2x2x2", "-o", "probes.json"]);
+    folder.prints(&["probe", "bake", "scene.toml", "probes.json", "--resolution", "4", "--bounces", "0"]);
+    folder.write("queries.txt", "0 0 0 0 0 1\n# next\n1 2 3 0 0 0\n");
+    folder.fails(
+        &["probe", "query", "baked.json", "queries.txt"],
+        3,
+        &["queries.txt:3", "no normal", "1 2 3 0 0 0"],
+    );
+}

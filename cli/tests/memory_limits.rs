@@ -153,3 +153,18 @@ fn an_allocation_that_fails_all_the_same_is_a_failure_and_no_abort() {
         assert!(matches!(code, Some(0..=3 | 127)), "{limit}: {:?}", output);
     }
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn where_no_thread_can_be_started_the_one_there_is_does_the_work() {
+    let folder = Folder::new();
+    let program = assert_cmd::cargo::cargo_bin!("pointillist").display().to_string();
+    for limit in (24_000..60_000).step_by(4_000) {
+        let line =
+            format!("ulimit -v {limit}; exec '{program}' render scene.toml -o a{limit}.png --threads 16");
+        let output =
+            std::process::Command::new("sh").current_dir(folder.path("")).args(["-c", &line]).output();
+        let output = output.unwrap();
+        assert!(matches!(output.status.code(), Some(0..=3 | 127)), "{limit}: {output:?}");
+    }
+}

@@ -182,3 +182,22 @@ fn sampling_and_gathering_tell_how_far_they_are() {
     let bake = ["probe", "bake", "scene.toml", "p.json", "--resolution", "8", "--fit", "20", "-o", "b.json"];
     assert!(percents(&[&bake[..], &["--inside", "keep"]].concat()).len() > 20);
 }
+
+#[test]
+fn a_packed_mesh_is_a_mesh_from_a_file_and_from_a_pipe() {
+    use std::io::Write as _;
+    let folder = Folder::new();
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+               element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    let mut packed = flate2::write::GzEncoder::new(vec![], flate2::Compression::default());
+    packed.write_all(ply.as_bytes()).unwrap();
+    let packed = packed.finish().unwrap();
+    folder.write("mesh.ply.gz", &packed);
+    folder.prints(&["check", "mesh.ply.gz"]);
+    for file in ["mesh.ply.gz", "-"] {
+        let line = ["scan", file, "--size", "16x16", "-o", "a.png", "--stats", "stats.json"];
+        folder.command(&line).write_stdin(packed.clone()).assert().success();
+    }
+    folder.write("mesh.ply.gz", &packed[..packed.len() - 12]);
+    folder.fails(&["check", "mesh.ply.gz"], 3, &["mesh.ply.gz", "damaged or cut off"]);
+}

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use glam::{DVec2, IVec2, dvec2};
 
-use crate::DiceError;
 use crate::edge::Edge;
 use crate::fill::{self, Boundary, FillRule};
 use crate::fixed::{self, Fixed, ONE};
 use crate::grid::{Grid, Point};
 use crate::outline::{Extent, check_count};
+use crate::{CellWindow, DiceError};
 
 /// Neighbouring cells of one row that hold the same part of a polygon: one cell that its outline crosses, or a run of
 /// cells that it does not.
@@ -136,12 +136,19 @@ impl Accumulator {
     fn sweep(&mut self, extent: &Extent, mut sweep: Sweep<'_, impl FnMut(Run)>) {
         self.active.clear();
         let mut waiting = 0;
-        for row in fixed::floor(extent.min.y)..fixed::ceil(extent.max.y) {
-            while self.edges.get(waiting).is_some_and(|w| fixed::floor(w.edge.top.y) <= row) {
-                self.active.push(waiting as u32);
+        let window = sweep.grid.window();
+        for row in window.clip_rows(fixed::floor(extent.min.y)..fixed::ceil(extent.max.y)) {
+            while let Some(walker) = self.edges.get_mut(waiting)
+                && fixed::floor(walker.edge.top.y) <= row
+            {
+                // Edges that end above the window are in none of its rows.
+                if walker.edge.bottom.y > fixed::line(row) {
+                    walker.enter(row);
+                    self.active.push(waiting as u32);
+                }
                 waiting += 1;
             }
-            self.walk_row(row);
+            self.walk_row(row, window);
             sweep.report(row, &self.row);
         }
     }
@@ -152,7 +159,7 @@ impl Accumulator {
         let mut count = 0;
         for piece in boundary {
             let (a, b) = (grid.point(piece.top, 0)?, grid.point(piece.bottom, 0)?);
-            count += cells_between(a, b);
+            count += cells_between(a, b, grid.window());
             if a.y != b.y {
                 let edge = Edge::new(a, b);
                 let sign = if piece.inside_right { 1 } else { -1 };
@@ -171,7 +178,7 @@ impl Accumulator {
         let mut a = grid.point(last, ring.len() - 1)?;
         for (index, &vertex) in ring.iter().enumerate() {
             let b = grid.point(vertex, index)?;
-            count += cells_between(a, b);
+            count += cells_between(a, b, grid.window());
             if a.y != b.y {
                 let edge = Edge::new(a, b);
                 self.edges.push(Walker { edge, x: edge.top.x, sign: if a.y < b.y { 1 } else { -1 } });
@@ -184,13 +191,13 @@ impl Accumulator {
     }
 
     /// Moves every active edge through one row and notes what it does to the row's cells, sorted by column.
-    fn walk_row(&mut self, row: i32) {
+    fn walk_row(&mut self, row: i32, window: CellWindow) {
         let (edges, entries) = (&mut self.edges, &mut self.row);
         let row_end = fixed::line(row + 1);
         entries.clear();
         self.active.retain(|&index| {
             let walker = &mut edges[index as usize];
-            walker.walk(row, entries);
+            walker.walk(row, window, entries);
             walker.edge.bottom.y > row_end
         });
         // Stable for the same reason; an edge's entries are a sorted stretch, which the sort makes use of.
@@ -201,42 +208,111 @@ impl Accumulator {
 }
 
 impl Walker {
-    /// Goes to the end of `row` or of the edge, one entry for each cell on the way.
-    fn walk(&mut self, row: i32, entries: &mut Vec<Entry>) {
+    /// Enters the edge at the line above `row` if it begins before it.
+    fn enter(&mut self, row: i32) {
+        if self.edge.top.y < fixed::line(row) {
+            self.x = self.edge.x_at_row(row);
+        }
+    }
+
+    /// Goes to the end of `row` or of the edge, one entry for each cell of the window on the way.
+    fn walk(&mut self, row: i32, window: CellWindow, entries: &mut Vec<Entry>) {
         let (row_line, edge) = (fixed::line(row), &self.edge);
-        let mut from = Point { x: self.x, y: edge.top.y.max(row_line) };
+        let from = Point { x: self.x, y: edge.top.y.max(row_line) };
         let ends = edge.bottom.y <= row_line + ONE;
         let to = if ends { edge.bottom } else { Point { x: edge.x_at_row(row + 1), y: row_line + ONE } };
         self.x = to.x;
-        let sign = self.sign;
-        let mut add = |column: i32, from: Point, to: Point| {
-            let base = Point { x: fixed::line(column), y: row_line };
-            let entry =
-                Entry::new(column, [from.x - base.x, from.y - base.y], [to.x - base.x, to.y - base.y]);
-            entries.push(if sign > 0 { entry } else { entry.negated() });
-        };
+        let step = Step { edge, from, to, row_line, sign: self.sign, window };
+        if to.x >= from.x { step.rightward(entries) } else { step.leftward(entries) }
+    }
+}
+
+/// The part of an edge in one row. What of it lies left or right of the window is moved onto the window's side, where it
+/// has the same cells to its right: it is one entry in the column beyond that side.
+struct Step<'a> {
+    edge: &'a Edge,
+    from: Point,
+    to: Point,
+    row_line: Fixed,
+    sign: i8,
+    window: CellWindow,
+}
+
+impl Step<'_> {
+    fn rightward(&self, entries: &mut Vec<Entry>) {
+        let CellWindow { x0, x1, .. } = self.window;
+        let mut from = self.from;
         let mut column = fixed::floor(from.x);
-        if to.x >= from.x {
-            let last = (fixed::ceil(to.x) - 1).max(column);
-            while column < last {
-                column += 1;
-                let y = edge.y_at_column(column).clamp(from.y, to.y);
-                let crossing = Point { x: fixed::line(column), y };
-                add(column - 1, from, crossing);
-                from = crossing;
+        let last = (fixed::ceil(self.to.x) - 1).max(column).min(x1);
+        if column < x0 {
+            if last < x0 {
+                return entries.push(self.left_of_window(from, self.to));
             }
-        } else {
-            column = fixed::ceil(from.x) - 1;
-            let last = fixed::floor(to.x).min(column);
-            while column > last {
-                let y = edge.y_at_column(column).clamp(from.y, to.y);
-                let crossing = Point { x: fixed::line(column), y };
-                add(column, from, crossing);
-                from = crossing;
-                column -= 1;
-            }
+            let crossing = self.crossing(x0, from);
+            entries.push(self.left_of_window(from, crossing));
+            (from, column) = (crossing, x0);
         }
-        add(column, from, to);
+        while column < last {
+            let crossing = self.crossing(column + 1, from);
+            entries.push(self.within(column, from, crossing));
+            from = crossing;
+            column += 1;
+        }
+        let beyond = column >= x1;
+        entries.push(if beyond {
+            self.right_of_window(from, self.to)
+        } else {
+            self.within(column, from, self.to)
+        });
+    }
+
+    fn leftward(&self, entries: &mut Vec<Entry>) {
+        let CellWindow { x0, x1, .. } = self.window;
+        let mut from = self.from;
+        let mut column = fixed::ceil(from.x) - 1;
+        let last = fixed::floor(self.to.x).min(column).max(x0.saturating_sub(1));
+        if column >= x1 {
+            if last >= x1 {
+                return entries.push(self.right_of_window(from, self.to));
+            }
+            let crossing = self.crossing(x1, from);
+            entries.push(self.right_of_window(from, crossing));
+            (from, column) = (crossing, x1 - 1);
+        }
+        while column > last {
+            let crossing = self.crossing(column, from);
+            entries.push(self.within(column, from, crossing));
+            from = crossing;
+            column -= 1;
+        }
+        let beyond = column < x0;
+        entries.push(if beyond {
+            self.left_of_window(from, self.to)
+        } else {
+            self.within(column, from, self.to)
+        });
+    }
+
+    /// Where the step meets column line `column`, below `from`.
+    fn crossing(&self, column: i32, from: Point) -> Point {
+        let y = self.edge.y_at_column(column).clamp(from.y, self.to.y);
+        Point { x: fixed::line(column), y }
+    }
+
+    fn within(&self, column: i32, from: Point, to: Point) -> Entry {
+        let base = Point { x: fixed::line(column), y: self.row_line };
+        let entry = Entry::new(column, [from.x - base.x, from.y - base.y], [to.x - base.x, to.y - base.y]);
+        if self.sign > 0 { entry } else { entry.negated() }
+    }
+
+    fn left_of_window(&self, from: Point, to: Point) -> Entry {
+        let x = fixed::line(self.window.x0);
+        self.within(self.window.x0 - 1, Point { x, y: from.y }, Point { x, y: to.y })
+    }
+
+    fn right_of_window(&self, from: Point, to: Point) -> Entry {
+        let x = fixed::line(self.window.x1);
+        self.within(self.window.x1, Point { x, y: from.y }, Point { x, y: to.y })
     }
 }
 
@@ -269,10 +345,11 @@ impl Entry {
     }
 }
 
-/// About how many cells an edge meets.
-fn cells_between(a: Point, b: Point) -> u64 {
-    let lines = |a: Fixed, b: Fixed| u64::from(fixed::floor(a).abs_diff(fixed::floor(b)));
-    lines(a.x, b.x) + lines(a.y, b.y) + 1
+/// About how many cells of the window an edge meets.
+fn cells_between(a: Point, b: Point, window: CellWindow) -> u64 {
+    let span = |a: Fixed, b: Fixed| fixed::floor(a.min(b))..fixed::floor(a.max(b));
+    let (columns, rows) = (window.clip_columns(span(a.x, b.x)), window.clip_rows(span(a.y, b.y)));
+    columns.len() as u64 + rows.len() as u64 + 1
 }
 
 /// Turns a row's entries into runs.
@@ -311,7 +388,8 @@ impl<V: FnMut(Run)> Sweep<'_, V> {
 
     fn emit(&mut self, row: i32, columns: Range<i32>, area: Fixed, moment: DVec2, is_full: bool) {
         let (area, moment) = if self.sign > 0 { (area, moment) } else { (-area, -moment) };
-        if area <= self.noise {
+        let columns = self.grid.window().clip_columns(columns);
+        if area <= self.noise || columns.is_empty() {
             return;
         }
         let area = fixed::to_f64(area);

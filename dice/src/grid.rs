@@ -2,19 +2,20 @@
 
 use glam::{DVec2, IVec2, dvec2};
 
-use crate::DiceError;
 use crate::fixed::{self, Fixed};
+use crate::{CellWindow, DiceError};
 
 /// Vertices must lie within this many cells of the grid's origin, so that every cell near them has an `i32` number.
 pub const MAX_COORDINATE: f64 = (1u64 << 30) as f64;
 
-/// An endless grid of equal rectangular cells.
+/// A grid of equal rectangular cells, endless or limited to a window of them.
 ///
 /// Cell (i, j) covers `origin + [i, i+1)·cell.x × [j, j+1)·cell.y`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     origin: DVec2,
     cell: DVec2,
+    window: CellWindow,
 }
 
 /// A point in cell coordinates.
@@ -26,7 +27,7 @@ pub(crate) struct Point {
 
 impl Grid {
     /// Unit cells with a corner at the origin.
-    pub const UNIT: Self = Self { origin: DVec2::ZERO, cell: DVec2::ONE };
+    pub const UNIT: Self = Self { origin: DVec2::ZERO, cell: DVec2::ONE, window: CellWindow::ALL };
 
     /// A grid with a corner of cell (0, 0) at `origin` and cells of the size `cell`.
     ///
@@ -35,10 +36,27 @@ impl Grid {
     pub fn new(origin: DVec2, cell: DVec2) -> Result<Self, DiceError> {
         let normal = |v: f64| v > 0.0 && v.is_normal();
         if origin.is_finite() && normal(cell.x) && normal(cell.y) && normal(cell.x * cell.y) {
-            Ok(Self { origin, cell })
+            Ok(Self { origin, cell, window: CellWindow::ALL })
         } else {
             Err(DiceError::BadGrid { origin, cell })
         }
+    }
+
+    /// The same grid, of which only the cells of `window` are reported and paid for: the cost of a polygon grows with
+    /// its vertices and with what of it lies in the window.
+    ///
+    /// Pieces and areas are those of the endless grid, bit for bit; centroids of [`accumulate`](crate::accumulate()) may
+    /// differ in their last place.
+    #[must_use]
+    pub const fn with_window(mut self, window: CellWindow) -> Self {
+        self.window = window;
+        self
+    }
+
+    /// The cells that are reported.
+    #[must_use]
+    pub const fn window(&self) -> CellWindow {
+        self.window
     }
 
     /// The corner of cell (0, 0).

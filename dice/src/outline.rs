@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::fixed::{self, Fixed};
 use crate::grid::{Grid, Point};
-use crate::{DiceError, MAX_CELLS};
+use crate::{CellWindow, DiceError, MAX_CELLS};
 
 /// The rows and columns that a polygon touches.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +38,14 @@ impl Extent {
     pub(crate) fn rows_and_columns(&self) -> (u64, u64) {
         let lines = |a: Fixed, b: Fixed| u64::from(fixed::ceil(b).abs_diff(fixed::floor(a)));
         (lines(self.min.y, self.max.y), lines(self.min.x, self.max.x))
+    }
+
+    /// Rows and columns touched within the window.
+    #[inline]
+    pub(crate) fn rows_and_columns_in(&self, window: CellWindow) -> (u64, u64) {
+        let rows = window.clip_rows(fixed::floor(self.min.y)..fixed::ceil(self.max.y));
+        let columns = window.clip_columns(fixed::floor(self.min.x)..fixed::ceil(self.max.x));
+        (rows.len() as u64, columns.len() as u64)
     }
 
     /// Pieces of this area or less are rounding: twice what the crossings of an edge through all rows and columns are off.

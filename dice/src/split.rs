@@ -53,8 +53,10 @@ pub fn split(polygon: &[DVec2], grid: &Grid, mut visit: impl FnMut(Piece<'_>)) -
     let mut down = Chain::new(polygon, grid, extent.top, false);
     let mut cutter =
         Cutter { grid, noise: extent.noise(), points: [Point { x: 0, y: 0 }; 6], visit: &mut visit };
-    let mut upper = extent.min.y;
-    while upper < extent.max.y {
+    let window = grid.window();
+    let mut upper = extent.min.y.max(fixed::line(window.y0));
+    let end = extent.max.y.min(fixed::line(window.y1));
+    while upper < end {
         // 2
         if !(up.advance(upper) && down.advance(upper)) {
             break;
@@ -76,7 +78,7 @@ pub fn split(polygon: &[DVec2], grid: &Grid, mut visit: impl FnMut(Piece<'_>)) -
 
 /// Refuses a polygon that meets more than [`MAX_CELLS`](crate::MAX_CELLS) cells. Only large ones are measured.
 fn check_size(polygon: &[DVec2], grid: &Grid, extent: &Extent) -> Result<(), DiceError> {
-    let (rows, columns) = extent.rows_and_columns();
+    let (rows, columns) = extent.rows_and_columns_in(grid.window());
     if check_count(rows * columns).is_ok() {
         return Ok(());
     }
@@ -163,8 +165,10 @@ impl<'a> Chain<'a> {
             self.end = to;
             if to.y > from.1.y {
                 self.edge = Edge::new(from.1, to);
-                self.upper = from.1.x;
-                self.upper_vertex = Some(self.polygon[from.0]);
+                // An edge that begins above the first row of the window is entered at that row's line.
+                let begins_here = from.1.y >= upper;
+                self.upper = if begins_here { from.1.x } else { self.edge.x_at(upper) };
+                self.upper_vertex = begins_here.then(|| self.polygon[from.0]);
             }
         }
         true
@@ -256,6 +260,7 @@ impl<V: FnMut(Piece<'_>)> Cutter<'_, V> {
     fn cut_band(&mut self, band: &Band<'_>) {
         let (left, right) = (&band.left, &band.right);
         let columns = fixed::floor(left.upper.min(left.lower))..fixed::ceil(right.upper.max(right.lower));
+        let columns = self.grid.window().clip_columns(columns);
         let row = fixed::floor(band.upper);
         for column in columns {
             let left_line = fixed::line(column);

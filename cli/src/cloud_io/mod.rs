@@ -29,6 +29,7 @@ pub use ply_write::{CloudPoint, PlyEncoding, write_ply};
 
 use crate::input;
 use crate::input_error::InputError;
+use crate::memory;
 use block::{Gather, Stop};
 use format::{Content, HEAD_BYTES};
 use gunzip::Gunzip;
@@ -132,6 +133,24 @@ fn read_any<R: ReadSeek>(name: &str, mut input: R, gather: &mut Gather<'_>) -> R
         Content::Xyz => xyz::read(Source::new(name, Cursor::new(head).chain(input)), gather),
         Content::Las => read_las(name, input, gather),
         Content::E57 => read_e57(name, input, gather),
+    }
+}
+
+/// What a file in gzip holds, unpacked.
+///
+/// # Errors
+///
+/// It is damaged or cut short, or does not fit into memory.
+pub fn unpack(name: &str, packed: &[u8]) -> Result<Vec<u8>, InputError> {
+    const STEP: u64 = 1 << 20;
+    let (mut unpacked, mut bytes, mut meter) = (Gunzip::new(packed), vec![], memory::Meter::default());
+    loop {
+        let count = (&mut unpacked).take(STEP).read_to_end(&mut bytes);
+        let count = count.map_err(|error| InputError::of_file(name, error.to_string()))? as u64;
+        meter.add(count, || "its unpacked bytes take".to_owned()).map_err(|error| error.in_file(name))?;
+        if count < STEP {
+            return Ok(bytes);
+        }
     }
 }
 

@@ -52,7 +52,7 @@ fn describe(path: &Path) -> Result<Value, InputError> {
         "ply" => of_ply(path, &name),
         "gltf" | "glb" => of_gltf(&extension, &name, path, &bytes()?),
         "conf" => of_conf(path),
-        "gz" | "xyz" | "txt" | "asc" | "pts" | "csv" | "las" | "laz" | "e57" => Ok(of_cloud(&summary(path)?)),
+        "ply.gz" | "gz" | "xyz" | "txt" | "asc" | "pts" | "csv" | "las" | "laz" | "e57" => Ok(of_cloud(&summary(path)?)),
         "exr" => of_exr(&name, &bytes()?),
         "png" | "jpg" | "jpeg" | "hdr" => {
             let picture = read_picture(path)?;

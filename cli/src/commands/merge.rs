@@ -5,9 +5,8 @@ use super::probe::{is_probe_file, merge_probes};
 use super::render::{OutputFormat, write_exr, write_png};
 use crate::error::CliError;
 use crate::image_io::{Channel, ExrFile, Frame, PngOptions, Stamp, Window};
-use crate::input::is_standard;
+use crate::input::{self, is_standard, name_of};
 use crate::input_error::InputError;
-use crate::memory;
 use crate::options::MergeOptions;
 use exr::prelude::FlatSamples;
 use std::path::Path;
@@ -46,12 +45,12 @@ pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
 }
 
 fn read_part(path: &Path) -> Result<Part, CliError> {
-    let name = path.display().to_string();
+    let name = name_of(path);
     let fault = |message: String| CliError::Input(InputError::of_file(&name, message));
-    let bytes = memory::read(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => CliError::Parts(format!("part {name} is missing")),
-        _ => fault(format!("cannot be read: {error}")),
-    })?;
+    if !is_standard(path) && !path.exists() {
+        return Err(CliError::Parts(format!("part {name} is missing")));
+    }
+    let bytes = input::read(path)?;
     let mut file = ExrFile::read(&bytes).map_err(|error| fault(format!("cannot be decoded: {error}")))?;
     let stamp = file.stamp.take();
     let stamp =

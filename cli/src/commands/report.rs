@@ -8,6 +8,7 @@ use crate::memory;
 use crate::options::Common;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 /// The running command's voice and clock.
 pub(super) struct Report<'a> {
@@ -100,11 +101,33 @@ impl<'a> Report<'a> {
 }
 
 /// Starts the threads that everything is computed on.
+///
+/// Where the system refuses so many (a limit on memory or on processes) there are fewer, and in the end only the one that runs already.
 fn start_threads(count: usize) {
-    let started = |count| rayon::ThreadPoolBuilder::new().num_threads(count).build_global().is_ok();
-    // Where the system refuses so many (a limit on memory or on processes), one is better than none. It also fails if threads are
-    // running already, that is when a test calls a second command in one process; results do not depend on their number.
-    let _ = started(count) || started(1);
+    let possible = threads_possible(count);
+    // Half of what is possible where there is a limit: threads are not all that a command needs.
+    let threads = if possible == count { count } else { possible / 2 };
+    let mut pool = rayon::ThreadPoolBuilder::new().num_threads(threads.max(1));
+    if threads == 0 {
+        pool = pool.use_current_thread();
+    }
+    // It fails if threads are running already, that is when a test calls a second command in one process; results do not depend on
+    // their number.
+    let _ = pool.build_global();
+}
+
+/// How many of `count` threads can run at once. Tried with threads that do nothing: the global pool can be started only once, even
+/// if that fails.
+fn threads_possible(count: usize) -> usize {
+    let gate = Mutex::new(());
+    std::thread::scope(|scope| {
+        let closed = gate.lock();
+        let waits = || drop(gate.lock());
+        let started = |_: &usize| std::thread::Builder::new().spawn_scoped(scope, waits).is_ok();
+        let possible = (0..count).take_while(started).count();
+        drop(closed);
+        possible
+    })
 }
 
 /// Looks whether a file can be written, before any work is done for it; `-` is standard output.

@@ -34,7 +34,7 @@ pub(super) fn run(options: &SampleOptions) -> Result<(), CliError> {
     let points = report.stats.stage("sample", || {
         let done = |share| progress.reach(SAMPLED * share);
         sample_with(&scene.mesh.positions, &scene.mesh.triangles, &options.sampler(), &done)
-            .map_err(|error| refusal(&options.model, error))
+            .map_err(|error| refusal(options, error))
     })?;
     progress.reach(SAMPLED);
     if points.is_empty() {
@@ -80,19 +80,22 @@ fn check_output(output: &Path, options: &SampleOptions) -> Result<(), CliError> 
 
 /// A mesh alone has no say about shading: it gets smooth normals where its file has none.
 fn overrides(options: &SampleOptions) -> Result<Overrides, InputError> {
-    let is_mesh = ["obj", "ply"].contains(&kind_of(&options.model)?.as_str());
+    let is_mesh = ["obj", "ply", "ply.gz"].contains(&kind_of(&options.model)?.as_str());
     let smooth = is_mesh.then(|| ("sample".to_owned(), "render.shading=phong".to_owned()));
     let given = options.set.iter().map(|assignment| ("--set".to_owned(), assignment.clone()));
     Ok(Overrides { assignments: smooth.into_iter().chain(given).collect() })
 }
 
 /// Whether the model or an option is to blame.
-fn refusal(model: &Path, error: SurfelError) -> CliError {
-    match error {
-        SurfelError::NoArea { .. } => InputError::of_file(name_of(model), error.to_string())
+fn refusal(options: &SampleOptions, error: SurfelError) -> CliError {
+    match (&error, options.spacing) {
+        (SurfelError::NoArea { .. }, _) => InputError::of_file(name_of(&options.model), error.to_string())
             .with_help("check that its triangles are not all lines or points")
             .into(),
-        _ => CliError::Usage(error.to_string()),
+        (_, Some(spacing)) => {
+            CliError::Usage(format!("--spacing {spacing}: {error}; use a larger --spacing"))
+        }
+        (_, None) => CliError::Usage(format!("--count: {error}; use a smaller --count")),
     }
 }
 

@@ -10,23 +10,23 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "General")]
 pub struct Common {
-    /// Threads to compute with, 1 to 1024 (default: one for each processor). More than processors gain nothing: of a larger number,
-    /// as many are started as there are processors, or 16 if that is more. Results do not depend on it
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = values::threads)]
+    /// Threads to compute with, 1 to 1024 (default: one for each processor). No more are started than there are processors,
+    /// or 16 if that is more, because more gain nothing. Results do not depend on it
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = values::whole::<usize>(1..=1024))]
     pub threads: Option<usize>,
     /// Memory that may be used, such as 8G (default: what is free, within the limits of the system and of the container)
     #[arg(long, value_name = "SIZE", env = "POINTILLIST_MEMORY", hide_env_values = true, value_parser = values::memory)]
     pub memory: Option<u64>,
-    /// Say nothing but errors
+    /// Print errors only
     #[arg(long, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Say more
+    /// Print details, such as the seconds of each stage
     #[arg(short, long)]
     pub verbose: bool,
     /// Write seconds, counts and peak memory as JSON
     #[arg(long, value_name = "PATH.json")]
     pub stats: Option<PathBuf>,
-    /// Who is told about progress (default: a bar if standard error is a terminal)
+    /// How progress is shown (default: a bar if standard error is a terminal)
     #[arg(long, value_name = "KIND")]
     pub progress: Option<Progressive>,
 }
@@ -38,7 +38,7 @@ pub enum Progressive {
     Auto,
     /// `openjd_progress: N` lines on standard output, or on standard error if standard output is the result (`-o -`)
     Openjd,
-    /// Nobody
+    /// Not at all
     None,
 }
 

@@ -126,6 +126,11 @@ pub enum Command {
         radiosity = \"baked.json\"")]
     Radiosity(RadiosityOptions),
     /// Cut polygons by a grid: JSON lines in, JSON lines out
+    ///
+    /// Each line of the input is {"polygon":[[x,y],…],"grid":{"origin":[x0,y0],"cell":[dx,dy]}}, with unit cells at the origin
+    /// if there is no grid. "size":[nx,ny] in the grid limits the answer, and the time it takes, to cells 0 ≤ i < nx,
+    /// 0 ≤ j < ny. Each line of the result is {"pieces":[{"cell":[i,j],"area":a,"vertices":[[x,y],…]},…]}, or with --areas
+    /// {"cells":[{"cell":[i,j],"area":a,"centroid":[x,y]},…]}.
     #[command(after_help = "Example:\n  \
         echo '{\"polygon\":[[0.5,0.5],[1.5,0.5],[1.5,1.5],[0.5,1.5]]}' | pointillist dice --areas")]
     Dice(DiceOptions),
@@ -137,7 +142,7 @@ pub enum Command {
         pointillist compare a.exr b.exr\n  \
         pointillist compare a.exr b.exr --diff difference.png --max-rmse 1e-3")]
     Compare(CompareOptions),
-    /// Say what a scene, mesh, cloud, picture or baked file holds, as JSON
+    /// Print what a scene, mesh, cloud, picture or baked file holds, as JSON
     #[command(after_help = "Examples:\n  pointillist info house.toml\n  pointillist info house.exr")]
     Info(InfoOptions),
     /// Read and validate a scene and everything it names; draw nothing
@@ -174,7 +179,7 @@ pub struct DiceOptions {
     /// File with a JSON object on each line; `-` is standard input.
     #[arg(value_name = "FILE", default_value = "-")]
     pub input: PathBuf,
-    /// One area and centroid for each cell in the place of pieces; accepts concave polygons, polygons that cross themselves, and holes: "rings":[[[x,y],…],…] in the place of "polygon", and "rule":"evenodd" (default) or "nonzero" says what is inside.
+    /// Print the area and centroid of each cell instead of pieces. Accepts concave polygons, polygons that cross themselves, and holes: "rings":[[[x,y],…],…] instead of "polygon", and "rule":"evenodd" (default) or "nonzero" for what is inside.
     #[arg(long)]
     pub areas: bool,
     /// Where results go.

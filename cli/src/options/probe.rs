@@ -56,7 +56,7 @@ pub struct PlaceOptions {
     #[arg(long, value_name = "STRATEGY", default_value = "grid")]
     pub strategy: Strategy,
     /// Probes to place; a grid has about as many
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = values::whole::<u32>(1..=1 << 24))]
     pub count: u32,
     /// Probes along each axis: for `grid` where they are, for `cluster` where they may be
     #[arg(long, value_name = "NXxNYxNZ", value_parser = values::grid)]
@@ -65,10 +65,10 @@ pub struct PlaceOptions {
     #[arg(long, value_name = "E", default_value_t = 0.0, value_parser = values::not_negative)]
     pub error: f64,
     /// With `cluster`: pixels on a side of the pictures that candidates are judged by
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(4..=1024))]
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = values::whole::<u32>(4..=1024))]
     pub resolution: u32,
     /// Another seed gives other random places
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::whole::<u64>(0..=u64::MAX))]
     pub seed: u64,
     /// A corner of the box to fill (default: the scene's)
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "high")]
@@ -76,7 +76,7 @@ pub struct PlaceOptions {
     /// The opposite corner of the box to fill
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "low")]
     pub high: Option<values::Vector>,
-    /// What to do with a probe inside of a solid
+    /// What to do with a probe inside a solid
     #[arg(long, value_name = "WHAT", default_value = "move")]
     pub inside: Inside,
     /// The probes: .json, .probes (binary), or `-` for standard output
@@ -110,7 +110,7 @@ pub enum Inside {
     Move,
     /// Leave it out
     Drop,
-    /// Refuse
+    /// End with an error
     Refuse,
     /// Leave it where it is
     Keep,
@@ -124,35 +124,36 @@ pub struct BakeOptions {
     /// Where the probes are: .json or .probes
     pub probes: PathBuf,
     /// Pixels on a side of each of the six pictures
-    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = values::whole::<u32>(1..=4096))]
     pub resolution: u32,
     /// Highest band of the harmonics
-    #[arg(long, value_name = "L", default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=sh::MAX_ORDER as i64))]
+    #[arg(long, value_name = "L", default_value_t = 2, value_parser = values::whole::<u8>(0..=sh::MAX_ORDER as u8))]
     pub order: u8,
-    /// How often light is sent on: each time, surfaces are lit by the probes of the time before
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..=64))]
+    /// Bounces of light between surfaces: in each, surfaces are lit by the probes of the bounce before
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::whole::<u32>(0..=64))]
     pub bounces: u32,
-    /// Stop bouncing when the light changes by less than this share
+    /// Stop before the last bounce when one changes the light by less than this fraction
     #[arg(long, value_name = "E", default_value_t = 0.005, value_parser = values::not_negative)]
     pub until: f64,
     /// Look around from N more places between the probes, and let the probes hold what lights all places best, not what they see
     /// themselves: fewer probes for the same error
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::whole::<u32>(0..=1_000_000))]
     pub fit: u32,
     /// What probes hold
     #[arg(long, value_name = "WHAT", default_value = "indirect")]
     pub what: What,
-    /// Texels on a side of the map of how far each probe sees, against light through walls; 0 for none
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(0..=256))]
+    /// Texels on a side of each probe's map of distances, which keeps light from passing through walls; 0 for none
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = values::whole::<u32>(0..=256))]
     pub distances: u32,
     /// Damp the harmonics of a probe where irradiance would be negative
     #[arg(long)]
     pub dering: bool,
-    /// Compute every shadow and texel within a pixel, not just enough of them for the sum, and look with all pixels where 32 on a side are
-    /// enough: before the last bounce, and from the places of --fit
+    /// Compute every shadow and texel within a pixel, and capture with all pixels throughout. Otherwise shadows and texels are
+    /// computed as finely as the sum over a capture needs, and captures before the last bounce, and those of --fit, have at most 32
+    /// pixels on a side
     #[arg(long)]
     pub thorough: bool,
-    /// What to do with a probe inside of a solid
+    /// What to do with a probe inside a solid
     #[arg(long, value_name = "WHAT", default_value = "move")]
     pub inside: Inside,
     /// Bake a part of the probes, from 0; `merge` joins parts. Needs `--bounces 0`
@@ -199,7 +200,7 @@ pub struct ProjectOptions {
     #[arg(required = true, num_args = 1..=6, value_name = "IMAGE")]
     pub images: Vec<PathBuf>,
     /// Highest band of the harmonics
-    #[arg(long, value_name = "L", default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=sh::MAX_ORDER as i64))]
+    #[arg(long, value_name = "L", default_value_t = 2, value_parser = values::whole::<u8>(0..=sh::MAX_ORDER as u8))]
     pub order: u8,
     /// How much each texel of a cube counts
     #[arg(long, value_name = "RULE", default_value = "gregory")]
@@ -207,7 +208,7 @@ pub struct ProjectOptions {
     /// Brighten by this many stops first
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = values::exposure)]
     pub exposure: f32,
-    /// How a photograph's 8-bit values follow the light
+    /// How a photograph's 8-bit values follow the light: srgb, linear, gamma=2.2, or a file with the radiance of each of the 256 levels
     #[arg(long, value_name = "CURVE", default_value = "srgb", value_parser = values::response)]
     pub response: values::ResponseCurve,
     /// Damp the harmonics so that irradiance is nowhere below 0

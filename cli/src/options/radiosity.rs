@@ -42,7 +42,7 @@ pub struct RadiosityBakeOptions {
     #[arg(long, value_name = "KIND", default_value = "analytic")]
     pub form_factor: FormFactorKind,
     /// Pixels across a hemicube
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(4..=1024))]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = values::whole::<u32>(4..=1024))]
     pub resolution: u32,
     /// Longest edge of a patch, in the scene's unit (default: a 32nd of the scene's longest side)
     #[arg(long, value_name = "SIZE", value_parser = values::positive)]
@@ -50,17 +50,17 @@ pub struct RadiosityBakeOptions {
     /// Divide patches down to this where light changes fast: at shadow edges and in corners
     #[arg(long, value_name = "SIZE", value_parser = values::positive)]
     pub adaptive: Option<f64>,
-    /// Link each patch with each other, or groups of patches where that is good enough (auto: groups above 1000 patches)
+    /// Which patches exchange light directly: all pairs, or groups of patches where --tolerance allows (auto: groups above 1000 patches)
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub links: LinkKind,
-    /// What one link between groups may be off, as a share of the scene's mean radiosity
+    /// Largest error of one link between groups, as a fraction of the scene's mean radiosity
     #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = values::positive)]
     pub tolerance: f64,
     /// Leave out form factors below this; what was left out is reported
     #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = values::not_negative)]
     pub least_factor: f64,
-    /// Refuse to make more patches
-    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    /// Largest number of patches; a --patch that needs more is refused
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = values::whole::<usize>(1..=usize::MAX))]
     pub max_patches: usize,
     /// The light: .json for `[ambient] radiosity`, .ply for looking at, or `-` for JSON on standard output
     #[arg(short, long, value_name = "PATH", default_value = "radiosity.json")]

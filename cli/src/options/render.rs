@@ -38,7 +38,7 @@ pub struct RenderOptions {
 /// How a picture is written.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct PictureOptions {
-    /// For EXR: 32-bit colours in the place of 16-bit
+    /// For EXR: 32-bit colours instead of 16-bit
     #[arg(long)]
     pub float: bool,
     /// For PNG: brighten by this many stops

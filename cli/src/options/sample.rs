@@ -14,16 +14,16 @@ pub struct SampleOptions {
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
     /// Points to make (default: 100000); with `--method ldi` about as many
-    #[arg(long, value_name = "N", conflicts_with = "spacing", value_parser = clap::value_parser!(u64).range(1..=surfel::MAX_COUNT as u64))]
+    #[arg(long, value_name = "N", conflicts_with = "spacing", value_parser = values::whole::<u64>(1..=surfel::MAX_COUNT as u64))]
     pub count: Option<u64>,
-    /// Distance of neighbouring points, world units, in the place of a count
+    /// Distance of neighbouring points, world units, instead of a count
     #[arg(long, value_name = "D", value_parser = values::positive)]
     pub spacing: Option<f64>,
     /// How points are chosen
     #[arg(long, value_name = "METHOD", default_value = "poisson")]
     pub method: SampleMethod,
     /// Another seed gives other points; for `--method poisson`
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::whole::<u64>(0..=u64::MAX))]
     pub seed: u64,
     /// Write numbers as text
     #[arg(long)]

@@ -31,14 +31,14 @@ pub struct ScanOptions {
     /// How the picture is written.
     #[command(flatten)]
     pub picture: PictureOptions,
-    /// Leave out points that are NaN or infinite, in the place of refusing the file
+    /// Leave out points that are NaN or infinite, instead of refusing the file
     #[arg(long)]
     pub drop_invalid: bool,
-    /// Take the vertices of meshes, in the place of points all over them
+    /// Take the vertices of meshes, instead of points all over them
     #[arg(long)]
     pub vertices: bool,
     /// Draw the frame N times; --stats then has frame_ms and frame_cpu_ms
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::whole::<u32>(1..=u32::MAX))]
     pub repeat: u32,
     /// What every command has.
     #[command(flatten)]
@@ -59,7 +59,7 @@ pub struct SurfaceOptions {
     #[arg(long, value_name = "G", default_value_t = 2.0, value_parser = values::positive)]
     pub gamma: f64,
     /// Buffers per frame: 2 draws a finer one under the normal one
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = values::whole::<u8>(1..=2))]
     pub passes: u8,
     /// With two passes, size of the finer buffer's pixels relative to the normal one's
     #[arg(long, value_name = "F", default_value_t = 0.83, value_parser = values::share_above_0)]
@@ -68,7 +68,7 @@ pub struct SurfaceOptions {
     #[arg(long, value_name = "A", value_parser = values::share)]
     pub alpha: Option<f32>,
     /// With --alpha, surfaces per pixel
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=ibpr::Translucency::MOST_LAYERS as i64))]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = values::whole::<u16>(1..=ibpr::Translucency::MOST_LAYERS as u16))]
     pub depth_layers: u16,
     /// With --alpha, depth of a layer in spacings (the paper: 10)
     #[arg(long, value_name = "T", default_value_t = 5.0, value_parser = values::positive)]
@@ -89,7 +89,7 @@ pub struct SurfaceOptions {
     #[arg(long, value_name = "B", default_value_t = ibpr::Options::OUTLINE, value_parser = values::share)]
     pub outline: f32,
     /// Fill gaps of less than 2^L buffer pixels
-    #[arg(long, value_name = "L", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=i64::from(ibpr::Options::MOST_FILL)))]
+    #[arg(long, value_name = "L", default_value_t = 2, value_parser = values::whole::<u32>(0..=ibpr::Options::MOST_FILL))]
     pub fill: u32,
 }
 
@@ -100,7 +100,7 @@ pub struct ShadingOptions {
     /// Direction towards the light in the world (default: from the eye)
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
     pub light: Option<Vector>,
-    /// Share of light from everywhere, 0 to 1
+    /// Share of ambient light, which comes from all directions, 0 to 1
     #[arg(long, value_name = "A", default_value_t = 0.1, value_parser = values::share)]
     pub ambient: f32,
     /// Eye-dome lighting: darken what lies behind its surroundings; a strength of 1 is usual
@@ -157,7 +157,7 @@ pub enum WeightsValue {
     Symmetric,
     /// Falling from the nearest point
     Falling,
-    /// As eq. 2 survives in print: the nearest point counts least
+    /// As eq. 2 of the paper is printed: the nearest point counts least
     Printed,
 }
 

@@ -33,11 +33,11 @@ pub struct SurfelOptions {
     /// How the picture is written.
     #[command(flatten)]
     pub picture: PictureOptions,
-    /// Leave out points that are NaN or infinite, in the place of refusing the file
+    /// Leave out points that are NaN or infinite, instead of refusing the file
     #[arg(long)]
     pub drop_invalid: bool,
     /// Draw the frame N times; --stats then has frame_ms and frame_cpu_ms
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::whole::<u32>(1..=u32::MAX))]
     pub repeat: u32,
     /// What every command has.
     #[command(flatten)]
@@ -66,7 +66,7 @@ pub struct FocusOptions {
     /// Height of the lens's sensor in millimetres (default: 24)
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = values::positive, requires = "lens", conflicts_with = "fov")]
     pub sensor: Option<f64>,
-    /// Everything is sharp, whatever the options above say
+    /// No depth of field: everything is sharp, whatever the options above say
     #[arg(long)]
     pub no_dof: bool,
 }
@@ -96,7 +96,7 @@ pub struct SurfelShading {
     /// Direction towards the light in the world (default: from the eye)
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
     pub light: Option<Vector>,
-    /// Share of light from everywhere, 0 to 1
+    /// Share of ambient light, which comes from all directions, 0 to 1
     #[arg(long, value_name = "A", allow_negative_numbers = true, default_value_t = 0.1, value_parser = values::share)]
     pub ambient: f32,
 }

@@ -2,6 +2,8 @@
 
 use crate::coordinate::LARGEST;
 use crate::image_io::Window;
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -176,7 +178,7 @@ pub(super) fn response(text: &str) -> Result<ResponseCurve, String> {
 }
 
 /// The range of sizes: they are computed with in 32 bits, too.
-const SIZES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+const SIZES: RangeInclusive<f64> = 1e-30..=1e30;
 
 /// A size.
 pub(super) fn positive(text: &str) -> Result<f64, String> {
@@ -188,11 +190,17 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A number of threads.
-pub(super) fn threads(text: &str) -> Result<usize, String> {
-    const MOST: usize = 1024;
-    let wrong = || format!("must be a whole number from 1 to {MOST}");
-    text.parse().ok().filter(|n| (1..=MOST).contains(n)).ok_or_else(wrong)
+/// A whole number within `range`.
+pub(super) fn whole<T>(
+    range: RangeInclusive<T>,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+where
+    T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    move |text| {
+        let wrong = || format!("must be a whole number from {} to {}", range.start(), range.end());
+        text.parse().ok().filter(|n| range.contains(n)).ok_or_else(wrong)
+    }
 }
 
 /// Bytes: `8G`, `512M`, `1.5GiB`.

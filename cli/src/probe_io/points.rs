@@ -17,7 +17,7 @@ pub fn read_points(path: &Path) -> Result<Vec<DVec3>, InputError> {
     match input::kind_of(path)?.as_str() {
         "json" | "probes" => Ok(read_probes(path)?.positions()),
         "bin" => read_raw(path),
-        _ => Ok(read_rows::<3>(path, "x y z")?.into_iter().map(DVec3::from_array).collect()),
+        _ => Ok(read_rows::<3>(path, "x y z", |_| Ok(()))?.into_iter().map(DVec3::from_array).collect()),
     }
 }
 
@@ -43,8 +43,12 @@ fn read_raw(path: &Path) -> Result<Vec<DVec3>, InputError> {
 /// Lines of `N` numbers; empty lines and those that begin with `#` are left out. `-` is standard input.
 ///
 /// # Errors
-/// A line that is not `N` finite numbers, which are called `names`.
-pub fn read_rows<const N: usize>(path: &Path, names: &str) -> Result<Vec<[f64; N]>, InputError> {
+/// A line that is not `N` finite numbers, which are called `names`, or that `check` refuses with a message.
+pub fn read_rows<const N: usize>(
+    path: &Path,
+    names: &str,
+    check: impl Fn(&[f64; N]) -> Result<(), String>,
+) -> Result<Vec<[f64; N]>, InputError> {
     let (name, bytes) = (input::name_of(path), input::read(path)?);
     let mut rows = vec![];
     for (i, line) in bytes.split(|&b| b == b'\n').enumerate() {
@@ -70,6 +74,7 @@ pub fn read_rows<const N: usize>(path: &Path, names: &str) -> Result<Vec<[f64; N
         if let Some(word) = words.next() {
             return Err(wrong(format!("`{word}` is one too many: {N} numbers are needed")));
         }
+        check(&row).map_err(wrong)?;
         rows.push(row);
     }
     Ok(rows)

@@ -2,6 +2,7 @@
 
 use super::mesh_points::Needed;
 use super::{LoadedScan, POINT_BYTES};
+use crate::input;
 use crate::input_error::InputError;
 use crate::memory;
 use crate::scene::{self, Camera, Overrides, Scene};
@@ -36,7 +37,7 @@ impl LoadedMesh {
             materials.get(*material as usize).map_or([0.8; 3], |m| m.surface.diffuse.to_array())
         };
         let colours = mesh.material_of.iter().map(colour).collect();
-        let name = path.display().to_string();
+        let name = input::name_of(path);
         Ok(Self { name, positions: mesh.positions, triangles: mesh.triangles, colours })
     }
 

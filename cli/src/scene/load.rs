@@ -104,7 +104,7 @@ fn kind_of(path: &Path) -> Result<Kind, InputError> {
     match input::kind_of(path)?.as_str() {
         "toml" => Ok(Kind::Text(Format::Toml)),
         "json" => Ok(Kind::Text(Format::Json)),
-        "obj" | "ply" | "glb" | "gltf" => Ok(Kind::Mesh),
+        "obj" | "ply" | "ply.gz" | "glb" | "gltf" => Ok(Kind::Mesh),
         kind => {
             let name = input::name_of(path);
             let (message, help) = no_scene(kind);

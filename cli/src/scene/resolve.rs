@@ -9,6 +9,7 @@ use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene, SkyLight};
 use super::{auto_uv, fingerprint, framing, gltf_scene, plain_model, smooth};
+use crate::cloud_io;
 use crate::coordinate::{LARGEST, is_usable};
 use crate::input;
 use crate::input_error::InputError;
@@ -220,7 +221,7 @@ impl<'a> Builder<'a> {
         let document = &self.description.document;
         let name = input::name_of(path);
         let extension = input::kind_of(path)?;
-        if !["obj", "ply", "gltf", "glb"].contains(&extension.as_str()) {
+        if !["obj", "ply", "ply.gz", "gltf", "glb"].contains(&extension.as_str()) {
             let message = format!("`{}` is not a kind of mesh that can be read", reference.path);
             let error = document.error(reference.span, message);
             return Err(error.with_help("meshes end in .obj, .ply, .gltf or .glb"));
@@ -232,6 +233,7 @@ impl<'a> Builder<'a> {
         let mesh = match extension.as_str() {
             "obj" => read_obj(&name, &bytes)?,
             "ply" => read_ply(&name, &bytes)?,
+            "ply.gz" => read_ply(&name, &cloud_io::unpack(&name, &bytes)?)?,
             _ => gltf_scene::read(path, &bytes)?,
         };
         if let Some(model) = &mesh.gltf {
@@ -239,7 +241,7 @@ impl<'a> Builder<'a> {
         }
         if mesh.triangles.is_empty() {
             let points = mesh.positions.len();
-            return Err(if extension == "ply" && points > 0 {
+            return Err(if extension.starts_with("ply") && points > 0 {
                 InputError::of_file(
                     name,
                     format!("this is a cloud of {points} points, not a mesh: it has no faces"),

@@ -44,7 +44,7 @@ fn response(curve: &ResponseCurve) -> Result<Response, CliError> {
         }
         ResponseCurve::File(path) => {
             let levels: Vec<f32> =
-                read_rows::<1>(path, "radiance")?.into_iter().map(|[v]| v as f32).collect();
+                read_rows::<1>(path, "radiance", |_| Ok(()))?.into_iter().map(|[v]| v as f32).collect();
             Response::from_levels(&levels).map_err(|error| {
                 let error = InputError::of_file(path.display().to_string(), error.to_string());
                 error.with_help("the radiance of each of the 256 levels, one a line, rising").into()

@@ -16,15 +16,8 @@ pub(super) fn run(options: &QueryOptions) -> Result<(), CliError> {
     let name = name_of(&options.probes);
     let file = report.stats.stage("load", || read_probes(&options.probes))?;
     let field = report.stats.stage("load", || file.field(&name))?;
-    let rows = report.stats.stage("load", || read_rows::<6>(&options.points, "x y z nx ny nz"))?;
-    let query = |&[x, y, z, nx, ny, nz]: &[f64; 6]| -> (DVec3, Vec3) {
-        (DVec3::new(x, y, z), DVec3::new(nx, ny, nz).normalize_or_zero().as_vec3())
-    };
+    let rows = report.stats.stage("load", || read_rows(&options.points, "x y z nx ny nz", has_normal))?;
     let queries: Vec<(DVec3, Vec3)> = rows.iter().map(query).collect();
-    if let Some(i) = queries.iter().position(|(_, n)| *n == Vec3::ZERO) {
-        let [x, y, z, ..] = rows[i];
-        return Err(CliError::Failed(format!("the point {x} {y} {z} has no normal: nx, ny and nz are 0")));
-    }
     let light = report.stats.stage("query", || field.irradiance_all(&queries));
     let light = light.map_err(broken)?;
     let shares =
@@ -37,6 +30,19 @@ pub(super) fn run(options: &QueryOptions) -> Result<(), CliError> {
         })
     })?;
     report.finish()
+}
+
+/// Position and unit normal of a line; the normal is 0 if the line has none.
+fn query(&[x, y, z, nx, ny, nz]: &[f64; 6]) -> (DVec3, Vec3) {
+    (DVec3::new(x, y, z), DVec3::new(nx, ny, nz).normalize_or_zero().as_vec3())
+}
+
+fn has_normal(row: &[f64; 6]) -> Result<(), String> {
+    if query(row).1 == Vec3::ZERO {
+        Err("nx, ny and nz are 0, which is no normal".to_owned())
+    } else {
+        Ok(())
+    }
 }
 
 fn broken(error: ProbeError) -> CliError {
