@@ -71,3 +71,17 @@ fn an_option_for_a_material_that_no_mesh_has_is_a_warning_and_fails_check() {
     folder.prints(&[&line[..], &used].concat());
     folder.prints(&["check", "scenes/scene.toml", "--set", "material.Floor.opacity=0.5"]);
 }
+
+/// A scene with `ambient.color` could not be drawn with what was baked for it: both were "given".
+#[test]
+fn ambient_light_of_the_command_line_takes_the_place_of_the_scenes() {
+    let folder = Folder::new();
+    let scene = std::fs::read_to_string(folder.path("scene.toml")).unwrap();
+    folder.write("lit.toml", format!("{scene}\n[ambient]\ncolor = [0.2, 0.2, 0.2]\n"));
+    folder.prints(&["radiosity", "lit.toml", "-o", "baked.json", "--quiet"]);
+    folder.prints(&["render", "lit.toml", "--set", "ambient.radiosity=baked.json", "-o", "a.png", "--quiet"]);
+    folder.prints(&["check", "lit.toml", "--set", "ambient.sky=[1,1,1]", "--set", "ambient.ground=[0,0,0]"]);
+    folder
+        .write("twice.toml", format!("{scene}\n[ambient]\ncolor = [0, 0, 0]\nradiosity = \"baked.json\"\n"));
+    folder.fails(&["check", "twice.toml"], 3, &["ambient.color", "ambient.radiosity", "are both given"]);
+}

@@ -71,40 +71,42 @@ pub enum Command {
     /// built-in scene is drawn to pointillist.png.
     #[command(after_help = "Examples:\n  \
         pointillist render\n  \
-        pointillist render house.toml -o house.exr --layers all\n  \
-        pointillist render bunny.obj --eye 0,1,3 --target 0,0.5,0 --fov 30 -o bunny.png\n  \
-        pointillist render house.toml --set render.shading=flat --size 1920x1080\n  \
-        pointillist render house.toml --tile 0/4 -o part0.exr")]
+        pointillist render examples/house.toml -o house.exr --layers all\n  \
+        pointillist render examples/rabbit.obj --eye 0.2,0.2,0.4 --target 0,0.08,0 --fov 30 -o rabbit.png\n  \
+        pointillist render examples/house.toml --set render.shading=flat --size 1920x1080 -o flat.png\n  \
+        pointillist render examples/house.toml --tile 0/4 -o part0.exr")]
     Render(RenderOptions),
     /// Draw range scans as they come: noisy, overlapping, without normals
     ///
     /// Scans are drawn as closed surfaces, without preparation. FILE is a scan, a Stanford .conf that places several, or a
     /// mesh, which gets points all over it.
     #[command(after_help = "Examples:\n  \
-        pointillist scan bun.conf -o bunny.png\n  \
-        pointillist scan bun000.ply bun045.ply --edl --ambient 0.3\n  \
-        pointillist scan bun.conf --eye 0,0.15,0.4 --target -0.02,0.11,0 --fov 35 --passes 1\n  \
-        pointillist scan bun.conf sphere.obj --alpha 0.4 -o inside.png\n  \
-        pointillist scan bun.conf -o bunny.exr --layers all --float")]
+        pointillist sample examples/rabbit.obj --count 40000 -o rabbit.ply\n  \
+        pointillist scan rabbit.ply -o rabbit.png\n  \
+        pointillist scan rabbit.ply --edl --ambient 0.3 -o depth.png\n  \
+        pointillist scan rabbit.ply --eye 0.3,0.15,0.4 --target 0,0.08,0 --fov 35 --passes 1 -o near.png\n  \
+        pointillist scan rabbit.ply examples/ball.obj --alpha 0.4 -o inside.png\n  \
+        pointillist scan rabbit.ply -o rabbit.exr --layers all --float")]
     Scan(ScanOptions),
     /// Turn a mesh into points with normals, colours and radii
     ///
     /// Each point stands for a disc; together the discs cover the surface. Normals are interpolated, colours come from materials
     /// and textures.
     #[command(after_help = "Examples:\n  \
-        pointillist sample bunny.ply --count 362272 -o cloud.ply\n  \
-        pointillist sample house.obj --spacing 0.01 --method ldi -o house.ply\n  \
-        pointillist sample house.toml --count 50000 --seed 7 --ascii -o house.ply")]
+        pointillist sample examples/rabbit.obj --count 40000 -o rabbit.ply\n  \
+        pointillist sample examples/house.obj --spacing 0.05 --method ldi -o house.ply\n  \
+        pointillist sample examples/house.toml --count 50000 --seed 7 --ascii -o house.ply")]
     Sample(SampleOptions),
     /// Draw a cloud of points with normals: discs, level of detail, depth of field
     ///
     /// CLOUD is what `sample` writes, or any cloud; normals and radii that it lacks are estimated.
     #[command(after_help = "Examples:\n  \
-        pointillist surfel bunny.ply -o bunny.png\n  \
-        pointillist surfel bunny.ply --eye 0,0.2,0.4 --target 0,0.1,0 --light 1,2,2 -o bunny.png\n  \
-        pointillist surfel bunny.ply --focus 0.4 --aperture 0.02 -o blurred.png\n  \
-        pointillist surfel room.ply --focus 2.5 --lens 50 --fstop 1.8 -o photograph.png\n  \
-        pointillist surfel bunny.ply -o bunny.exr --layers all --float")]
+        pointillist sample examples/rabbit.obj --count 40000 -o rabbit.ply\n  \
+        pointillist surfel rabbit.ply -o rabbit.png\n  \
+        pointillist surfel rabbit.ply --eye 0.2,0.2,0.4 --target 0,0.08,0 --light 1,2,2 -o right.png\n  \
+        pointillist surfel rabbit.ply --focus 0.3 --aperture 0.02 -o blurred.png\n  \
+        pointillist surfel rabbit.ply --focus 0.35 --lens 50 --fstop 1.8 -o photograph.png\n  \
+        pointillist surfel rabbit.ply -o rabbit.exr --layers all --float")]
     Surfel(SurfelOptions),
     /// Light probes: place, bake, project, tetrahedralise, query
     Probe {
@@ -117,13 +119,11 @@ pub enum Command {
     /// Surfaces are divided into patches, what they exchange is computed with error bounds, and the light that arrives at every vertex
     /// from other surfaces is written. The scene's lights light the patches directly, with shadows; emissive materials are light, too.
     #[command(after_help = "Examples:\n  \
-        pointillist radiosity room.toml -o baked.json\n  \
-        pointillist radiosity room.toml --patch 0.1 --adaptive 0.02 -o baked.json\n  \
-        pointillist radiosity room.toml --patch 0.25 --links full --factors F.csv -o room.ply\n  \
-        pointillist radiosity factors pairs.jsonl\n\n\
-        Then add to the scene:\n  \
-        [ambient]\n  \
-        radiosity = \"baked.json\"")]
+        pointillist radiosity examples/house.toml --patch 1 -o baked.json\n  \
+        pointillist radiosity examples/house.toml --patch 1 --adaptive 0.5 -o fine.json\n  \
+        pointillist radiosity examples/house.toml --patch 2 --links full --factors F.csv -o house.ply\n\n\
+        Then draw with it:\n  \
+        pointillist render examples/house.toml --set ambient.radiosity=baked.json -o lit.png")]
     Radiosity(RadiosityOptions),
     /// Cut polygons by a grid: JSON lines in, JSON lines out
     ///
@@ -139,21 +139,26 @@ pub enum Command {
     /// Prints RMSE, MAE, bias, the largest difference and its pixel, PSNR (peak 1) and the mean of LDR-FLIP as JSON,
     /// all over linear red, green and blue.
     #[command(after_help = "Examples:\n  \
+        pointillist render examples/house.toml -o a.exr\n  \
+        pointillist render examples/house.toml --set render.subpixel=2 -o b.exr\n  \
         pointillist compare a.exr b.exr\n  \
-        pointillist compare a.exr b.exr --diff difference.png --max-rmse 1e-3")]
+        pointillist compare a.exr b.exr --diff difference.png --max-rmse 0.1")]
     Compare(CompareOptions),
     /// Print what a scene, mesh, cloud, picture or baked file holds, as JSON
-    #[command(after_help = "Examples:\n  pointillist info house.toml\n  pointillist info house.exr")]
+    #[command(after_help = "Examples:\n  \
+        pointillist info examples/house.toml\n  \
+        pointillist info examples/rabbit.obj")]
     Info(InfoOptions),
     /// Read and validate a scene and everything it names; draw nothing
     #[command(after_help = "Examples:\n  \
-        pointillist check house.toml\n  \
-        pointillist check house.toml --set camera.fov=200")]
+        pointillist check examples/house.toml\n  \
+        pointillist check examples/house.toml --set camera.fov=30")]
     Check(CheckOptions),
     /// Join the parts that `render --tile` or `probe bake --part` wrote
     #[command(after_help = "Examples:\n  \
-        pointillist merge part0.exr part1.exr part2.exr part3.exr -o house.exr\n  \
-        pointillist merge part0.json part1.json -o baked.json")]
+        pointillist render examples/house.toml --tile 0/2 -o part0.exr\n  \
+        pointillist render examples/house.toml --tile 1/2 -o part1.exr\n  \
+        pointillist merge part0.exr part1.exr -o house.exr")]
     Merge(MergeOptions),
     /// Print a completion script for a shell
     #[command(after_help = "Example:\n  \

@@ -11,39 +11,42 @@ use std::path::PathBuf;
 pub enum ProbeCommand {
     /// Choose where probes go
     #[command(after_help = "Examples:\n  \
-        pointillist probe place house.toml --grid 12x6x6 -o probes.json\n  \
-        pointillist probe place house.toml --strategy cluster --count 86 -o probes.json\n  \
-        pointillist probe place house.toml --strategy random --count 200 --seed 3 -o -")]
+        pointillist probe place examples/house.toml --grid 12x6x6 -o grid.json\n  \
+        pointillist probe place examples/house.toml --strategy cluster --count 40 -o probes.json\n  \
+        pointillist probe place examples/house.toml --strategy random --count 200 --seed 3 -o -")]
     Place(PlaceOptions),
     /// Capture what probes see, as spherical harmonics
     ///
     /// Each probe looks around with six pictures of the scene. Probes of an output that is already there are kept where
     /// nothing that they see has changed.
     #[command(after_help = "Examples:\n  \
-        pointillist probe bake house.toml probes.json -o baked.json\n  \
-        pointillist probe bake house.toml probes.json --bounces 3 --resolution 64 -o baked.probes\n  \
-        pointillist probe bake house.toml probes.json --fit 800 --resolution 32\n  \
-        pointillist probe bake house.toml probes.json --bounces 0 --part 0/4 -o part0.json\n\n\
-        Then add to the scene:\n  \
-        [ambient]\n  \
-        probes = \"baked.json\"")]
+        pointillist probe place examples/house.toml --grid 6x3x4 -o probes.json\n  \
+        pointillist probe bake examples/house.toml probes.json -o baked.json\n  \
+        pointillist probe bake examples/house.toml probes.json --bounces 3 --resolution 64 -o baked.probes\n  \
+        pointillist probe bake examples/house.toml probes.json --fit 200 --resolution 32 -o fitted.json\n  \
+        pointillist probe bake examples/house.toml probes.json --bounces 0 --part 0/4 -o part0.json\n\n\
+        Then draw with it:\n  \
+        pointillist render examples/house.toml --set ambient.probes=baked.json -o lit.png")]
     Bake(BakeOptions),
     /// Turn an environment map into spherical harmonics
     #[command(after_help = "Examples:\n  \
-        pointillist probe project sky.hdr\n  \
-        pointillist probe project strip.exr --weights exact --order 4\n  \
-        pointillist probe project px.png nx.png py.png ny.png pz.png nz.png -o sh.json")]
+        pointillist probe project examples/sky.png\n  \
+        pointillist probe project examples/sky.png --order 4 -o sh.json")]
     Project(ProjectOptions),
     /// Divide space between points into Delaunay tetrahedra
     ///
     /// Prints `# tetrahedra N` and four indices a line, from 0; `# dimension 2` (1, 0) and triangles (segments, a point) where the
     /// points span no more; `# tetrahedra 0` for no points.
     #[command(after_help = "Examples:\n  \
-        pointillist probe tetra points.txt\n  \
-        pointillist probe tetra points.bin -o cells.bin --locate queries.bin --stats stats.json")]
+        printf '0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n1 1 1\\n' | pointillist probe tetra -\n  \
+        pointillist probe place examples/house.toml --grid 6x3x4 -o probes.json\n  \
+        pointillist probe tetra probes.json -o cells.txt")]
     Tetra(TetraOptions),
     /// Irradiance at points with normals, from baked probes
-    #[command(after_help = "Example:\n  echo '0 1 0  0 1 0' | pointillist probe query baked.json -")]
+    #[command(after_help = "Examples:\n  \
+        pointillist probe place examples/house.toml --grid 6x3x4 -o probes.json\n  \
+        pointillist probe bake examples/house.toml probes.json -o baked.json\n  \
+        echo '-2 1 0  0 1 0' | pointillist probe query baked.json -")]
     Query(QueryOptions),
 }
 

@@ -49,17 +49,29 @@ pub fn load_to_bake(path: &Path, overrides: &Overrides) -> Result<Scene, InputEr
     resolve::resolve(&description, &folder, kind == Kind::Mesh, None)
 }
 
-/// Changes a document by the overrides. A field of view takes the place of a height, and the other way round.
+/// Changes a document by the overrides. A field of view takes the place of a height, and the other way round,
+/// and ambient light of one kind that of any other.
 pub(super) fn apply(document: &mut Document, overrides: &Overrides) -> Result<(), InputError> {
     for (option, assignment) in &overrides.assignments {
         document.set(option, assignment)?;
         match assignment.split('=').next().map(str::trim) {
             Some("camera.fov") => document.remove("camera", "height"),
             Some("camera.height") => document.remove("camera", "fov"),
+            Some(key) if key.starts_with("ambient.") => keep_ambient(document, &key["ambient.".len()..]),
             _ => {}
         }
     }
     Ok(())
+}
+
+/// Each of these keys holds all ambient light: what the command line gives takes the place of what the scene has.
+fn keep_ambient(document: &mut Document, key: &str) {
+    let pair = ["sky", "ground"];
+    for other in ["color", "sky", "ground", "probes", "radiosity", "environment"] {
+        if other != key && !(pair.contains(&key) && pair.contains(&other)) {
+            document.remove("ambient", other);
+        }
+    }
 }
 
 fn read_document(path: &Path) -> Result<(Document, Kind, PathBuf), InputError> {
