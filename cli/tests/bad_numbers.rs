@@ -169,3 +169,16 @@ fn a_query_without_a_normal_shows_its_line() {
         &["queries.txt:3", "no normal", "1 2 3 0 0 0"],
     );
 }
+
+#[test]
+fn a_probe_beyond_all_scenes_is_named() {
+    let folder = Folder::new();
+    folder.write("far.json", "{\"probes\":[{\"position\":[0,1,0]},\n{\"position\":[1e300,0,0]}]}");
+    for line in [
+        &["info", "far.json"][..],
+        &["probe", "bake", "scene.toml", "far.json"],
+        &["probe", "tetra", "far.json"],
+    ] {
+        folder.fails(line, 3, &["far.json", "probes[1].position", "1e18"]);
+    }
+}

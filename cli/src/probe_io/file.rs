@@ -1,6 +1,7 @@
 //! A whole file of probes.
 
 use super::ProbeEntry;
+use crate::coordinate::{LARGEST, is_usable};
 use crate::input;
 use crate::input_error::InputError;
 use crate::json_kind::JsonKind;
@@ -131,6 +132,18 @@ pub fn read_probes(path: &Path) -> Result<ProbeFile, InputError> {
     parse_probes(&input::name_of(path), &input::read(path)?)
 }
 
+/// Refuses places that nothing can be seen from, by the probe.
+fn with_usable_places(name: &str, file: ProbeFile) -> Result<ProbeFile, InputError> {
+    match file.positions().iter().position(|&place| !is_usable(place)) {
+        None => Ok(file),
+        Some(index) => {
+            let [x, y, z] = file.probes[index].position;
+            let message = format!("`probes[{index}].position` is [{x}, {y}, {z}], beyond ±{LARGEST:e}");
+            Err(InputError::of_file(name, message).with_help("move the probe into the scene"))
+        }
+    }
+}
+
 /// Reads JSON or binary from memory; `name` is what it is called in messages.
 ///
 /// # Errors
@@ -139,10 +152,11 @@ pub fn parse_probes(name: &str, bytes: &[u8]) -> Result<ProbeFile, InputError> {
     let Some(packed) = bytes.strip_prefix(MAGIC) else {
         let help = "probes are {\"probes\":[{\"position\":[x,y,z], …}, …]}";
         return json_words::parse(name, bytes, help)
-            .map_err(|error| JsonKind::explain(JsonKind::Probes, name, bytes, error));
+            .map_err(|error| JsonKind::explain(JsonKind::Probes, name, bytes, error))
+            .and_then(|file| with_usable_places(name, file));
     };
     let mut reader = rmp_serde::Deserializer::new(packed);
-    serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+    let read = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
         let field = error.path().to_string();
         let message = match error.inner() {
             rmp_serde::decode::Error::Syntax(what) if field != "." => {
@@ -151,7 +165,8 @@ pub fn parse_probes(name: &str, bytes: &[u8]) -> Result<ProbeFile, InputError> {
             _ => "these are no probes, or not all of them".to_owned(),
         };
         InputError::of_file(name, message).with_help("the file is damaged; bake it again")
-    })
+    });
+    read.and_then(|file| with_usable_places(name, file))
 }
 
 /// Writes probes, `binary` or as JSON with a line for each probe.
