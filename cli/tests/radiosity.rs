@@ -154,11 +154,6 @@ fn impossible_light_is_refused_by_its_material() {
     folder.fails(&["radiosity", "room.toml", "--patch", "0.001"], 2, &["--max-patches"]);
     let clash = ["radiosity", "room.toml", "--form-factor", "hemicube", "--adaptive", "0.1"];
     folder.fails(&clash, 2, &["--adaptive"]);
-    folder.fails(
-        &["render", "room.toml", "--set", "ambient.color=[1,1,1]", "--set", "ambient.radiosity=\"x\""],
-        3,
-        &["ambient.radiosity", "both given"],
-    );
 }
 
 #[test]

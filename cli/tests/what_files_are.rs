@@ -108,7 +108,10 @@ fn every_command_has_a_manual_page_whose_examples_keep_their_lines() {
     let bake = page("pointillist-probe-bake");
     let (_, examples) = bake.split_once(".SH EXAMPLES\n.nf\n").expect("examples that are not filled");
     let (examples, _) = examples.split_once(".fi").expect("their end");
-    assert!(examples.lines().filter(|line| line.contains("pointillist probe bake house.toml")).count() >= 4);
+    assert!(
+        examples.lines().filter(|line| line.contains("pointillist probe bake examples/house.toml")).count()
+            >= 4
+    );
     assert!(page("pointillist").contains("EXIT STATUS"));
     assert!(!folder.names().iter().any(|name| name.contains("help")));
 }

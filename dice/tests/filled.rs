@@ -83,6 +83,8 @@ fn counter_clockwise([a, b, c]: [DVec2; 3]) -> [DVec2; 3] {
 }
 
 proptest! {
+    #![proptest_config(testkit::config(256))]
+
     #[test]
     fn two_triangles_are_united_or_kept_apart(a in triangle(), b in triangle()) {
         let (a, b) = (counter_clockwise(a), counter_clockwise(b));

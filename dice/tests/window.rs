@@ -48,6 +48,8 @@ fn window() -> impl Strategy<Value = CellWindow> {
 }
 
 proptest! {
+    #![proptest_config(testkit::config(256))]
+
     #[test]
     fn areas_in_a_window_are_those_of_the_whole(
         ring in prop::collection::vec(place(), 3..9), hole in prop::collection::vec(place(), 3..5), window in window(),

@@ -120,8 +120,7 @@ pub enum Command {
     /// from other surfaces is written. The scene's lights light the patches directly, with shadows; emissive materials are light, too.
     #[command(after_help = "Examples:\n  \
         pointillist radiosity examples/house.toml --patch 1 -o baked.json\n  \
-        pointillist radiosity examples/house.toml --patch 1 --adaptive 0.5 -o fine.json\n  \
-        pointillist radiosity examples/house.toml --patch 2 --links full --factors F.csv -o house.ply\n\n\
+        pointillist radiosity examples/house.toml --patch 1 --adaptive 0.5 -o fine.json\n\n\
         Then draw with it:\n  \
         pointillist render examples/house.toml --set ambient.radiosity=baked.json -o lit.png")]
     Radiosity(RadiosityOptions),
