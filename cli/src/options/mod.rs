@@ -130,6 +130,7 @@ pub enum Command {
     /// if there is no grid. "size":[nx,ny] in the grid limits the answer, and the time it takes, to cells 0 ≤ i < nx,
     /// 0 ≤ j < ny. Each line of the result is {"pieces":[{"cell":[i,j],"area":a,"vertices":[[x,y],…]},…]}, or with --areas
     /// {"cells":[{"cell":[i,j],"area":a,"centroid":[x,y]},…]}.
+    #[allow(rustdoc::broken_intra_doc_links, reason = "JSON, shown by --help as it stands")]
     #[command(after_help = "Example:\n  \
         echo '{\"polygon\":[[0.5,0.5],[1.5,0.5],[1.5,1.5],[0.5,1.5]]}' | pointillist dice --areas")]
     Dice(DiceOptions),
@@ -184,6 +185,7 @@ pub struct DiceOptions {
     #[arg(value_name = "FILE", default_value = "-")]
     pub input: PathBuf,
     /// Print the area and centroid of each cell instead of pieces. Accepts concave polygons, polygons that cross themselves, and holes: "rings":[[[x,y],…],…] instead of "polygon", and "rule":"evenodd" (default) or "nonzero" for what is inside.
+    #[allow(rustdoc::broken_intra_doc_links, reason = "JSON, shown by --help as it stands")]
     #[arg(long)]
     pub areas: bool,
     /// Where results go.
