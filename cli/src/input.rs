@@ -26,12 +26,10 @@ pub fn name_of(path: &Path) -> String {
 /// Standard input to its end.
 ///
 /// # Errors
-/// It cannot be read.
+/// It cannot be read, or does not fit into memory.
 pub fn standard() -> Result<&'static [u8], InputError> {
     let read = || {
-        let mut bytes = vec![];
-        std::io::stdin().lock().read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-        Ok(bytes)
+        memory::read_to_end(std::io::stdin().lock(), 0, "its bytes take").map_err(|error| error.to_string())
     };
     match BYTES.get_or_init(read) {
         Ok(bytes) => Ok(bytes),

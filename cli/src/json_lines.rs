@@ -1,22 +1,31 @@
 //! JSON lines that are answered one by one: how they are read, what can go wrong, and how it is said.
 
 use crate::json_words::plain;
-use std::io::{BufRead as _, BufReader, Read};
+use std::io::{self, BufRead as _, BufReader, Read};
 
 /// Bytes that are read at once, if there are as many: enough lines to keep all threads busy.
 const CAPACITY: usize = 1 << 20;
+
+/// Longest line in bytes: a polygon of millions of corners. What is longer has lost its line feeds.
+const LONGEST_LINE: u64 = 1 << 28;
 
 /// Lines of a file or a pipe, which know whether more of them can be had without waiting.
 pub struct Lines<'a> {
     reader: BufReader<Box<dyn Read + 'a>>,
     source: String,
     number: usize,
+    longest: u64,
 }
 
 impl<'a> Lines<'a> {
     /// `source` is what messages call the input.
     pub fn new(input: Box<dyn Read + 'a>, source: &str) -> Self {
-        Self { reader: BufReader::with_capacity(CAPACITY, input), source: source.to_owned(), number: 0 }
+        Self {
+            reader: BufReader::with_capacity(CAPACITY, input),
+            source: source.to_owned(),
+            number: 0,
+            longest: LONGEST_LINE,
+        }
     }
 
     /// What messages call the input.
@@ -33,11 +42,14 @@ impl<'a> Lines<'a> {
             let mut bytes = vec![];
             self.number += 1;
             let (line, source_name) = (self.number, &self.source);
-            let count = self.reader.read_until(b'\n', &mut bytes).map_err(|error| JsonLinesError::Read {
-                source_name: source_name.clone(),
-                line,
-                error,
-            })?;
+            let longest = self.longest;
+            let mut limited = self.reader.by_ref().take(longest + 1);
+            let read = limited.read_until(b'\n', &mut bytes).and_then(|count| {
+                let too_long = || format!("the line has more than {longest} bytes");
+                if count as u64 > longest { Err(io::Error::other(too_long())) } else { Ok(count) }
+            });
+            let count =
+                read.map_err(|error| JsonLinesError::Read { source_name: source_name.clone(), line, error })?;
             if count == 0 {
                 return Ok(None);
             }
@@ -107,5 +119,19 @@ pub(crate) fn shorten(text: &str) -> String {
     match text.char_indices().nth(LENGTH) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Lines;
+
+    #[test]
+    fn a_line_that_does_not_end_is_no_reason_to_take_all_memory() {
+        let mut lines = Lines::new(Box::new(&b"1234567\n12345678\n"[..]), "-");
+        lines.longest = 8;
+        assert!(matches!(lines.next_line(), Ok(Some((1, _)))));
+        let message = lines.next_line().unwrap_err().to_string();
+        assert_eq!(message, "-, line 2: the line has more than 8 bytes");
     }
 }

@@ -29,7 +29,12 @@ const WORDS: [(&str, &str); 20] = [
 
 /// The message of a reader without place and without names of types.
 pub(crate) fn plain(message: &str) -> String {
-    let message = message.split(" at line ").next().unwrap_or_default();
+    // A string of the user's may have the same words.
+    let is_place = |end: &str| end.split(" column ").all(|number| number.parse::<u64>().is_ok());
+    let message = match message.rsplit_once(" at line ") {
+        Some((message, end)) if is_place(end) => message,
+        _ => message,
+    };
     let Some((found, wanted)) = message.split_once(", expected ") else { return message.to_owned() };
     let thing = found.strip_prefix("invalid type: ").or_else(|| found.strip_prefix("invalid value: "));
     match (thing, found.strip_prefix("invalid length ")) {
@@ -93,6 +98,10 @@ mod tests {
             (
                 "invalid type: map, expected a sequence at line 1 column 5",
                 "is an object and should be a list",
+            ),
+            (
+                "invalid type: string \"stop at line 3\", expected f64 at line 1 column 20",
+                "is the string \"stop at line 3\" and should be a number",
             ),
             ("invalid type: string \"a, b\", expected f64", "is the string \"a, b\" and should be a number"),
             ("invalid type: integer `5`, expected struct Asset", "is the number `5` and should be an object"),

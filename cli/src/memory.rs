@@ -7,7 +7,7 @@
 
 use crate::input_error::InputError;
 use std::fs::File;
-use std::io::{self, Read as _};
+use std::io::{self, Read};
 use std::path::Path;
 use std::sync::OnceLock;
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
@@ -23,7 +23,7 @@ const HELP: &str = "`--memory SIZE` (or POINTILLIST_MEMORY) says how much may be
 
 /// Something that does not fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{what} {} of memory, and {} are available", human(*.needed), human(u128::from(*.available)))]
+#[error("{what} {} of memory, and {}", human(*.needed), left(*.available))]
 pub struct MemoryError {
     /// What would take it, with its verb: `16384×16384 pixels take`.
     pub what: String,
@@ -85,24 +85,33 @@ pub fn check(needed: u128, what: impl FnOnce() -> String) -> Result<(), MemoryEr
 ///
 /// # Errors
 ///
-/// What the system says, or [`io::ErrorKind::OutOfMemory`] with a message for a file that does not fit.
+/// As [`read_to_end`].
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
-    let too_large = |error: MemoryError| io::Error::new(io::ErrorKind::OutOfMemory, error.with_help());
     let file = File::open(path)?;
+    // Devices and pipes have no length.
     let length = file.metadata()?.len();
-    check(u128::from(length), || "its bytes take".to_owned()).map_err(too_large)?;
+    read_to_end(file, length, "its bytes take")
+}
+
+/// All bytes of an input, if they fit. `expected` is how many there probably are, or 0; `what` begins the message of what
+/// does not fit: `its bytes take`.
+///
+/// # Errors
+///
+/// What the input says, or [`io::ErrorKind::OutOfMemory`] with a message for what does not fit.
+pub fn read_to_end(mut input: impl Read, expected: u64, what: &str) -> io::Result<Vec<u8>> {
+    let too_large = |error: MemoryError| io::Error::new(io::ErrorKind::OutOfMemory, error.with_help());
+    check(u128::from(expected), || what.to_owned()).map_err(too_large)?;
     let mut bytes = Vec::new();
-    bytes.try_reserve_exact(length as usize)?;
-    // Devices and pipes have no length: they are read for as long as there is room.
+    bytes.try_reserve_exact(expected as usize)?;
     let mut meter = Meter::default();
-    let mut input = file;
     loop {
-        let count = (&mut input).take(STEP).read_to_end(&mut bytes)? as u64;
+        let count = input.by_ref().take(STEP).read_to_end(&mut bytes)? as u64;
         if count < STEP {
             return Ok(bytes);
         }
-        if bytes.len() as u64 > length {
-            meter.add(count, || "its bytes take".to_owned()).map_err(too_large)?;
+        if bytes.len() as u64 > expected {
+            meter.add(count, || what.to_owned()).map_err(too_large)?;
         }
     }
 }
@@ -141,6 +150,10 @@ pub fn human(bytes: u128) -> String {
         unit += 1;
     }
     format!("{value:.1} {}", UNITS[unit])
+}
+
+fn left(bytes: u64) -> String {
+    if bytes == 0 { "none is left".to_owned() } else { format!("{} are available", human(u128::from(bytes))) }
 }
 
 /// What the system, and the container within it, can give without swapping.

@@ -44,6 +44,21 @@ fn a_cloud_that_unpacks_to_more_than_there_is_room_for_is_refused() {
 }
 
 #[test]
+fn standard_input_is_read_for_as_long_as_there_is_room() {
+    let folder = Folder::new();
+    let output = folder
+        .command(&["check", "-", "--memory", "100M"])
+        .write_stdin("# a comment\n".repeat(16 << 20))
+        .output()
+        .unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    for piece in ["standard input", "its bytes take", "--memory SIZE"] {
+        assert!(message.contains(piece), "{message}");
+    }
+}
+
+#[test]
 fn sizes_of_pictures_are_looked_at_before_anything_is_loaded() {
     let folder = Folder::new();
     let size = ["--size", "100000x100000"];

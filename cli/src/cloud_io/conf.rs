@@ -127,7 +127,8 @@ fn named_pose<'a>(
 ) -> Result<(Option<Word<'a>>, Pose), InputError> {
     let words: Vec<Word<'a>> = words.collect();
     let Some(split) = words.len().checked_sub(POSE_NUMBERS) else {
-        let message = format!("a pose has {POSE_NUMBERS} numbers, but here are {}", words.len());
+        let message =
+            format!("words after the keyword: {}; a pose alone is {POSE_NUMBERS} numbers", words.len());
         return Err(line
             .error(name, None, message)
             .with_help("write tx ty tz qx qy qz qw: a translation and a unit quaternion"));

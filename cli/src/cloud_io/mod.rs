@@ -142,16 +142,8 @@ fn read_any<R: ReadSeek>(name: &str, mut input: R, gather: &mut Gather<'_>) -> R
 ///
 /// It is damaged or cut short, or does not fit into memory.
 pub fn unpack(name: &str, packed: &[u8]) -> Result<Vec<u8>, InputError> {
-    const STEP: u64 = 1 << 20;
-    let (mut unpacked, mut bytes, mut meter) = (Gunzip::new(packed), vec![], memory::Meter::default());
-    loop {
-        let count = (&mut unpacked).take(STEP).read_to_end(&mut bytes);
-        let count = count.map_err(|error| InputError::of_file(name, error.to_string()))? as u64;
-        meter.add(count, || "its unpacked bytes take".to_owned()).map_err(|error| error.in_file(name))?;
-        if count < STEP {
-            return Ok(bytes);
-        }
-    }
+    memory::read_to_end(Gunzip::new(packed), 0, "its unpacked bytes take")
+        .map_err(|error| InputError::of_file(name, error.to_string()))
 }
 
 fn packed_twice(name: &str) -> InputError {

@@ -20,6 +20,9 @@ struct Part {
 
 pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?.reading(&options.parts)?.writing([&options.output])?;
+    if let Some(part) = options.parts.iter().find(|part| !is_standard(part) && !part.exists()) {
+        return Err(CliError::Parts(format!("part {} is missing", part.display())));
+    }
     let is_text = is_standard(&options.output) && options.parts.iter().all(|part| is_probe_file(part));
     if is_text || is_probe_file(&options.output) {
         return merge_probes(options, &report);
@@ -47,9 +50,6 @@ pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
 fn read_part(path: &Path) -> Result<Part, CliError> {
     let name = name_of(path);
     let fault = |message: String| CliError::Input(InputError::of_file(&name, message));
-    if !is_standard(path) && !path.exists() {
-        return Err(CliError::Parts(format!("part {name} is missing")));
-    }
     let bytes = input::read(path)?;
     let mut file = ExrFile::read(&bytes).map_err(|error| fault(format!("cannot be decoded: {error}")))?;
     let stamp = file.stamp.take();

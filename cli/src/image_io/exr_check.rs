@@ -4,6 +4,7 @@
 //! more memory than there is or for a division by zero. Both would end the program without a message.
 
 use super::ExrError;
+use super::picture::DECODED_PIXEL_BYTES;
 use crate::memory;
 use exr::block::chunk::CompressedBlock;
 use exr::meta::attribute::Compression;
@@ -19,8 +20,6 @@ const MOST_BLOCK_BYTES: u128 = i32::MAX as u128;
 const DWA_SIZES: [usize; 5] = [1, 6, 7, 8, 9];
 /// Room for the padding of small blocks.
 const DWA_PADDING: u64 = 1 << 16;
-/// Bytes of a pixel once it is decoded: four colours as they are stored, as planes and as pixels.
-const DECODED_PIXEL_BYTES: u128 = 3 * 4 * 4;
 
 /// Looks at the header of every layer, and at the sizes in blocks that have some.
 ///

@@ -10,7 +10,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 /// Bytes of a pixel at most while a picture is decoded: as stored, as four floats, and as our own pixels.
-const DECODED_PIXEL_BYTES: u128 = 3 * 4 * 4;
+pub(super) const DECODED_PIXEL_BYTES: u128 = 3 * 4 * 4;
 
 /// Linear colours of a picture.
 #[derive(Clone, Debug, PartialEq)]

@@ -86,7 +86,10 @@ pub enum Command {
         pointillist scan rabbit.ply --edl --ambient 0.3 -o depth.png\n  \
         pointillist scan rabbit.ply --eye 0.3,0.15,0.4 --target 0,0.08,0 --fov 35 --passes 1 -o near.png\n  \
         pointillist scan rabbit.ply examples/ball.obj --alpha 0.4 -o inside.png\n  \
-        pointillist scan rabbit.ply -o rabbit.exr --layers all --float")]
+        pointillist scan rabbit.ply -o rabbit.exr --layers all --float\n\n\
+        Two scans, the second 0.2 to the right (tx ty tz qx qy qz qw):\n  \
+        printf 'bmesh rabbit.ply 0 0 0 0 0 0 1\\nbmesh rabbit.ply 0.2 0 0 0 0 0 1\\n' > two.conf\n  \
+        pointillist scan two.conf -o two.png")]
     Scan(ScanOptions),
     /// Turn a mesh into points with normals, colours and radii
     ///
@@ -125,14 +128,16 @@ pub enum Command {
         pointillist render examples/house.toml --set ambient.radiosity=baked.json -o lit.png")]
     Radiosity(RadiosityOptions),
     /// Cut polygons by a grid: JSON lines in, JSON lines out
-    ///
-    /// Each line of the input is {"polygon":[[x,y],…],"grid":{"origin":[x0,y0],"cell":[dx,dy]}}, with unit cells at the origin
-    /// if there is no grid. "size":[nx,ny] in the grid limits the answer, and the time it takes, to cells 0 ≤ i < nx,
-    /// 0 ≤ j < ny. Each line of the result is {"pieces":[{"cell":[i,j],"area":a,"vertices":[[x,y],…]},…]}, or with --areas
-    /// {"cells":[{"cell":[i,j],"area":a,"centroid":[x,y]},…]}.
-    #[allow(rustdoc::broken_intra_doc_links, reason = "JSON, shown by --help as it stands")]
-    #[command(after_help = "Example:\n  \
-        echo '{\"polygon\":[[0.5,0.5],[1.5,0.5],[1.5,1.5],[0.5,1.5]]}' | pointillist dice --areas")]
+    #[command(
+        long_about = "Cut polygons by a grid: JSON lines in, JSON lines out\n\n\
+            Each line of the input is {\"polygon\":[[x,y],…],\"grid\":{\"origin\":[x0,y0],\"cell\":[dx,dy]}}, with unit \
+            cells at the origin if there is no grid. \"size\":[nx,ny] in the grid limits the answer, and the time it \
+            takes, to cells 0 ≤ i < nx, 0 ≤ j < ny. Each line of the result is \
+            {\"pieces\":[{\"cell\":[i,j],\"area\":a,\"vertices\":[[x,y],…]},…]}, or with --areas \
+            {\"cells\":[{\"cell\":[i,j],\"area\":a,\"centroid\":[x,y]},…]}.",
+        after_help = "Example:\n  \
+            echo '{\"polygon\":[[0.5,0.5],[1.5,0.5],[1.5,1.5],[0.5,1.5]]}' | pointillist dice --areas"
+    )]
     Dice(DiceOptions),
     /// Measure how far apart two pictures are
     ///
@@ -158,10 +163,16 @@ pub enum Command {
     #[command(after_help = "Examples:\n  \
         pointillist render examples/house.toml --tile 0/2 -o part0.exr\n  \
         pointillist render examples/house.toml --tile 1/2 -o part1.exr\n  \
-        pointillist merge part0.exr part1.exr -o house.exr")]
+        pointillist merge part0.exr part1.exr -o house.exr\n\n\
+        Probes in the same way:\n  \
+        pointillist probe place examples/house.toml --grid 6x3x4 -o probes.json\n  \
+        pointillist probe bake examples/house.toml probes.json --bounces 0 --part 0/2 -o part0.json\n  \
+        pointillist probe bake examples/house.toml probes.json --bounces 0 --part 1/2 -o part1.json\n  \
+        pointillist merge part0.json part1.json -o baked.json")]
     Merge(MergeOptions),
     /// Print a completion script for a shell
     #[command(after_help = "Example:\n  \
+        mkdir -p ~/.local/share/bash-completion/completions\n  \
         pointillist completions bash > ~/.local/share/bash-completion/completions/pointillist")]
     Completions {
         /// Which shell.
@@ -184,9 +195,13 @@ pub struct DiceOptions {
     /// File with a JSON object on each line; `-` is standard input.
     #[arg(value_name = "FILE", default_value = "-")]
     pub input: PathBuf,
-    /// Print the area and centroid of each cell instead of pieces. Accepts concave polygons, polygons that cross themselves, and holes: "rings":[[[x,y],…],…] instead of "polygon", and "rule":"evenodd" (default) or "nonzero" for what is inside.
-    #[allow(rustdoc::broken_intra_doc_links, reason = "JSON, shown by --help as it stands")]
-    #[arg(long)]
+    /// Print the area and centroid of each cell instead of pieces. Accepts concave polygons, polygons that cross themselves, and holes.
+    #[arg(
+        long,
+        help = "Print the area and centroid of each cell instead of pieces. Accepts concave polygons, polygons that cross \
+            themselves, and holes: \"rings\":[[[x,y],…],…] instead of \"polygon\", and \"rule\":\"evenodd\" (default) or \
+            \"nonzero\" for what is inside"
+    )]
     pub areas: bool,
     /// Where results go.
     #[command(flatten)]

@@ -128,7 +128,7 @@ impl ScanSet {
             let taken = block.positions.len() as u64 * POINT_BYTES;
             self.meter
                 .add(taken, || "its points take".to_owned())
-                .map_err(|error| error.in_file(path.display().to_string()))
+                .map_err(|error| error.in_file(input::name_of(path)))
         })?;
         let name = input::name_of(path);
         self.warnings.extend(summary.warnings.iter().map(|warning| format!("{name}: {warning}")));

@@ -22,7 +22,9 @@ pub(super) fn place(
     mesh: &Mesh,
     aspect: f64,
 ) -> Result<Camera, InputError> {
-    let turned = if leans_back(mesh) { DVec3::new(-1.0, 1.0, -1.0) } else { DVec3::ONE };
+    // Where up is another axis, nothing is known about fronts.
+    let turned =
+        if given.up == DVec3::Y && leans_back(mesh) { DVec3::new(-1.0, 1.0, -1.0) } else { DVec3::ONE };
     around_from(given, || corners(mesh), aspect, TOWARDS_EYE * turned).map_err(|fault| {
         let error = InputError::of_file(description.document.name(), format!("camera: {fault}"));
         error.with_help("give camera.eye and camera.target")
@@ -72,9 +74,9 @@ fn corners(mesh: &Mesh) -> impl Iterator<Item = DVec3> + '_ {
 
 /// Whether a model's upper part lies towards −Z, so that +Z sees its back.
 fn leans_back(mesh: &Mesh) -> bool {
-    let bounds = corners(mesh).fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
-    let size = bounds.1 - bounds.0;
-    let from = bounds.1.y - size.y / 3.0;
+    let (low, high) = bounds(corners(mesh));
+    let size = high - low;
+    let from = high.y - size.y / 3.0;
     let (mut area, mut moment) = (0.0, 0.0);
     for triangle in &mesh.triangles {
         let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
@@ -82,17 +84,21 @@ fn leans_back(mesh: &Mesh) -> bool {
         if centre.y >= from {
             let twice = (b - a).cross(c - a).length();
             area += twice;
-            moment += twice * (centre.z - 0.5 * (bounds.0.z + bounds.1.z));
+            moment += twice * (centre.z - 0.5 * (low.z + high.z));
         }
     }
     moment < -LEANS * size.z * area
 }
 
+/// Least and greatest coordinates; infinite, and the wrong way round, of no points.
+fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+    points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+}
+
 fn middle(points: impl Iterator<Item = DVec3>) -> DVec3 {
-    let around =
-        points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let (low, high) = bounds(points);
     // Halved before adding: the sum of two finite numbers may be infinite.
-    let middle = around.0 * 0.5 + around.1 * 0.5;
+    let middle = low * 0.5 + high * 0.5;
     if middle.is_finite() { middle } else { DVec3::ZERO }
 }
 

@@ -7,7 +7,7 @@ use pointillist_shade::Light;
 
 /// Edges that are folded by more than this stay edges, where a file brings no normals: 40°, between the facets of a coarse
 /// sphere (of twelve columns: 30°) and the edges of what is built (45° and more).
-pub(super) const CREASE_RAD: f64 = 40.0 * std::f64::consts::PI / 180.0;
+pub(super) const CREASE_RAD: f64 = 40.0_f64.to_radians();
 
 /// Irradiance of the key light: with the sky, a white surface that faces it gets radiance near 0.9.
 const KEY: Vec3 = Vec3::new(2.1, 2.05, 1.95);

@@ -4,7 +4,7 @@ use super::{check_output, write};
 use crate::commands::Report;
 use crate::commands::report::name_of_output;
 use crate::error::CliError;
-use crate::input::{is_standard, name_of};
+use crate::input::name_of;
 use crate::options::MergeOptions;
 use crate::probe_io::{ProbeFile, read_probes};
 
@@ -14,9 +14,6 @@ pub(in crate::commands) fn merge_probes(options: &MergeOptions, report: &Report<
     let mut parts = vec![];
     for path in &options.parts {
         let name = name_of(path);
-        if !is_standard(path) && !path.exists() {
-            return Err(CliError::Parts(format!("part {name} is missing")));
-        }
         let file = report.stats.stage("load", || read_probes(path))?;
         if file.part.is_none() || file.first.is_none() {
             return Err(CliError::Parts(format!(
