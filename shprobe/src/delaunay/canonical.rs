@@ -1,7 +1,9 @@
 //! The cells in an order that depends on the points alone.
 //!
 //! Vertices are ranked along a Hilbert curve, so that what is near in space is near in memory. A cell's corners start with the one of least
-//! rank, then that of least rank that an even permutation can put second; cells are sorted by the ranks of their corners.
+//! rank, then that of least rank that an even permutation can put second; cells are sorted by the ranks of their corners. The
+//! triangles of a plane are sorted as they are reported, counterclockwise: on which side of the plane the apex lies depends on what was there
+//! before.
 
 use super::cell::{CellId, Vertex};
 use super::hilbert::Curve;
@@ -16,14 +18,26 @@ const EVEN: [[[usize; 4]; 3]; 4] = [
     [[3, 0, 2, 1], [3, 2, 1, 0], [3, 1, 0, 2]],
 ];
 
-/// Which corner goes in each place.
-fn corner_order(ranks: [u32; 4]) -> [usize; 4] {
+/// Which corner goes in each place; the last two change places if `flip` is set.
+fn corner_order(ranks: [u32; 4], flip: bool) -> [usize; 4] {
     let least =
         |of: &mut dyn Iterator<Item = usize>| of.min_by_key(|&k| ranks[k]).expect("cells have corners");
     let first = least(&mut (0..4));
     let second = least(&mut (0..4).filter(|&k| k != first));
     let turned = EVEN[first].iter().find(|order| order[1] == second);
-    *turned.expect("every corner comes second in one of the turns")
+    let [a, b, c, d] = *turned.expect("every corner comes second in one of the turns");
+    if flip { [a, b, d, c] } else { [a, b, c, d] }
+}
+
+/// Whether the triangles under an apex are clockwise, seen from it.
+fn is_flipped(solid: &Solid) -> bool {
+    solid.apex.is_some_and(|apex| {
+        let mut cells = solid.mesh.live().filter(|(_, cell)| cell.is_finite());
+        let (_, cell) = cells.next().expect("a mesh has tetrahedra");
+        let k = cell.corners.iter().position(|&v| v == apex).expect("all tetrahedra have the apex");
+        let [_, a, b, c] = EVEN[k][0].map(|k| solid.index[cell.corners[k].slot()]);
+        !solid.is_counterclockwise([a, b, c])
+    })
 }
 
 /// The cells of a mesh, sorted.
@@ -35,6 +49,8 @@ struct Sorted<'a> {
     order: Vec<CellId>,
     /// Place in `order`, by cell; [`OUTSIDE`] for ghosts.
     places: Vec<u32>,
+    /// See [`is_flipped`].
+    flip: bool,
 }
 
 /// Runs of cells that are sorted together, by one thread.
@@ -64,7 +80,8 @@ fn ranks(solid: &Solid) -> Vec<u32> {
 impl<'a> Sorted<'a> {
     fn new(solid: &'a Solid) -> Self {
         let ranks = ranks(solid);
-        let mut sorted = Self { solid, ranks, order: vec![], places: vec![OUTSIDE; solid.mesh.cells.len()] };
+        let places = vec![OUTSIDE; solid.mesh.cells.len()];
+        let mut sorted = Self { solid, ranks, order: vec![], places, flip: is_flipped(solid) };
         let starts = sorted.sort_by_first_corner();
         sorted.sort_runs(&starts);
         for (place, id) in (0..).zip(&sorted.order) {
@@ -118,13 +135,13 @@ impl<'a> Sorted<'a> {
     /// Ranks of a cell's corners, in the order in which they are reported.
     fn ranked(&self, id: CellId) -> [u32; 4] {
         let ranks = self.solid.mesh.cell(id).corners.map(|v| self.ranks[v.slot()]);
-        corner_order(ranks).map(|k| ranks[k])
+        corner_order(ranks, self.flip).map(|k| ranks[k])
     }
 
     /// Corners and neighbours of the cell at a place.
     fn cell(&self, place: usize) -> ([u32; 4], [u32; 4]) {
         let cell = self.solid.mesh.cell(self.order[place]);
-        let order = corner_order(cell.corners.map(|v| self.ranks[v.slot()]));
+        let order = corner_order(cell.corners.map(|v| self.ranks[v.slot()]), self.flip);
         let corners = order.map(|k| self.solid.index[cell.corners[k].slot()]);
         let neighbours = order.map(|k| self.places[cell.links[k].cell().slot()]);
         (corners, neighbours)
@@ -136,10 +153,7 @@ pub(super) fn partition(solid: &Solid) -> Partition {
     let sorted = Sorted::new(solid);
     let (corners, neighbours) = parallel::map_pairs(sorted.order.len(), |place| sorted.cell(place));
     let Some(_) = solid.apex else { return Partition::Tetrahedra(Tetrahedra { corners, neighbours }) };
-    // The apex comes first. Its side of the plane is an accident, so the sense of the triangles is made a fact of theirs.
-    let [_, a, b, c] = corners[0];
-    let flip = !solid.is_counterclockwise([a, b, c]);
-    let without_first = |[_, a, b, c]: [u32; 4]| if flip { [a, c, b] } else { [a, b, c] };
-    let strip = |list: Vec<[u32; 4]>| list.into_iter().map(without_first).collect();
+    // The apex comes first.
+    let strip = |list: Vec<[u32; 4]>| list.into_iter().map(|[_, a, b, c]| [a, b, c]).collect();
     Partition::Triangles(Triangles { corners: strip(corners), neighbours: strip(neighbours) })
 }
