@@ -1,11 +1,11 @@
-//! How long for how much error: `split` and `accumulate` on triangles of 1.5, 12 and 200 cells, near the origin and 10⁷
+//! How long for how much error: `split`, `accumulate` and `cut` on triangles of 1.5, 12 and 200 cells, near the origin and 10⁷
 //! cells away. The error in each name is that of the total area, relative to it.
 
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{DVec2, dvec2};
-use pointillist_dice::{Accumulator, Grid, accumulate, split};
+use pointillist_dice::{Accumulator, CellWindow, Cut, Grid, accumulate, cut, split};
 
 /// A triangle of about `size` cells across with its corners off the lines.
 fn triangle(size: f64, offset: f64) -> [DVec2; 3] {
@@ -35,6 +35,17 @@ fn time_error(c: &mut Criterion) {
                     .expect("the triangle is finite");
                 total
             };
+            let cut_area = |t: &[DVec2; 3]| {
+                let mut total = 0.0;
+                cut(t, CellWindow::ALL, |part| match part {
+                    Cut::Span { first, end, .. } => total += f64::from(end - first),
+                    Cut::Piece { polygon, .. } => total += polygon.area(),
+                });
+                total
+            };
+            let label = format!("error {:.1e}", error(cut_area(&t), &t));
+            c.benchmark_group("cut")
+                .bench_function(BenchmarkId::new(&name, label), |b| b.iter(|| cut_area(black_box(&t))));
             let label = format!("error {:.1e}", error(split_area(&t), &t));
             c.benchmark_group("split")
                 .bench_function(BenchmarkId::new(&name, label), |b| b.iter(|| split_area(black_box(&t))));

@@ -38,8 +38,18 @@
 //! whose origin and cells are no powers of two, results in input coordinates are rounded to those once more, and two
 //! corners of a tiny piece may come out as the same point.
 //!
+//! [`cut`] is the engine for renderers: one convex piece a cell, in `f64`. The area in a cell is off by at most [`CUT_ERROR`] (2⁻⁴⁹) times
+//! the largest coordinate; neighbours share their crossings bit for bit, and a window shows the cells of the whole.
+//!
 //! `split` costs time for each piece, `accumulate` for each cell on the outline and each row. The figures are in the
 //! README, with the commands that give them.
+//!
+//! | | polygons | computes in | bad input |
+//! | --- | --- | --- | --- |
+//! | [`split`] | convex | fixed point | a typed error |
+//! | [`accumulate`] | simple | fixed point | a typed error |
+//! | [`accumulate_filled`] | any rings | fixed point | a typed error |
+//! | [`cut`] | convex, positive order, at most 12 corners, within ±2³⁰ cells | `f64` | a panic for 13 corners and for NaN, no meaning beyond ±2³⁰ |
 //!
 //! # Features
 //!
@@ -71,7 +81,7 @@ pub use accumulate::{Accumulator, Run, accumulate, accumulate_filled};
 pub use clip::{ClipVertex, clip_guard_band, clip_near};
 pub use code::{Code, CodeKind};
 pub use convex::{ConvexPolygon, HalfPlane};
-pub use cut::{CellWindow, Cut, MAX_CUT_VERTICES, cut};
+pub use cut::{CUT_ERROR, CellWindow, Cut, MAX_CUT_VERTICES, cut};
 pub use error::DiceError;
 pub use fill::FillRule;
 pub use grid::{Grid, MAX_COORDINATE};

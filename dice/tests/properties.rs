@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec4, IVec2, dvec2};
 use pointillist_dice::{
-    Accumulator, AttributePlane, ClipVertex, Code, CodeKind, Grid, PerspectivePlane, accumulate,
+    Accumulator, AttributePlane, CellWindow, ClipVertex, Code, CodeKind, Grid, PerspectivePlane, accumulate,
     clip_guard_band, clip_near, invariants, split,
 };
 use proptest::prelude::*;
@@ -17,12 +17,20 @@ fn coordinate(size: f64) -> BoxedStrategy<f64> {
         1 => (-n..=n).prop_map(|i| f64::from(i).next_down()),
         1 => (-n..=n, -16..0).prop_map(|(i, e)| f64::from(i) + 10f64.powi(e)),
         1 => (-2 * n..=2 * n).prop_map(|i| 0.5 * f64::from(i)),
+        1 => prop_oneof![Just(5e-324), Just(-5e-324), Just(1e-300), Just(-0.0)],
     ]
     .boxed()
 }
 
 fn point(size: f64) -> impl Strategy<Value = DVec2> {
     (coordinate(size), coordinate(size)).prop_map(|(x, y)| dvec2(x, y))
+}
+
+/// Where a polygon may lie, in whole cells and in fractions.
+fn far_away() -> impl Strategy<Value = DVec2> {
+    let far =
+        || prop_oneof![3 => Just(0.0), 1 => (-1_000_000..1_000_000).prop_map(f64::from), 1 => -1e9..1e9];
+    (far(), far()).prop_map(|(x, y)| dvec2(x, y))
 }
 
 /// Triangles: of any kind, slivers, nearly collinear, with a repeated point.
@@ -114,6 +122,30 @@ macro_rules! holds {
 
 proptest! {
     #![proptest_config(testkit::config(512))]
+
+    #[test]
+    fn cut_equals_accumulate(p in triangle(), far in far_away()) {
+        let triangle: [DVec2; 3] = p.try_into().expect("three corners");
+        holds!(invariants::cut_equals_accumulate(&triangle.map(|v| v + far)));
+    }
+
+    #[test]
+    fn cut_pieces_lie_in_their_cells(p in convex(), far in far_away()) {
+        let ring: Vec<_> = p.iter().map(|v| *v + far).collect();
+        holds!(invariants::cut_pieces_lie_in_their_cells(&ring));
+    }
+
+    #[test]
+    fn cut_window_is_part_of_the_whole(p in convex(), corner in (-8..8, -8..8), size in (0..9, 0..9)) {
+        let ((x0, y0), (width, height)) = (corner, size);
+        let window = CellWindow { x0, y0, x1: x0 + width, y1: y0 + height };
+        holds!(invariants::cut_window_is_part_of_the_whole(&p, window));
+    }
+
+    #[test]
+    fn cut_shares_edges(a in point(9.0), b in point(9.0), left in point(9.0), right in point(9.0), far in far_away()) {
+        holds!(invariants::cut_shares_edges([a + far, b + far], left + far, right + far));
+    }
 
     #[test]
     fn area_and_moments_are_conserved(p in convex(), g in grid()) {

@@ -1,7 +1,7 @@
 //! Bugs that were fixed, each with the smallest input that showed it.
 
 use glam::{DVec2, dvec2};
-use pointillist_dice::{Accumulator, DiceError, Grid, Piece, accumulate, split};
+use pointillist_dice::{Accumulator, DiceError, Grid, Piece, accumulate, invariants, split};
 
 fn each_piece(polygon: &[DVec2], grid: &Grid, visit: impl FnMut(Piece<'_>)) {
     split(polygon, grid, visit).expect("the polygon is convex and small");
@@ -67,4 +67,18 @@ fn a_comb_leaves_its_gaps_empty() {
         .unwrap();
     assert_eq!(rows[0], [0, 2, 4, 6, 8, 10, 12]);
     assert_eq!(rows[1], (0..20).collect::<Vec<_>>());
+}
+
+/// The slope of an edge from 0 to 5e-324 overflows; times nothing, it gave corners that are NaN.
+#[test]
+fn slopes_that_overflow_are_cut_at_the_end_of_their_edge() {
+    let triangle = |y: f64| [dvec2(-0.413, -1.0), dvec2(0.0, 0.0), dvec2(-1.236, y)];
+    for y in [5e-324, -5e-324, 1e-310, -1e-310, 0.0] {
+        let upright = triangle(y);
+        // The same with x and y exchanged turns the other way.
+        let [a, b, c] = upright.map(|v| dvec2(v.y, v.x));
+        for ring in [upright, [c, b, a]] {
+            invariants::cut_equals_accumulate(&ring).unwrap();
+        }
+    }
 }

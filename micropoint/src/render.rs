@@ -178,7 +178,7 @@ impl Tile {
     fn push(&mut self, dicer: &Dicer, seen: &Visible<'_>, corner: DVec2, pixel: (u32, u32), share: f64) {
         let part = dicer.part(seen.part);
         let first_fragment = self.fragments.len() as u32;
-        let opacity = f64::from(part.opacity);
+        let opacity = f64::from(part.opacity) * seen.scale;
         match seen.pieces {
             None => self.push_fragment(dicer.outline(part), corner, seen.weight * share),
             Some(regions) => {

@@ -26,6 +26,20 @@ pub(crate) struct Visible<'a> {
     pub(crate) centroid: DVec2,
     /// The visible area in convex pieces with their own weights; `None`: the whole part.
     pub(crate) pieces: Option<&'a [Region]>,
+    /// What the pieces' weights are multiplied by: less than 1 only where more would be seen than the cell has room for.
+    pub(crate) scale: f64,
+}
+
+impl Visible<'_> {
+    /// Lets the part fill what is left of its cell at most. Where dozens of translucent parts cross one another, some dim the
+    /// rest by their mean (see [`Regions`]), and what is seen of all of them may add up to more than the cell.
+    fn fit_into(mut self, room: f64) -> Self {
+        if self.weight > room + FINISHED {
+            self.scale = room / self.weight;
+            self.weight = room;
+        }
+        self
+    }
 }
 
 /// Overlaps smaller than this share of a cell are rounding, and stay below what a sum of weights is checked for in a cell of
@@ -51,7 +65,7 @@ pub(crate) fn resolve_exactly(
     let whole = |dicer: &Dicer, index: u32| {
         let part = dicer.part(index);
         let weight = part.area * f64::from(part.opacity);
-        Visible { part: index, weight, centroid: part.centroid, pieces: None }
+        Visible { part: index, weight, centroid: part.centroid, pieces: None, scale: 1.0 }
     };
     if let Some(count) = dicer.tiling(cell).or((order.len() == 1).then_some(1)) {
         for &p in &order[..count] {
@@ -82,6 +96,7 @@ pub(crate) fn resolve_exactly(
                 Sight::Whole => whole(dicer, p),
                 _ => in_pieces(dicer, p, scratch.regions.list()),
             };
+            let visible = visible.fit_into(1.0 - seen);
             if visible.weight <= 0.0 {
                 continue;
             }
@@ -117,7 +132,7 @@ fn in_pieces<'a>(dicer: &Dicer, p: u32, regions: &'a [Region]) -> Visible<'a> {
         moment += centroid * (area * r.transmittance * opacity);
     }
     let centroid = if weight > 0.0 { moment / weight } else { DVec2::ZERO };
-    Visible { part: p, weight, centroid, pieces: Some(regions) }
+    Visible { part: p, weight, centroid, pieces: Some(regions), scale: 1.0 }
 }
 
 /// What is seen of a part behind a copy of itself: what is seen of the copy, through the copy. Comparing each of n copies with all
@@ -229,7 +244,7 @@ pub(crate) fn resolve_by_layers(dicer: &mut Dicer, cell: usize, mut emit: impl F
         for &p in &order[start..end] {
             let weight = transmittance * layer * (opacity_of(p) / sum);
             let centroid = dicer.part(p).centroid;
-            emit(dicer, Visible { part: p, weight, centroid, pieces: None });
+            emit(dicer, Visible { part: p, weight, centroid, pieces: None, scale: 1.0 });
         }
         transmittance *= 1.0 - layer;
         start = end;

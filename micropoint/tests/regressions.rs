@@ -277,3 +277,35 @@ fn a_thousand_copies_of_a_triangle_are_seen_as_one() {
         }
     }
 }
+
+/// Over a dozen translucent triangles and a box that all cross one another in one pixel: some dim the rest by their mean, and what was
+/// seen of all of them made up 1.000013 of the pixel. Found by fuzzing.
+#[test]
+fn no_more_is_seen_of_crossing_sheets_than_there_is_room_for() {
+    let sheets: [(u8, [[i8; 3]; 3]); 13] = [
+        (255, [[-1, -1, 6], [0, 0, 0], [-1, -1, -1]]),
+        (51, [[-1, -1, -1], [-1, 5, -1], [-1, -1, 51]]),
+        (255, [[-34, -54, -54], [-54, -54, 0], [4, 0, 0]]),
+        (255, [[-1, -1, -1], [3, 44, 0], [0, -1, -1]]),
+        (51, [[-1, -1, -1], [-1, -1, 16], [10, 39, 45]]),
+        (60, [[49, 1, 1], [0, 0, 7], [8, -73, -68]]),
+        (196, [[2, 36, 36], [73, 73, -110], [-17, -110, 73]]),
+        (41, [[0, 0, 0], [-60, 31, 0], [-1, 54, 41]]),
+        (7, [[-1, 58, 18], [-1, 0, -1], [11, 0, 0]]),
+        (255, [[-1, -1, -1], [3, 0, 8], [0, 0, -2]]),
+        (68, [[-1, 1, 5], [-1, -1, 16], [0, -73, -68]]),
+        (207, [[-17, 8, 22], [0, 0, 0], [-33, -49, -49]]),
+        (11, [[33, -49, 57], [51, 10, -1], [-85, 0, -1]]),
+    ];
+    let steps = |[x, y, z]: [i8; 3]| dvec3(x.into(), y.into(), z.into()) / 64.0;
+    let mut soup = Soup::default();
+    for (opacity, corners) in sheets {
+        let surface = soup.surface(f32::from(opacity) / 255.0);
+        soup.polygon(&corners.map(steps), surface);
+    }
+    let (solid, low) = (soup.surface(1.0), steps([-1, -60, -1]));
+    soup.cuboid(low, low + 0.5, solid);
+    let camera = Projection::Orthographic { height: 2.6 };
+    let view = View::look_at(steps([-1, 50, -1]), steps([7, 35, -1]), DVec3::Y, camera, 4, 7).unwrap();
+    weights_are_shares(&soup, view, EXACT).unwrap();
+}

@@ -3,6 +3,13 @@
 //! Each takes any input at all. Input that is refused, or that meets so many cells that checking would take long,
 //! satisfies every fact.
 
+mod cut;
+
+pub use cut::{
+    Part, cut_equals_accumulate, cut_pieces_lie_in_their_cells, cut_shares_edges,
+    cut_window_is_part_of_the_whole, parts,
+};
+
 use std::collections::BTreeMap;
 
 use glam::{DVec2, IVec2, dvec2};
@@ -288,15 +295,18 @@ pub fn shared_edge_is_cut_alike(
     }
     let crossings = |polygon: &[DVec2]| -> Option<Vec<[u64; 2]>> {
         let far_from_ends = |p: DVec2| p.distance(a).min(p.distance(b)) > 1e4 * input;
-        let ends_band = |p: DVec2| p.y == left.y || p.y == right.y;
+        // The end of a band next to a line may be rounded onto it.
+        let ends_band = |p: DVec2| (p.y - left.y).abs().min((p.y - right.y).abs()) <= input;
         let on_edge = |p: &DVec2| from_line(*p).abs() <= 4.0 * input && far_from_ends(*p) && !ends_band(*p);
         let pieces = pieces(polygon, grid).ok()?;
         let corners = pieces.iter().flat_map(|p| p.vertices.iter().map(move |v| (p.cell, *v)));
         let on_line = corners.filter(|(cell, v)| {
             let (low, high) = (grid.corner(*cell), grid.corner(*cell + IVec2::ONE));
-            // A corner of the grid next to the edge is a corner of pieces on one side only.
+            // A corner of the grid next to the edge is a corner of pieces on one side only, and what lies between it and the edge may be
+            // too small to be reported.
+            let near_lines = (*v - low).abs().min((*v - high).abs()).cmple(DVec2::splat(1e4 * input));
             let on_lines = v.cmpeq(low) | v.cmpeq(high);
-            on_lines.any() && !on_lines.all()
+            on_lines.any() && !near_lines.all()
         });
         let mut points: Vec<_> =
             on_line.map(|(_, v)| v).filter(on_edge).map(|v| v.to_array().map(f64::to_bits)).collect();
