@@ -55,7 +55,7 @@ fn a_projection_must_be_in_its_range() {
         assert!(matches!(error, ViewError::BadHeight { .. }), "{height}: {error}");
     }
     let largest = View::LARGEST_SIDE;
-    let edges = [1e-300, 3.14159].map(|fov_y_rad| Projection::Perspective { fov_y_rad });
+    let edges = [1e-300, PI.next_down()].map(|fov_y_rad| Projection::Perspective { fov_y_rad });
     let parallel = [1e-300, 1e300].map(|height| Projection::Orthographic { height });
     for projection in edges.into_iter().chain(parallel) {
         for (width, height) in [(1, 1), (largest, largest)] {

@@ -13,6 +13,7 @@ use crate::scene::{Camera, Projection, frame_around};
 use cpu_time::ProcessTime;
 use glam::DVec3;
 use pointillist_ibpr as ibpr;
+use pointillist_surfel as surfel;
 use std::hash::Hasher as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -32,7 +33,7 @@ pub(super) fn size(options: &CameraOptions) -> [u32; 2] {
 pub(super) fn check_view(options: &CameraOptions) -> Result<(Window, Window), CliError> {
     options.check_view()?;
     let [width, height] = size(options);
-    let most = ibpr::View::LARGEST_SIDE;
+    let most = ibpr::Renderer::LARGEST_SIDE.min(surfel::Renderer::LARGEST_SIDE);
     if width.max(height) > most {
         let message = format!("--size {width}x{height}: points are drawn with up to {most} pixels a side");
         return Err(CliError::Usage(message));

@@ -11,9 +11,9 @@ use super::{PipelineError, TILE_SIZE};
 use crate::image_io::{Frame, Window};
 use crate::job::{Progress, RenderJob, Stats, ThreadClock};
 use crate::scene::{AmbientLight, Occlusion, Scene};
-use pointillist_micropoint as micropoint;
-use pointillist_micropoint::{Geometry, MicropointOptions, PixelRect, Renderer, TexelSums, TileCounts, View};
+use pointillist_micropoint::{Geometry, MicropointOptions, Renderer, TexelSums, TileCounts};
 use pointillist_shadow::ShadowCounts;
+use pointillist_view::{PixelRect, View};
 use std::sync::{Arc, Mutex};
 
 /// What all views of a scene share: textures summed up, geometry sorted into clusters.
@@ -153,11 +153,8 @@ fn options(scene: &Scene) -> MicropointOptions {
     options.with_cells_per_pixel(cells).with_occlusion(occlusion(scene))
 }
 
-pub(super) fn occlusion(scene: &Scene) -> micropoint::Occlusion {
-    match scene.render.occlusion {
-        Some(Occlusion::Paper) => micropoint::Occlusion::Paper,
-        Some(Occlusion::Correlated) | None => micropoint::Occlusion::Correlated,
-    }
+pub(super) fn occlusion(scene: &Scene) -> Occlusion {
+    scene.render.occlusion.unwrap_or_default()
 }
 
 fn record(stats: &Stats, t: &TileCounts, s: &ShadowCounts) {
