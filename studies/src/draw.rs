@@ -1,7 +1,7 @@
 //! Our own pictures: through the whole pipeline, or from the micropoints alone.
 
 use glam::DVec3;
-use pointillist_cli::image_io::Window;
+use pointillist_cli::image_io::PixelRect;
 use pointillist_cli::job::{Progress, ProgressMode, RenderJob, Stats};
 use pointillist_cli::pipeline::{self, PipelineError};
 use pointillist_cli::scene::Scene;
@@ -16,7 +16,7 @@ pub(crate) const TILE_SIZE: u32 = 16;
 
 /// Draws a scene as `pointillist render` does.
 pub(crate) fn with_pipeline(scene: &Scene) -> Result<Picture, PipelineError> {
-    let window = Window::whole(scene.image.width, scene.image.height);
+    let window = PixelRect::of_picture(scene.image.width, scene.image.height);
     let job = RenderJob { region: window, window, layers: vec![] };
     let frame = pipeline::render(scene, &job, &Progress::new(ProgressMode::Off), &Stats::new())?;
     Ok(Picture::from_frame(&frame))

@@ -1,7 +1,7 @@
 //! Parts of a picture.
 
 /// A rectangle of pixels: columns `x0..x1`, rows `y0..y1`. It is empty unless `x0 < x1` and `y0 < y1`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PixelRect {
     /// First column.
     pub x0: u32,
@@ -14,6 +14,12 @@ pub struct PixelRect {
 }
 
 impl PixelRect {
+    /// All pixels of a picture of this width and height.
+    #[must_use]
+    pub const fn of_picture(width: u32, height: u32) -> Self {
+        Self { x0: 0, y0: 0, x1: width, y1: height }
+    }
+
     /// Pixels from left to right.
     #[must_use]
     pub const fn width(&self) -> u32 {
@@ -26,10 +32,16 @@ impl PixelRect {
         self.y1.saturating_sub(self.y0)
     }
 
+    /// How many pixels it holds.
+    #[must_use]
+    pub const fn pixels(&self) -> u64 {
+        self.width() as u64 * self.height() as u64
+    }
+
     /// Whether there is no pixel in it.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
-        self.width() == 0 || self.height() == 0
+        self.pixels() == 0
     }
 
     /// The pixels that both rectangles hold; an empty rectangle if there are none.
@@ -56,5 +68,12 @@ impl PixelRect {
                 y1: y.saturating_add(size).min(rect.y1),
             })
         })
+    }
+}
+
+/// `x0,y0,x1,y1`, as command lines take it.
+impl std::fmt::Display for PixelRect {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{},{},{},{}", self.x0, self.y0, self.x1, self.y1)
     }
 }

@@ -189,7 +189,7 @@ impl View {
     /// All pixels of the picture.
     #[must_use]
     pub const fn picture(&self) -> PixelRect {
-        PixelRect { x0: 0, y0: 0, x1: self.width, y1: self.height }
+        PixelRect::of_picture(self.width, self.height)
     }
 
     /// The pixel position of the view axis: the middle of the picture.

@@ -78,6 +78,7 @@ fn a_picture_must_have_pixels_and_not_too_many() {
     let large = view.with_size(largest, 3).unwrap();
     assert_eq!((large.width(), large.height()), (largest, 3));
     assert_eq!(large.picture(), PixelRect { x0: 0, y0: 0, x1: largest, y1: 3 });
+    assert_eq!(large.picture().to_string(), "0,0,1048576,3");
     assert_eq!((large.eye(), large.projection()), (view.eye(), view.projection()));
 }
 

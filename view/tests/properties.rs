@@ -193,6 +193,7 @@ proptest! {
             prop_assert_eq!(holds(&both, x, y), holds(&one, x, y) && holds(&two, x, y));
         }
         prop_assert!(both.x0 <= both.x1 && both.y0 <= both.y1);
-        prop_assert_eq!(both.is_empty(), both.width() * both.height() == 0);
+        prop_assert_eq!(both.pixels(), u64::from(both.width()) * u64::from(both.height()));
+        prop_assert_eq!(both.is_empty(), both.pixels() == 0);
     }
 }

@@ -72,7 +72,7 @@ pub fn render(
     stats: &Stats,
 ) -> Result<Frame, PipelineError> {
     let prepared = Prepared::new(scene, stats)?;
-    progress.begin("render", prepared::pixel_rect(job.window).tiles(TILE_SIZE).count() as u64);
+    progress.begin("render", job.window.tiles(TILE_SIZE).count() as u64);
     let start = std::time::Instant::now();
     let view = scene.camera.view([scene.image.width, scene.image.height])?;
     let frame = prepared.draw(view, &prepared.plain_style(), job, progress, stats)?;
