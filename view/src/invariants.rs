@@ -81,7 +81,8 @@ pub fn projecting_gives_the_pixel(view: &View, pixel: DVec2, depth: f64) -> Resu
     let given = Projected { pixel, depth };
     let bound = world_bound(view, point, &given);
     let is_perspective = view.projection().is_perspective();
-    if !(point.is_finite() && bound.is_finite()) || is_perspective && depth <= 4.0 * bound {
+    let is_lost = is_perspective && depth <= 4.0 * bound;
+    if !(point.is_finite() && bound.is_finite() && (2.0 * pixel).is_finite()) || is_lost {
         return Ok(());
     }
     let pixels = pixel_bound(view, &given, bound);
