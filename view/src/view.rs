@@ -26,6 +26,7 @@ pub struct View {
 
 /// Where a point is in the picture: the answer of [`View::project`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Projected {
     /// Pixels from the top left corner, to the right and down; also outside the picture.
     pub pixel: DVec2,
@@ -35,6 +36,7 @@ pub struct Projected {
 
 /// All that is seen at one position of the picture: the answer of [`View::ray`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Ray {
     /// The point at depth 0, world. The eye, for a perspective view.
     pub origin: DVec3,
