@@ -1,7 +1,7 @@
 //! FLIP against its authors' own implementation.
 
 use pointillist_cli::compare::{PIXELS_PER_DEGREE, compare, flip_map};
-use pointillist_cli::image_io::{Picture, Window};
+use pointillist_cli::image_io::{Picture, PixelRect};
 
 const WIDTH: usize = 120;
 const HEIGHT: usize = 90;
@@ -45,7 +45,7 @@ fn equal_pictures_do_not_flip() {
 fn a_single_pixel_is_a_picture() {
     let pixel = |value: f32| Picture {
         size: [1, 1],
-        window: Window::whole(1, 1),
+        window: PixelRect::of_picture(1, 1),
         color: vec![[value, value, value, 1.0]],
     };
     let differences = compare(&pixel(0.0), &pixel(1.0));

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, dvec3};
 use pointillist_cli::InputError;
-use pointillist_cli::image_io::{ExrFile, Stamp, Window};
+use pointillist_cli::image_io::{ExrFile, PixelRect, Stamp};
 use pointillist_cli::mesh_io::{read_mtl, read_obj, read_ply, triangulate};
 use pointillist_cli::options::Tile;
 use pointillist_cli::scene::{self, Format, NONE, Projection};
@@ -123,7 +123,7 @@ fn deep_nesting_is_an_error_and_no_stack_overflow() {
 
 #[test]
 fn tiles_cover_any_region_once() {
-    let region = Window { x0: 3, y0: 5, x1: 9, y1: 22 };
+    let region = PixelRect { x0: 3, y0: 5, x1: 9, y1: 22 };
     for count in 1..=17 {
         let mut next = region.y0;
         for first in 0..count {
@@ -141,7 +141,7 @@ fn stamps_survive_their_text() {
     let stamp = Stamp {
         version: "1.2.3".to_owned(),
         fingerprint: 0xfeed,
-        region: Window { x0: 1, y0: 2, x1: 3, y1: 4 },
+        region: PixelRect { x0: 1, y0: 2, x1: 3, y1: 4 },
         tile: Some("1/4".to_owned()),
         background: [0.1, 0.2, 1e-7],
     };

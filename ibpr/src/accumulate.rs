@@ -4,12 +4,12 @@
 //! so every sum is added up in the same order whatever the number of bands or threads.
 
 use crate::buffer::{Buffer, DepthScale, PAD};
+use crate::buffer_map::BufferMap;
 use crate::cloud::Cloud;
 use crate::layers;
 use crate::options::{Translucency, Weighting};
 use crate::parallel::*;
 use crate::project::{Band, LANES, Projected};
-use crate::view::BufferMap;
 use pulp::Arch;
 
 /// Rows per band: the sums of a band of 1024 pixels fit into the second-level cache.
@@ -75,7 +75,7 @@ fn row_range(rows: &[f32; 12], half: [f32; 3], map: &BufferMap) -> (usize, usize
         let side = |axis: usize| if corner >> axis & 1 == 0 { -half[axis] } else { half[axis] };
         let row = |r: usize| rows[r] * side(0) + rows[r + 1] * side(1) + rows[r + 2] * side(2) + rows[r + 3];
         let depth = row(8) + map.reference as f32;
-        let w = if map.view.is_perspective() { depth } else { 1.0 };
+        let w = if map.is_perspective() { depth } else { 1.0 };
         if w <= 0.0 {
             return (0, map.height);
         }

@@ -1,6 +1,6 @@
 //! The buffer at screen/S: one averaged point per pixel, or one for each of several layers.
 
-use crate::view::BufferMap;
+use crate::buffer_map::BufferMap;
 
 /// Empty pixels around the buffer, so that windows need no test for its border.
 pub(crate) const PAD: usize = 4;
@@ -107,7 +107,7 @@ pub(crate) struct DepthScale {
 
 impl DepthScale {
     pub(crate) fn new(map: &BufferMap, spacing: f64) -> Self {
-        let depth = if map.view.is_perspective() { map.reference } else { 1.0 };
+        let depth = if map.is_perspective() { map.reference } else { 1.0 };
         Self {
             spacing: (spacing / map.unit) as f32,
             footprint: (depth / map.focal()) as f32,

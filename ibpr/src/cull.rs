@@ -1,10 +1,11 @@
 //! Which blocks a frame has to look at.
 
+use crate::buffer_map::depth_of;
 use crate::cloud::{Block, Cloud};
 use crate::frame::FrameCounts;
 use crate::options::Culling;
-use crate::view::{Projection, View};
 use glam::DVec3;
+use pointillist_view::{Projection, View};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Incidence up to which a scanner measures (the paper's observation).
@@ -27,7 +28,7 @@ pub(crate) fn visible(
     for (i, block) in cloud.blocks.iter().enumerate() {
         let outside = frustum.misses(block, cloud.unit);
         if !outside {
-            depths.push((view.depth_of(block.origin), block.points.len()));
+            depths.push((depth_of(view, block.origin), block.points.len()));
         }
         let skipped = if outside {
             &mut counts.blocks_outside
@@ -53,16 +54,16 @@ struct Frustum {
 impl Frustum {
     fn new(view: &View) -> Self {
         let half = 0.5 / view.focal_px();
-        let (x, y) = (half * f64::from(view.width), half * f64::from(view.height));
-        let (r, u, f) = (view.right, view.up, view.forward);
-        let sides = match view.projection {
+        let (x, y) = (half * f64::from(view.width()), half * f64::from(view.height()));
+        let (r, u, f) = (view.right(), view.up(), view.forward());
+        let sides = match view.projection() {
             Projection::Perspective { .. } => {
                 [(x * f + r, 0.0), (x * f - r, 0.0), (y * f + u, 0.0), (y * f - u, 0.0)]
             }
             Projection::Orthographic { .. } => [(r, -x), (-r, -x), (u, -y), (-u, -y)],
         };
         let [a, b, c, d] = sides;
-        Self { eye: view.eye, planes: [a, b, c, d, (f, 0.0)] }
+        Self { eye: view.eye(), planes: [a, b, c, d, (f, 0.0)] }
     }
 
     fn misses(&self, block: &Block, unit: f64) -> bool {
@@ -74,10 +75,10 @@ impl Frustum {
 
 /// From the block to the eye: unit direction, and the angle that the block's own size adds.
 fn towards_eye(block: &Block, view: &View, unit: f64) -> (DVec3, f64) {
-    match view.projection {
-        Projection::Orthographic { .. } => (-view.forward, 0.0),
+    match view.projection() {
+        Projection::Orthographic { .. } => (-view.forward(), 0.0),
         Projection::Perspective { .. } => {
-            let to_eye = view.eye - block.origin;
+            let to_eye = view.eye() - block.origin;
             let (distance, radius) = (to_eye.length(), block.half.as_dvec3().length() * unit);
             // An eye inside the block sees it from everywhere.
             let spread = if distance > radius { (radius / distance).asin() } else { PI };
@@ -92,7 +93,7 @@ fn faces_away(block: &Block, view: &View, culling: Culling, unit: f64) -> bool {
     let scan_beyond = |angle: f64| block.towards_scanner.is_some_and(|d| angle_to(d) > angle + spread);
     match culling {
         Culling::None => false,
-        Culling::Printed => block.towards_scanner.is_some_and(|d| d.dot(-view.forward) < 0.0),
+        Culling::Printed => block.towards_scanner.is_some_and(|d| d.dot(-view.forward()) < 0.0),
         Culling::Scans => scan_beyond(FRAC_PI_2 + MOST_INCIDENCE_RAD),
         // Not by its scan, where a block has no cone: the steepest points of a scan that faces away by 165°
         // touch the rim from behind, and are averaged with what is seen there.

@@ -1,3 +1,5 @@
+use pointillist_view::ViewError;
+
 /// What can be wrong with the input of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -49,15 +51,12 @@ pub enum IbprError {
         /// How many there are.
         points: usize,
     },
-    /// The camera cannot be used.
-    #[error("the view is not usable: {reason}")]
-    BadView {
-        /// What is wrong.
-        reason: &'static str,
-    },
-    /// The picture is empty or too large.
-    #[error("a picture of {width} x {height} pixels cannot be drawn: each side must be 1 to 16384")]
-    BadSize {
+    /// The camera was refused. No function of this crate returns it: it lets callers use `?` on [`View`](crate::View) beside the rest.
+    #[error(transparent)]
+    View(#[from] ViewError),
+    /// A side of the picture is above [`Renderer::LARGEST_SIDE`](crate::Renderer::LARGEST_SIDE).
+    #[error("a picture of {width}×{height} pixels cannot be drawn: each side must be at most 16384")]
+    TooLarge {
         /// Pixels from left to right.
         width: u32,
         /// Pixels from top to bottom.

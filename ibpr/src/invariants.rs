@@ -4,7 +4,7 @@
 //! Each takes any input at all. Scans or options that are refused satisfy every fact.
 
 use crate::{Cloud, Frame, IbprError, Options, Renderer, Scan, View};
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 /// Rounding allowed to opacities, to lengths of unit normals, and to a colour that all points share.
 pub const TOLERANCE: f32 = 1e-4;
@@ -244,7 +244,8 @@ pub fn far_pixels_stay_empty(scans: &[OwnedScan], view: &View, options: &Options
     let reach = frame.counts.scale * (2.0 + f64::from(1u32 << options.fill)) + 1.0;
     let (width, height) = (frame.width as f64, frame.height as f64);
     let mut near = vec![false; frame.width * frame.height];
-    for (x, y) in scans.iter().flat_map(|s| &s.positions).filter_map(|p| pixel_of(view, *p)) {
+    let before_the_eye = scans.iter().flat_map(|s| &s.positions).filter_map(|p| view.project(*p));
+    for DVec2 { x, y } in before_the_eye.filter(|seen| seen.depth > 0.0).map(|seen| seen.pixel) {
         let place = |v: f64, end: f64| v.clamp(0.0, end) as usize;
         let span = |v: f64, end: f64| place(v - reach, end)..place(v + reach + 1.0, end);
         for row in span(y, height) {
@@ -256,16 +257,6 @@ pub fn far_pixels_stay_empty(scans: &[OwnedScan], view: &View, options: &Options
     wrong.map_or(Ok(()), |i| {
         Err(format!("pixel ({}, {}) is not empty, reach {reach}", i % frame.width, i / frame.width))
     })
-}
-
-/// Where a point projects, in pixels; `None` behind the eye.
-#[must_use]
-pub fn pixel_of(view: &View, p: DVec3) -> Option<(f64, f64)> {
-    let d = p - view.eye();
-    let (x, y, depth) = (d.dot(view.right), d.dot(view.up), d.dot(view.forward()));
-    let k = if view.is_perspective() { view.focal_px() / depth } else { view.focal_px() };
-    let (cx, cy) = (0.5 * f64::from(view.width()), 0.5 * f64::from(view.height()));
-    (depth > 0.0).then_some((cx + k * x, cy - k * y))
 }
 
 /// Points of one colour, lit from everywhere, show that colour wherever anything is seen.

@@ -45,6 +45,7 @@
 
 mod accumulate;
 mod buffer;
+mod buffer_map;
 mod cloud;
 mod cone;
 mod cull;
@@ -69,12 +70,11 @@ mod render;
 mod scan;
 mod shade;
 mod spacing;
-mod view;
 
 pub use cloud::Cloud;
 pub use error::IbprError;
 pub use frame::{Frame, FrameCounts};
 pub use options::{Culling, EyeDome, Light, Normals, Options, Passes, Scale, Translucency, Weighting};
+pub use pointillist_view::{PixelRect, Projected, Projection, Ray, View, ViewError};
 pub use render::Renderer;
 pub use scan::Scan;
-pub use view::{Projection, View};

@@ -1,11 +1,11 @@
 //! Normals of the averaged points, and the corners of faces.
 
 use crate::buffer::{Buffer, Corner, DepthScale, PAD, SUBPIXEL};
+use crate::buffer_map::BufferMap;
 use crate::fit::{Chunk, LANES};
 use crate::noise::{Histogram, radius_for_noise};
 use crate::options::Normals;
 use crate::parallel::*;
-use crate::view::BufferMap;
 use glam::Vec3;
 use pulp::Arch;
 
@@ -68,7 +68,7 @@ impl Camera {
             inverse_focal: (1.0 / map.focal()) as f32,
             focal: map.focal() as f32,
             reference: map.reference as f32,
-            perspective: map.view.is_perspective(),
+            perspective: map.is_perspective(),
             bend: map.bend(),
             steps: map.scale as f32 * SUBPIXEL,
         }

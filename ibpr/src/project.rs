@@ -1,6 +1,6 @@
 //! Points of a block in buffer pixels.
 
-use crate::view::BufferMap;
+use crate::buffer_map::BufferMap;
 use pulp::{Arch, NullaryFnOnce};
 
 /// Points that are transformed together: their results stay in the first-level cache.
@@ -39,7 +39,7 @@ impl Band {
             first_row,
             rows,
             near: -reference * (1.0 - 4.0 * f32::EPSILON),
-            perspective: map.view.is_perspective(),
+            perspective: map.is_perspective(),
             reference,
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::accumulate::{self, BandScratch, BlockView, Rules};
 use crate::buffer::{Buffer, DepthScale};
+use crate::buffer_map::{BufferMap, depth_of};
 use crate::cloud::Cloud;
 use crate::cull;
 use crate::error::IbprError;
@@ -16,7 +17,7 @@ use crate::parallel::*;
 use crate::pixels::{Nearest, Stack};
 use crate::raster::{Pixels, Strip};
 use crate::shade::{RowsOut, Shaded, Shader};
-use crate::view::{BufferMap, View};
+use pointillist_view::{Projection, View};
 
 /// Rows of the picture that are drawn together: their surfaces fit into the second-level cache.
 const STRIP_ROWS: usize = 32;
@@ -48,6 +49,9 @@ struct Pass {
 }
 
 impl Renderer {
+    /// Largest side of a picture in pixels: buffers and frames are kept whole.
+    pub const LARGEST_SIDE: u32 = 16384;
+
     /// A renderer without memory.
     #[must_use]
     pub fn new() -> Self {
@@ -59,7 +63,7 @@ impl Renderer {
     /// The same for every order of scans and points, and for every number of threads, bit for bit.
     ///
     /// # Errors
-    /// [`IbprError::BadOption`].
+    /// [`IbprError::TooLarge`] if a side of the picture is above [`Renderer::LARGEST_SIDE`]; [`IbprError::BadOption`].
     pub fn draw(
         &mut self,
         cloud: &Cloud,
@@ -67,6 +71,10 @@ impl Renderer {
         options: &Options,
         frame: &mut Frame,
     ) -> Result<(), IbprError> {
+        let (width, height) = (view.width(), view.height());
+        if width.max(height) > Self::LARGEST_SIDE {
+            return Err(IbprError::TooLarge { width, height });
+        }
         options.check()?;
         let mut counts = FrameCounts::default();
         // Through translucent surfaces one sees those that face away.
@@ -88,7 +96,7 @@ impl Renderer {
             let Some(map) = map else { continue };
             pass.make(cloud, &self.visible, map, options, &self.bands, &mut self.fill);
         }
-        frame.reshape(view.width as usize, view.height as usize, options.surface_layers);
+        frame.reshape(width as usize, height as usize, options.surface_layers);
         frame.counts = counts;
         self.draw_faces(cloud, &maps, options, frame);
         if let Some(dome) = &options.eye_dome {
@@ -115,8 +123,8 @@ impl Renderer {
         });
         let Some((depth, _)) = median else { return 1.0 };
         let spacing_px =
-            cloud.density_spacing() * view.pixels_per_unit(depth.max(reference_depth(cloud, view) * 0.01));
-        (factor * spacing_px).clamp(1.0, f64::from(view.width.max(view.height)))
+            cloud.density_spacing() * pixels_per_unit(view, depth.max(reference_depth(cloud, view) * 0.01));
+        (factor * spacing_px).clamp(1.0, f64::from(view.width().max(view.height())))
     }
 
     fn draw_faces(&self, cloud: &Cloud, maps: &[Option<BufferMap>; 2], options: &Options, frame: &mut Frame) {
@@ -252,11 +260,19 @@ impl Pass {
     }
 }
 
+/// Pixels that one world unit takes at `depth`; for a perspective camera at least at a tiny depth.
+fn pixels_per_unit(view: &View, depth: f64) -> f64 {
+    match view.projection() {
+        Projection::Perspective { .. } => view.focal_px() / depth.max(f64::MIN_POSITIVE),
+        Projection::Orthographic { .. } => view.focal_px(),
+    }
+}
+
 /// Depth of the middle of the cloud; never at or behind the eye.
 fn reference_depth(cloud: &Cloud, view: &View) -> f64 {
     let (low, high) = cloud.bounds();
     let extent = (high - low).length();
-    let depth = view.depth_of(0.5 * low + 0.5 * high);
+    let depth = depth_of(view, 0.5 * low + 0.5 * high);
     depth.max(0.01 * extent).max(f64::MIN_POSITIVE * 1e16)
 }
 
@@ -269,7 +285,7 @@ fn face_rules(cloud: &Cloud, map: &BufferMap, options: &Options, second: bool) -
         focal: map.focal() as f32,
         reference: map.reference as f32,
         centre: (x as f32, y as f32),
-        perspective: map.view.is_perspective(),
+        perspective: map.is_perspective(),
         pixel: map.scale as f32,
         painted: cloud.has_colours() || options.surface_layers,
         sparse_only: second,

@@ -1,9 +1,9 @@
 //! From surfaces to colours.
 
+use crate::buffer_map::BufferMap;
 use crate::options::{Light, Options};
 use crate::pixels::{Fragment, Nearest};
 use crate::raster::Paint;
-use crate::view::BufferMap;
 use glam::Vec3;
 
 /// Shading and output of a frame: everything in the camera's frame (right, up, back).
@@ -29,16 +29,16 @@ impl Shader {
             Light::Eye => None,
             Light::Towards(d) => {
                 let d = d.normalize();
-                Some(Vec3::new(d.dot(v.right) as f32, d.dot(v.up) as f32, -d.dot(v.forward) as f32))
+                Some(Vec3::new(d.dot(v.right()) as f32, d.dot(v.up()) as f32, -d.dot(v.forward()) as f32))
             }
         };
         let (x, y) = map.centre();
-        let ray_slope = if v.is_perspective() { 1.0 / v.focal_px() } else { 0.0 };
+        let ray_slope = if map.is_perspective() { 1.0 / v.focal_px() } else { 0.0 };
         Self {
             light,
             ambient: options.ambient,
             base: options.base,
-            axes: [v.right.as_vec3(), v.up.as_vec3(), -v.forward.as_vec3()],
+            axes: [v.right().as_vec3(), v.up().as_vec3(), -v.forward().as_vec3()],
             centre: ((x * map.scale) as f32, (y * map.scale) as f32),
             ray_slope: ray_slope as f32,
             bend: map.bend(),

@@ -1,7 +1,7 @@
 //! Frames against what must come out: planes, spheres, discs, layers.
 
-use glam::{DVec3, dvec3};
-use pointillist_ibpr::invariants::{OwnedScan, frame, pixel_of};
+use glam::{DVec2, DVec3, dvec3};
+use pointillist_ibpr::invariants::{OwnedScan, frame};
 use pointillist_ibpr::{Frame, Normals, Options, Projection, Scale, Translucency, View, Weighting};
 
 const SIZE: u32 = 96;
@@ -125,7 +125,7 @@ fn one_point_per_pixel_at_scale_one_is_reproduced() {
     o.outline = 0.5;
     let frame = frame(std::slice::from_ref(&scan), &flat_view(), &o).unwrap();
     for p in &scan.positions {
-        let (x, y) = pixel_of(&flat_view(), *p).unwrap();
+        let DVec2 { x, y } = flat_view().project(*p).unwrap().pixel;
         let i = y as usize * SIZE as usize + x as usize;
         assert_eq!((x.fract(), y.fract()), (0.5, 0.5), "points lie on pixel centres");
         let error = (f64::from(frame.depth[i]) - (1000.0 - p.z)).abs();

@@ -1,3 +1,5 @@
+use pointillist_view::ViewError;
+
 /// What can be wrong with the input of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -52,20 +54,10 @@ pub enum MicropointError {
         /// How many.
         count: usize,
     },
-    /// The view cannot be rendered.
-    #[error("bad view: {reason}")]
-    BadView {
-        /// What is wrong, in words.
-        reason: &'static str,
-    },
-    /// The picture has no pixels or more than can be numbered.
-    #[error("an image of {width}×{height} pixels cannot be rendered")]
-    BadSize {
-        /// Pixels.
-        width: u32,
-        /// Pixels.
-        height: u32,
-    },
+    /// The camera or the size of the picture was refused. No function of this crate returns it: it lets callers use `?` on
+    /// [`View`](crate::View) beside the rest.
+    #[error(transparent)]
+    View(#[from] ViewError),
     /// Cells per pixel side must be 1, 2 or 4.
     #[error("{0} cells per pixel side; 1, 2 and 4 are possible")]
     BadCellsPerPixel(u32),

@@ -364,7 +364,7 @@ impl Bounded {
 /// Surfaces closer than 1e-9 of their nearness coincide; the one with the higher number is in front.
 #[must_use]
 pub fn shares_by_arrangement(soup: &Soup, view: &View) -> Vec<Vec<f64>> {
-    let lens = view.lens(1);
+    let lens = Lens::of_view(view, 1);
     let bounded: Vec<Bounded> = (soup.triangles.iter().zip(&soup.surface_of))
         .filter_map(|(t, &s)| {
             let opacity = f64::from(soup.surfaces[s as usize].opacity);

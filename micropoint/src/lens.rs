@@ -2,6 +2,7 @@
 
 use crate::geometry::Bounds;
 use glam::{DVec2, DVec3};
+use pointillist_view::{Projection, View};
 
 /// How depth turns into the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +60,26 @@ impl Plane {
 }
 
 impl Lens {
+    /// The projection of a view onto a grid of `cells` × `cells` cells a pixel.
+    #[must_use]
+    pub fn of_view(view: &View, cells: u32) -> Self {
+        let cells = f64::from(cells);
+        let kind = match view.projection() {
+            Projection::Perspective { .. } => LensKind::Perspective,
+            Projection::Orthographic { .. } => LensKind::Orthographic,
+        };
+        Self {
+            kind,
+            origin: view.eye(),
+            right: view.right(),
+            down: -view.up(),
+            forward: view.forward(),
+            scale: view.focal_px() * cells,
+            centre: view.centre_px() * cells,
+            reach: 1.0,
+        }
+    }
+
     /// The point in the lens's frame: right, down, depth.
     #[must_use]
     #[inline]

@@ -50,7 +50,6 @@ mod render;
 mod resolve;
 mod texel;
 mod tile;
-mod view;
 mod volume;
 
 pub use error::MicropointError;
@@ -60,9 +59,9 @@ pub use face::{
 pub use geometry::{Bounds, Cluster, ClusterQueue, Geometry, HiddenSides, Surface, Triangle};
 pub use lens::{Lens, LensKind, Plane, TIE};
 pub use occlude::{Blocker, Front, Layer, Occluders, Region, Regions, are_disjoint, contains, in_front};
+pub use pointillist_view::{PixelRect, Projected, Projection, Ray, View, ViewError};
 pub use render::{Fragment, Micropoint, MicropointOptions, Renderer, Tile};
 pub use resolve::Occlusion;
 pub use texel::{TexelCorner, TexelSums, TexelWrap};
 pub use tile::TileCounts;
-pub use view::{PixelRect, Projection, View};
 pub use volume::ViewVolume;

@@ -6,9 +6,9 @@ use crate::geometry::{Geometry, HiddenSides};
 use crate::lens::Lens;
 use crate::resolve::{Occlusion, ResolveScratch, Visible, resolve_by_layers, resolve_exactly};
 use crate::tile::{DiceJob, Dicer, TileCounts};
-use crate::view::{PixelRect, View};
 use glam::{DVec2, DVec3};
 use pointillist_dice::CellWindow;
+use pointillist_view::{PixelRect, View};
 
 /// How a picture is diced and resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,8 +213,7 @@ impl<'a> Renderer<'a> {
     /// Prepares a view.
     ///
     /// # Errors
-    /// [`MicropointError::BadCellsPerPixel`]; [`MicropointError::BadSize`] if the picture has more
-    /// cells than the grid can number.
+    /// [`MicropointError::BadCellsPerPixel`].
     pub fn new(
         geometry: &'a Geometry,
         opacity: &'a dyn TexturedOpacity,
@@ -225,14 +224,14 @@ impl<'a> Renderer<'a> {
         if !matches!(cells, 1 | 2 | 4) {
             return Err(MicropointError::BadCellsPerPixel(cells));
         }
-        let mut lens = view.lens(cells);
+        let mut lens = Lens::of_view(&view, cells);
         let bounds = geometry.bounds();
         if bounds.low.x <= bounds.high.x {
-            lens.reach = (bounds.low - view.eye).abs().max((bounds.high - view.eye).abs()).length();
+            lens.reach = (bounds.low - view.eye()).abs().max((bounds.high - view.eye()).abs()).length();
         }
         // Two pixels beyond the picture: faces clipped there look the same as unclipped ones.
         let margin = DVec2::splat(2.0 * f64::from(cells));
-        let size = DVec2::new(f64::from(view.width), f64::from(view.height)) * f64::from(cells);
+        let size = DVec2::new(f64::from(view.width()), f64::from(view.height())) * f64::from(cells);
         let rect = GridRect { low: -margin, high: size + margin };
         let hidden = if options.cull_solids { geometry.hidden_sides(&lens) } else { HiddenSides::default() };
         Ok(Self { geometry, opacity, view, lens, rect, hidden, options })
@@ -241,7 +240,7 @@ impl<'a> Renderer<'a> {
     /// The whole picture.
     #[must_use]
     pub fn picture(&self) -> PixelRect {
-        PixelRect { x0: 0, y0: 0, x1: self.view.width, y1: self.view.height }
+        self.view.picture()
     }
 
     /// The view.
@@ -293,7 +292,7 @@ impl<'a> Renderer<'a> {
     /// rectangle it is rendered in.
     /// Pixels outside the picture do not exist and see nothing.
     pub fn render(&self, rect: PixelRect, tile: &mut Tile) {
-        let rect = rect.within(self.picture());
+        let rect = rect.intersection(&self.picture());
         tile.rect = Some(rect);
         tile.lens = Some(self.lens);
         tile.points.clear();

@@ -3,9 +3,9 @@
 use glam::{DAffine3, DMat3, DVec2, DVec3, dvec2, dvec3};
 use pointillist_dice::{ConvexPolygon, HalfPlane};
 use pointillist_micropoint::{
-    Bounds, ClusterQueue, Geometry, GridRect, HiddenSides, MicropointError, MicropointOptions, Occlusion,
-    PixelRect, PlainOpacity, ProjectedVertex, Projection, Regions, Renderer, Setup, Surface, TexelCorner,
-    TexelSums, TexelWrap, Tile, View, ViewVolume, are_disjoint, set_up_face,
+    Bounds, ClusterQueue, Geometry, GridRect, HiddenSides, Lens, MicropointError, MicropointOptions,
+    Occlusion, PixelRect, PlainOpacity, ProjectedVertex, Projection, Regions, Renderer, Setup, Surface,
+    TexelCorner, TexelSums, TexelWrap, Tile, View, ViewVolume, are_disjoint, set_up_face,
 };
 use proptest::prelude::*;
 
@@ -102,7 +102,7 @@ proptest! {
         let matrix = DMat3::from_cols_slice(&m[..9]);
         let view = DAffine3::from_mat3_translation(matrix, DVec3::from_slice(&m[9..]));
         if let Ok(v) = View::from_matrix(view, projection, w, h) {
-            let _ = (v.ray(dvec2(m[0], m[1])), v.lens(2));
+            let _ = (v.ray(dvec2(m[0], m[1])), Lens::of_view(&v, 2));
         }
     }
 
@@ -155,7 +155,7 @@ proptest! {
         rect in prop::collection::vec(number(), 4),
     ) {
         let Ok(view) = View::look_at(eye, target, DVec3::Y, projection, 4, 4) else { return Ok(()) };
-        let lens = view.lens(1);
+        let lens = Lens::of_view(&view, 1);
         let rect = GridRect { low: dvec2(rect[0], rect[1]), high: dvec2(rect[2], rect[3]) };
         let _ = ViewVolume::new(&lens, &rect).nearest_depth(&Bounds { low: v[0], high: v[1] });
         let Ok(geometry) = Geometry::new(&v, &[[0, 1, 2]], &[0], &[Surface::default()]) else { return Ok(()) };

@@ -1,6 +1,6 @@
 //! The facts of `invariants`, on scenes that aim at trouble.
 
-use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
+use glam::{DMat3, DVec3, dvec2, dvec3};
 use pointillist_micropoint::invariants::{self, CUT_TOLERANCE, Picture, Soup, picture, shares};
 use pointillist_micropoint::{
     Geometry, MicropointOptions, Occlusion, PixelRect, PlainOpacity, Projection, Renderer, Tile, View,
@@ -270,8 +270,8 @@ proptest! {
         prop_assume!(corners.iter().all(|&p| ahead(p)));
         s.polygon(&corners, near);
         // Moved along the rays through the eye, or along the axis if they are parallel.
-        let is_orthographic = v.ray(dvec2(0.0, 0.0)).1 == v.ray(dvec2(1.0, 0.0)).1;
-        s.polygon(&corners.map(|p| if is_orthographic { p + axis * (t - 1.0) } else { v.eye() + (p - v.eye()) * t }), far);
+        let behind = |p: DVec3| if v.projection().is_perspective() { v.eye() + (p - v.eye()) * t } else { p + axis * (t - 1.0) };
+        s.polygon(&corners.map(behind), far);
         let got = shares(&picture(&s, v, EXACT).unwrap(), 2);
         for (i, p) in got.iter().enumerate() {
             prop_assert!(p[1] <= 1e-9, "pixel {i} shows {} of what is hidden", p[1]);
@@ -308,23 +308,15 @@ proptest! {
 
 /// The view of the mapped scene; `None` if it cannot be told.
 fn mapped_view(v: &View, map: &impl Fn(DVec3) -> DVec3, scale: f64) -> Option<View> {
-    let (o, d) = v.ray(
-        dvec2(f64::from(v.width()), f64::from(v.height())) * 0.5 + dvec2(0.0, -0.5 * f64::from(v.height())),
-    );
-    let perspective = v.ray(DVec2::ZERO).1 != v.ray(DVec2::ONE).1;
-    // The ray through the middle of the upper border leans, or starts, upward.
-    let (projection, up) = if perspective {
-        let up = d - v.forward();
-        (Projection::Perspective { fov_y_rad: 2.0 * up.length().atan() }, up)
-    } else {
-        let up = o - v.eye();
-        (Projection::Orthographic { height: 2.0 * up.length() * scale }, up)
+    let projection = match v.projection() {
+        Projection::Orthographic { height } => Projection::Orthographic { height: height * scale },
+        perspective => perspective,
     };
     let (eye, origin) = (map(v.eye()), map(DVec3::ZERO));
     let direction = |d: DVec3| (map(d) - origin) / scale;
     // Directions of a moved scene are rounded: a target far away keeps more digits.
     let far = direction(v.forward()) * (eye.length() + scale);
-    View::look_at(eye, eye + far, direction(up), projection, v.width(), v.height()).ok()
+    View::look_at(eye, eye + far, direction(v.up()), projection, v.width(), v.height()).ok()
 }
 
 /// A picture rendered by a pool of threads, tile by tile.

@@ -1,12 +1,12 @@
 //! Bugs that were fixed, each with its smallest input.
 
-use glam::{DVec2, DVec3, dvec2, dvec3};
+use glam::{DAffine3, DVec2, DVec3, dvec2, dvec3};
 use pointillist_micropoint::invariants::{
     Soup, nothing_shows_through, picture, shares, shares_agree, weights_are_shares,
 };
 use pointillist_micropoint::{
-    Geometry, MicropointOptions, PixelRect, PlainOpacity, Projection, Renderer, Surface, TexelCorner,
-    TexelSums, TexelWrap, Tile, View,
+    Geometry, MicropointError, MicropointOptions, PixelRect, PlainOpacity, Projection, Renderer, Surface,
+    TexelCorner, TexelSums, TexelWrap, Tile, View, ViewError,
 };
 
 const EXACT: MicropointOptions = MicropointOptions::DEFAULT;
@@ -308,4 +308,43 @@ fn no_more_is_seen_of_crossing_sheets_than_there_is_room_for() {
     let camera = Projection::Orthographic { height: 2.6 };
     let view = View::look_at(steps([-1, 50, -1]), steps([7, 35, -1]), DVec3::Y, camera, 4, 7).unwrap();
     weights_are_shares(&soup, view, EXACT).unwrap();
+}
+
+/// A mirrored matrix was un-mirrored without a word, and drew the scene from another camera than the one asked for.
+#[test]
+fn a_mirrored_matrix_is_refused() {
+    let camera = |matrix: DAffine3| -> Result<View, MicropointError> {
+        Ok(View::from_matrix(matrix, Projection::Orthographic { height: 1.0 }, 4, 4)?)
+    };
+    assert!(camera(DAffine3::IDENTITY).is_ok());
+    for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+        let refused = camera(DAffine3::from_scale(DVec3::ONE - 2.0 * axis));
+        assert!(matches!(refused, Err(MicropointError::View(ViewError::Mirrored { .. }))), "{refused:?}");
+    }
+}
+
+/// Tiles of the largest picture are drawn like those of any other; a larger one is refused.
+#[test]
+fn a_picture_too_large_to_be_numbered_is_refused() {
+    let camera = |width: u32, height: u32| -> Result<View, MicropointError> {
+        let projection = Projection::Perspective { fov_y_rad: 0.6 };
+        Ok(View::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, projection, width, height)?)
+    };
+    let most = View::LARGEST_SIDE;
+    for (width, height) in [(most + 1, 4), (4, most + 1), (u32::MAX, u32::MAX), (0, 4)] {
+        let refused = Err(MicropointError::View(ViewError::BadSize { width, height }));
+        assert_eq!(camera(width, height), refused);
+    }
+    let mut soup = Soup::default();
+    let wall = soup.surface(1.0);
+    soup.polygon(
+        &[dvec3(-9.0, -9.0, 0.0), dvec3(9.0, -9.0, 0.0), dvec3(9.0, 9.0, 0.0), dvec3(-9.0, 9.0, 0.0)],
+        wall,
+    );
+    let geometry = soup.geometry().unwrap();
+    let renderer = Renderer::new(&geometry, &PlainOpacity, camera(most, most).unwrap(), EXACT).unwrap();
+    let mut tile = Tile::default();
+    renderer.render(PixelRect { x0: most - 4, y0: most - 4, x1: u32::MAX, y1: u32::MAX }, &mut tile);
+    let weight: f64 = tile.points().iter().map(|p| p.weight).sum();
+    assert!((weight - 16.0).abs() < 1e-9, "{weight}");
 }

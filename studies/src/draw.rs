@@ -1,13 +1,12 @@
 //! Our own pictures: through the whole pipeline, or from the micropoints alone.
 
 use glam::DVec3;
-use pointillist_cli::image_io::Window;
+use pointillist_cli::image_io::PixelRect;
 use pointillist_cli::job::{Progress, ProgressMode, RenderJob, Stats};
 use pointillist_cli::pipeline::{self, PipelineError};
-use pointillist_cli::scene::{Projection, Scene};
+use pointillist_cli::scene::Scene;
 use pointillist_micropoint::{
-    self as micropoint, Geometry, MicropointError, MicropointOptions, PlainOpacity, Renderer, Surface, Tile,
-    View,
+    Geometry, MicropointError, MicropointOptions, PlainOpacity, Renderer, Surface, Tile, View, ViewError,
 };
 
 use crate::picture::Picture;
@@ -17,7 +16,7 @@ pub(crate) const TILE_SIZE: u32 = 16;
 
 /// Draws a scene as `pointillist render` does.
 pub(crate) fn with_pipeline(scene: &Scene) -> Result<Picture, PipelineError> {
-    let window = Window::whole(scene.image.width, scene.image.height);
+    let window = PixelRect::of_picture(scene.image.width, scene.image.height);
     let job = RenderJob { region: window, window, layers: vec![] };
     let frame = pipeline::render(scene, &job, &Progress::new(ProgressMode::Off), &Stats::new())?;
     Ok(Picture::from_frame(&frame))
@@ -36,13 +35,8 @@ pub(crate) fn geometry(scene: &Scene) -> Result<Geometry, MicropointError> {
 }
 
 /// The camera of a scene.
-pub(crate) fn view(scene: &Scene) -> Result<View, MicropointError> {
-    let projection = match scene.camera.projection {
-        Projection::Perspective { fov_y_rad } => micropoint::Projection::Perspective { fov_y_rad },
-        Projection::Orthographic { height } => micropoint::Projection::Orthographic { height },
-    };
-    let (camera, image) = (&scene.camera, &scene.image);
-    View::look_at(camera.eye, camera.target, camera.up, projection, image.width, image.height)
+pub(crate) fn view(scene: &Scene) -> Result<View, ViewError> {
+    scene.camera.view([scene.image.width, scene.image.height])
 }
 
 /// Draws a scene of emissive surfaces from its micropoints, on the calling thread.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use glam::{DVec3, dvec3};
-use pointillist_cli::scene::{self, Scene};
+use pointillist_cli::scene::Scene;
 use pointillist_micropoint::{MicropointOptions, Occlusion};
 
 use crate::picture::Picture;
@@ -104,10 +104,7 @@ fn draw_ours(case: &Case, rule: Occlusion, cull: bool, cells: u32) -> Picture {
     }
     let mut scene = case.scene.clone();
     scene.render.cells_per_pixel = Some(cells);
-    scene.render.occlusion = Some(match rule {
-        Occlusion::Paper => scene::Occlusion::Paper,
-        _ => scene::Occlusion::Correlated,
-    });
+    scene.render.occlusion = Some(rule);
     draw::with_pipeline(&scene).expect("the scene is valid")
 }
 

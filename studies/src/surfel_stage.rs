@@ -2,7 +2,7 @@
 
 use pointillist_surfel::{
     Cloud, Focus, Frame, FrameCounts, Light, Method, Options, Procedure, Projection, Renderer, SurfelError,
-    View,
+    View, ViewError,
 };
 
 use crate::layer_error::LayerMeasure;
@@ -143,9 +143,9 @@ pub(crate) fn options(camera: &LensCamera, matt: &Matt, procedure: Procedure) ->
     options
 }
 
-pub(crate) fn view(camera: &LensCamera) -> Result<View, SurfelError> {
+pub(crate) fn view(camera: &LensCamera) -> Result<View, ViewError> {
     let projection = Projection::Perspective { fov_y_rad: camera.fov_y_rad };
-    View::new(camera.view_from_world(), projection, camera.width, camera.height)
+    View::from_matrix(camera.view_from_world(), projection, camera.width, camera.height)
 }
 
 /// A frame with all its layers.

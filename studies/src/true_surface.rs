@@ -154,7 +154,7 @@ pub(crate) struct Truth {
 impl Truth {
     pub(crate) fn new(surface: &Surface, view: &View) -> Self {
         let size = view.width() as usize;
-        let ray = |x: f64, y: f64| ray_through(view, x, y);
+        let ray = |x: f64, y: f64| view.ray(dvec2(x, y)).direction;
         let at = |x: f64, y: f64| surface.cast(view.eye(), ray(x, y));
         let centres: Vec<Option<Hit>> = (0..size * size)
             .into_par_iter()
@@ -199,16 +199,7 @@ impl Truth {
 /// The point that pixel `i` shows at its centre.
 pub(crate) fn point_at(truth: &Truth, view: &View, i: usize) -> DVec3 {
     let (x, y) = ((i % truth.size) as f64 + 0.5, (i / truth.size) as f64 + 0.5);
-    view.eye() + ray_through(view, x, y) * truth.depth[i]
-}
-
-/// Along the ray through a place in the picture, one unit of depth.
-fn ray_through(view: &View, x: f64, y: f64) -> DVec3 {
-    let half = 0.5 * f64::from(view.height());
-    let right = view.forward().cross(DVec3::Y).normalize();
-    let up = right.cross(view.forward());
-    let slope = (0.5 * FOV_Y_RAD).tan() / half;
-    view.forward() + (x - half) * slope * right - (y - half) * slope * up
+    view.unproject(dvec2(x, y), truth.depth[i])
 }
 
 fn shade(normal: DVec3) -> f64 {

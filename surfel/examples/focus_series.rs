@@ -2,7 +2,6 @@
 //!
 //! `cargo run --release -p pointillist-surfel --example focus_series`
 
-use glam::dcamera::rh::view::look_at_affine3;
 use glam::{DVec3, dvec3};
 use pointillist_surfel::{
     Cloud, Focus, Frame, Options, Points, Projection, Renderer, SampleOptions, View, sample,
@@ -42,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let eye = dvec3(0.0, 1.3, 3.0);
     let camera = Projection::Perspective { fov_y_rad: 0.75 };
-    let view = View::new(look_at_affine3(eye, DVec3::ZERO, DVec3::Y), camera, SIZE, SIZE)?;
+    let view = View::look_at(eye, DVec3::ZERO, DVec3::Y, camera, SIZE, SIZE)?;
     let (mut renderer, mut frame, mut options) = (Renderer::new(), Frame::default(), Options::default());
     for (i, focus) in [2.2, 3.2, 4.2].into_iter().enumerate() {
         options.focus = Focus::Lens { aperture: 0.12, focus };

@@ -4,8 +4,8 @@ use crate::cloud::Node;
 use crate::focus::Focus;
 use crate::lattice::Lattice;
 use crate::vector::Real;
-use crate::view::View;
 use glam::{DVec3, Vec3};
+use pointillist_view::View;
 
 /// How far the plane of a blurred disc is followed beyond the disc itself, in blur radii: what lies on one slanted surface
 /// then has one depth in a pixel, and belongs to one layer. Found by experiment.
@@ -23,6 +23,11 @@ const STEEPEST: f32 = 8.0;
 
 /// Reach of a disc's kernel in standard deviations: the square root of [`crate::splat::REACH2`].
 pub(crate) const REACH: f32 = std::f32::consts::SQRT_2 * 2.0;
+
+/// Coordinates of a direction along right, down and forward.
+pub(crate) fn turned(view: &View, v: DVec3) -> DVec3 {
+    DVec3::new(v.dot(view.right()), -v.dot(view.up()), v.dot(view.forward()))
+}
 
 #[derive(Clone, Debug)]
 pub(crate) struct Camera {
@@ -46,10 +51,10 @@ pub(crate) struct Camera {
 
 impl Camera {
     pub(crate) fn new(view: &View, lattice: &Lattice, root: &Node, focus: &Focus) -> Self {
-        let middle = view.turned(lattice.way(view.eye, root.origin)).z / lattice.side;
+        let middle = turned(view, lattice.way(view.eye(), root.origin)).z / lattice.side;
         let extent = f64::from(root.half.length()) + f64::from(root.widest);
         let reference = middle.max(0.01 * extent);
-        let is_perspective = view.is_perspective();
+        let is_perspective = view.projection().is_perspective();
         let unit = if is_perspective { 1.0 } else { lattice.side };
         let (depth, focus) = focus.depth_and_focus();
         // A blur beyond all pictures is as good as an endless one, and a number.
@@ -59,18 +64,18 @@ impl Camera {
             lattice: *lattice,
             is_perspective,
             focal: (view.focal_px() * unit) as f32,
-            centre: [0.5 * f64::from(view.width), 0.5 * f64::from(view.height)],
+            centre: view.centre_px().to_array(),
             reference,
             near: (1e-5 * extent - reference) as f32,
             blur,
             focus: (focus / lattice.side - reference).clamp(-1e12, 1e12) as f32,
-            axes: [view.right, view.down, view.forward].map(|v| v.as_vec3()),
+            axes: [view.right(), -view.up(), view.forward()].map(|v| v.as_vec3()),
         }
     }
 
     /// Coordinates of a node's origin along right, down and forward, units.
     pub(crate) fn local(&self, node: &Node) -> DVec3 {
-        self.view.turned(self.lattice.way(self.view.eye, node.origin)) / self.lattice.side
+        turned(&self.view, self.lattice.way(self.view.eye(), node.origin)) / self.lattice.side
     }
 
     /// Pixels per unit at a relative depth.

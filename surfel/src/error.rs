@@ -1,5 +1,7 @@
 //! What can be wrong.
 
+use pointillist_view::ViewError;
+
 /// What can be wrong with a mesh or a cloud, or with what is asked of them.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -87,15 +89,12 @@ pub enum SurfelError {
         /// As given.
         radius: f32,
     },
-    /// A camera that sees nothing.
-    #[error("the view cannot be used: {reason}")]
-    BadView {
-        /// What is wrong.
-        reason: &'static str,
-    },
-    /// A picture without pixels, or with too many.
-    #[error("a picture of {width}×{height} pixels; sides must be 1 to 16384")]
-    BadSize {
+    /// The camera was refused. No function of this crate returns it: it lets callers use `?` on [`View`](crate::View) beside the rest.
+    #[error(transparent)]
+    View(#[from] ViewError),
+    /// A side of the picture is above [`Renderer::LARGEST_SIDE`](crate::Renderer::LARGEST_SIDE).
+    #[error("a picture of {width}×{height} pixels cannot be drawn: each side must be at most 16384")]
+    TooLarge {
         /// Pixels from left to right.
         width: u32,
         /// Pixels from top to bottom.

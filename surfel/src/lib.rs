@@ -13,7 +13,7 @@
 //!
 //! // Seen from 2 in front of its middle: it fills 16 × 16 of 32 × 32 pixels, up to a fraction of a pixel.
 //! let from_world = DAffine3::from_translation(dvec3(-0.5, -0.5, -2.0));
-//! let view = View::new(from_world, Projection::Orthographic { height: 2.0 }, 32, 32)?;
+//! let view = View::from_matrix(from_world, Projection::Orthographic { height: 2.0 }, 32, 32)?;
 //! let mut options = Options::default();
 //! let (mut renderer, mut frame) = (Renderer::new(), Frame::default());
 //! renderer.draw(&cloud, &view, &options, &mut frame)?;
@@ -101,7 +101,6 @@ mod splat;
 mod splats;
 mod tile;
 mod vector;
-mod view;
 
 pub use cloud::Cloud;
 pub use error::SurfelError;
@@ -109,7 +108,7 @@ pub use focus::{Focus, field_of_view_rad};
 pub use frame::{Frame, FrameCounts};
 pub use options::{Light, Options, Procedure};
 pub use point::SurfacePoint;
+pub use pointillist_view::{PixelRect, Projected, Projection, Ray, View, ViewError};
 pub use points::Points;
 pub use render::Renderer;
 pub use sample::{Amount, MAX_COUNT, Method, SampleOptions, sample, sample_with};
-pub use view::{Projection, View};

@@ -10,7 +10,7 @@ use crate::parallel::{self, Pool};
 use crate::select::{self, Selected};
 use crate::shade::Shader;
 use crate::tile::{Place, Scene, Tile};
-use crate::view::View;
+use pointillist_view::View;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -27,6 +27,9 @@ pub struct Renderer {
 }
 
 impl Renderer {
+    /// Largest side of a picture in pixels: frames are kept whole, and places in them are 16 bits.
+    pub const LARGEST_SIDE: u32 = 16384;
+
     /// A renderer without memory.
     #[must_use]
     pub fn new() -> Self {
@@ -38,7 +41,7 @@ impl Renderer {
     /// The same for every order of points and for every number of threads, bit for bit.
     ///
     /// # Errors
-    /// [`SurfelError::BadOption`].
+    /// [`SurfelError::TooLarge`] if a side of the picture is above [`Renderer::LARGEST_SIDE`]; [`SurfelError::BadOption`].
     pub fn draw(
         &mut self,
         cloud: &Cloud,
@@ -46,9 +49,13 @@ impl Renderer {
         options: &Options,
         frame: &mut Frame,
     ) -> Result<(), SurfelError> {
+        let (width, height) = (view.width(), view.height());
+        if width.max(height) > Self::LARGEST_SIDE {
+            return Err(SurfelError::TooLarge { width, height });
+        }
         options.check()?;
         let camera = Camera::new(view, &cloud.lattice, &cloud.nodes[0], &options.focus);
-        frame.reshape(view.width as usize, view.height as usize, options.normals);
+        frame.reshape(width as usize, height as usize, options.normals);
         let mut counts = FrameCounts::default();
         select::select(cloud, &camera, options, &mut self.selected, &mut self.stack, &mut counts);
         let shader = Shader::new(&camera, options, cloud.has_colours());

@@ -102,7 +102,7 @@ impl Seen {
             let stretch = if camera.is_perspective { (1.0 + slope * slope).sqrt() } else { 1.0 };
             let blur = 0.5 * REACH * blur_radius * scale;
             let margin = (REACH * (deviation * scale * stretch + PIXEL_DEVIATION) + blur) * growth + 1.0;
-            let size = if i == 0 { camera.view.width } else { camera.view.height };
+            let size = if i == 0 { camera.view.width() } else { camera.view.height() };
             let centre = camera.centre[i] as f32;
             let (first, last) = (low + centre - margin, high + centre + margin);
             let inside = last >= 0.0 && first < size as f32;

@@ -1,6 +1,6 @@
 //! Light on surfaces, and how much of a pixel they cover.
 
-use crate::camera::Camera;
+use crate::camera::{Camera, turned};
 use crate::options::{Light, Options};
 use crate::vector::{Real, Vector};
 use glam::Vec3;
@@ -28,7 +28,9 @@ impl Shader {
     pub(crate) fn new(camera: &Camera, options: &Options, coloured: bool) -> Self {
         let light = match options.light {
             Light::Eye => None,
-            Light::Towards(d) => Some(camera.view.turned((d / d.abs().max_element()).normalize()).as_vec3()),
+            Light::Towards(d) => {
+                Some(turned(&camera.view, (d / d.abs().max_element()).normalize()).as_vec3())
+            }
         };
         Self {
             camera: camera.clone(),

@@ -272,18 +272,18 @@ impl Map {
         two_sided: bool,
     ) -> Self {
         let f = f64::from(camera.focal);
-        let v = &camera.view;
+        let (right, down, forward) = (camera.view.right(), -camera.view.up(), camera.view.forward());
         let origin = camera.local(node);
         let [cx, cy] = [camera.centre[0] - tile.x as f64, camera.centre[1] - tile.y as f64];
         let (x, y) = if camera.is_perspective {
             (
-                (f * v.right + cx * v.forward, f * origin.x + cx * origin.z),
-                (f * v.down + cy * v.forward, f * origin.y + cy * origin.z),
+                (f * right + cx * forward, f * origin.x + cx * origin.z),
+                (f * down + cy * forward, f * origin.y + cy * origin.z),
             )
         } else {
-            ((f * v.right, f * origin.x + cx), (f * v.down, f * origin.y + cy))
+            ((f * right, f * origin.x + cx), (f * down, f * origin.y + cy))
         };
-        let depth = (v.forward, origin.z - camera.reference);
+        let depth = (forward, origin.z - camera.reference);
         let mut rows = [0.0; 12];
         for (row, (n, offset)) in rows.chunks_exact_mut(4).zip::<[(DVec3, f64); 3]>([x, y, depth]) {
             row.copy_from_slice(&[n.x as f32, n.y as f32, n.z as f32, offset as f32]);

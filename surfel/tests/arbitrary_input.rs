@@ -132,7 +132,7 @@ proptest! {
         columns in [vector(number), vector(number), vector(number)],
     ) {
         let matrix = DAffine3 { matrix3: DMat3::from_cols(columns[0], columns[1], columns[2]), translation: eye };
-        for view in [look_at(eye, target, p, w, h), View::new(matrix, p, w, h).ok()].into_iter().flatten() {
+        for view in [look_at(eye, target, p, w, h), View::from_matrix(matrix, p, w, h).ok()].into_iter().flatten() {
             prop_assert!(view.eye().is_finite() && (view.forward().length() - 1.0).abs() < 1e-6, "{view:?}");
         }
     }

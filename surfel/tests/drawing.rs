@@ -175,7 +175,7 @@ proptest! {
         let rows = DMat3::from_cols(turn(DVec3::X), turn(DVec3::Y), turn(DVec3::Z));
         let look = |shift: DVec3| {
             let map = DAffine3::from_mat3_translation(rows, -(rows * (snap(eye) * 2.0 + shift)));
-            View::new(map, Projection::Perspective { fov_y_rad }, 60, 40).unwrap()
+            View::from_matrix(map, Projection::Perspective { fov_y_rad }, 60, 40).unwrap()
         };
         let moved = near.moved(|p| p + far);
         match (frame(&near, &look(DVec3::ZERO), &o), frame(&moved, &look(far), &o)) {

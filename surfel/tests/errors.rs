@@ -1,9 +1,10 @@
 //! Errors, one by one: clouds, views, options.
 
-use glam::{DAffine3, DMat3, DVec3, Vec3, dvec3};
+use glam::{DAffine3, DVec3, Vec3, dvec3};
 use pointillist_surfel::invariants::look_at;
 use pointillist_surfel::{
-    Cloud, Focus, Frame, Light, Options, Points, Projection, Renderer, SurfelError, View, field_of_view_rad,
+    Cloud, Focus, Frame, Light, Options, Points, Projection, Renderer, SurfelError, View, ViewError,
+    field_of_view_rad,
 };
 
 const PERSPECTIVE: Projection = Projection::Perspective { fov_y_rad: 0.7 };
@@ -69,28 +70,31 @@ fn normals_and_radii_of_any_size_are_taken() {
 }
 
 #[test]
-fn views_are_checked() {
-    let good = DAffine3::IDENTITY;
-    let bad = |map: DAffine3, p: Projection| {
-        let result = View::new(map, p, 8, 8);
-        assert!(matches!(result, Err(SurfelError::BadView { .. })), "{result:?}");
-    };
-    bad(DAffine3::from_mat3(DMat3::from_diagonal(DVec3::splat(2.0))), PERSPECTIVE);
-    bad(DAffine3::from_mat3(DMat3::from_diagonal(dvec3(1.0, 1.0, -1.0))), PERSPECTIVE);
-    bad(DAffine3::from_mat3(DMat3::ZERO), PERSPECTIVE);
-    bad(DAffine3::from_mat3(DMat3::NAN), PERSPECTIVE);
-    bad(DAffine3::from_translation(DVec3::NAN), PERSPECTIVE);
-    bad(DAffine3::from_translation(DVec3::INFINITY), PERSPECTIVE);
-    for fov_y_rad in [0.0, -1.0, std::f64::consts::PI, 4.0, f64::NAN, f64::INFINITY] {
-        bad(good, Projection::Perspective { fov_y_rad });
+fn a_mirrored_matrix_is_refused() {
+    let camera =
+        |matrix: DAffine3| -> Result<View, SurfelError> { Ok(View::from_matrix(matrix, PERSPECTIVE, 8, 8)?) };
+    assert!(camera(DAffine3::IDENTITY).is_ok());
+    for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+        let refused = camera(DAffine3::from_scale(DVec3::ONE - 2.0 * axis));
+        assert!(matches!(refused, Err(SurfelError::View(ViewError::Mirrored { .. }))), "{refused:?}");
     }
-    for height in [0.0, -1.0, f64::INFINITY, f64::NAN] {
-        bad(good, Projection::Orthographic { height });
+}
+
+#[test]
+fn a_picture_too_large_to_be_kept_is_refused() {
+    let cloud = Cloud::new(&Points::new(&TWO).with_normals(&[Vec3::Z; 2]).with_radii(&[2.0; 2])).unwrap();
+    let view = look_at(DVec3::Z * 5.0, DVec3::ZERO, PERSPECTIVE, 9, 9).unwrap();
+    let (most, mut frame) = (Renderer::LARGEST_SIDE, Frame::default());
+    for (width, height, fits) in
+        [(most, 1, true), (1, most, true), (most + 1, 1, false), (1, most + 1, false)]
+    {
+        let view = view.with_size(width, height).unwrap();
+        let drawn = Renderer::new().draw(&cloud, &view, &Options::default(), &mut frame);
+        let expected = if fits { Ok(()) } else { Err(SurfelError::TooLarge { width, height }) };
+        assert_eq!(drawn, expected);
     }
-    for (width, height) in [(0, 8), (8, 0), (View::LARGEST_SIDE + 1, 8), (8, u32::MAX)] {
-        assert_eq!(View::new(good, PERSPECTIVE, width, height), Err(SurfelError::BadSize { width, height }));
-    }
-    assert!(View::new(good, PERSPECTIVE, View::LARGEST_SIDE, 1).is_ok());
+    let beyond = view.with_size(8, u32::MAX);
+    assert_eq!(beyond, Err(ViewError::BadSize { width: 8, height: u32::MAX }));
 }
 
 #[test]
@@ -184,8 +188,8 @@ fn every_error_says_something() {
         SurfelError::BadNormal { index: 7 },
         SurfelError::BadColour { index: 7 },
         SurfelError::BadRadius { index: 7, radius: -1.0 },
-        SurfelError::BadView { reason: "7" },
-        SurfelError::BadSize { width: 7, height: 0 },
+        SurfelError::View(ViewError::BadSize { width: 7, height: 0 }),
+        SurfelError::TooLarge { width: 70_000, height: 1 },
         SurfelError::BadOption { name: "level", value: -7.0, range: "it must be at least 0" },
     ];
     for error in errors {

@@ -72,7 +72,7 @@ fn a_scene_far_from_the_origin_gives_the_same_frame() {
     let near = OwnedPoints::sphere(DVec3::ZERO, 0.5, 200).moved(|p| (p * 1_048_576.0).round() / 1_048_576.0);
     let look = |shift: DVec3| {
         let map = DAffine3::from_mat3_translation(DMat3::IDENTITY, -(DVec3::Z * 2.0 + shift));
-        View::new(map, PERSPECTIVE, 20, 20).unwrap()
+        View::from_matrix(map, PERSPECTIVE, 20, 20).unwrap()
     };
     let far = DVec3::splat(1_048_576.0);
     let a = frame(&near, &look(DVec3::ZERO), &Options::default()).unwrap();

@@ -4,7 +4,7 @@ use super::Report;
 use super::probe::{is_probe_file, merge_probes};
 use super::render::{OutputFormat, write_exr, write_png};
 use crate::error::CliError;
-use crate::image_io::{Channel, ExrFile, Frame, PngOptions, Stamp, Window};
+use crate::image_io::{Channel, ExrFile, Frame, PngOptions, Stamp};
 use crate::input::{self, is_standard, name_of};
 use crate::input_error::InputError;
 use crate::options::MergeOptions;
@@ -152,6 +152,6 @@ fn frame_of(file: &ExrFile) -> Frame {
     let [r, g, b, a] =
         [("R", 0.0), ("G", 0.0), ("B", 0.0), ("A", 1.0)].map(|(name, other)| plane(name, other));
     let color = (0..pixels).map(|i| [r[i], g[i], b[i], a[i]]).collect();
-    let window: Window = file.window;
+    let window = file.window;
     Frame { size: file.size, window, color, depth: Vec::new(), layers: Vec::new() }
 }

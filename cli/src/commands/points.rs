@@ -4,7 +4,7 @@ use super::Report;
 use super::render::{OutputFormat, is_there, write_exr, write_png};
 use super::report::check_output;
 use crate::error::CliError;
-use crate::image_io::{ExrFile, Frame, PngOptions, Precision, Stamp, Window};
+use crate::image_io::{ExrFile, Frame, PixelRect, PngOptions, Precision, Stamp};
 use crate::input::is_standard;
 use crate::memory;
 use crate::options::{CameraOptions, PictureOptions, Vector};
@@ -13,6 +13,7 @@ use crate::scene::{Camera, Projection, frame_around};
 use cpu_time::ProcessTime;
 use glam::DVec3;
 use pointillist_ibpr as ibpr;
+use pointillist_surfel as surfel;
 use std::hash::Hasher as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -29,10 +30,10 @@ pub(super) fn size(options: &CameraOptions) -> [u32; 2] {
 }
 
 /// Looks at the view and the size of the picture before anything is loaded; gives what the job covers and what this run draws.
-pub(super) fn check_view(options: &CameraOptions) -> Result<(Window, Window), CliError> {
+pub(super) fn check_view(options: &CameraOptions) -> Result<(PixelRect, PixelRect), CliError> {
     options.check_view()?;
     let [width, height] = size(options);
-    let most = ibpr::View::LARGEST_SIDE;
+    let most = ibpr::Renderer::LARGEST_SIDE.min(surfel::Renderer::LARGEST_SIDE);
     if width.max(height) > most {
         let message = format!("--size {width}x{height}: points are drawn with up to {most} pixels a side");
         return Err(CliError::Usage(message));
@@ -112,7 +113,7 @@ impl<'a> Target<'a> {
     }
 
     /// Whether an earlier run wrote the same picture.
-    pub(super) fn is_done(&self, stamp: &Stamp, window: Window, report: &Report<'_>) -> bool {
+    pub(super) fn is_done(&self, stamp: &Stamp, window: PixelRect, report: &Report<'_>) -> bool {
         let done = self.format == OutputFormat::Exr
             && !self.options.overwrite
             && is_there(&self.path, stamp, window, report);
@@ -137,7 +138,7 @@ impl<'a> Target<'a> {
 }
 
 /// What a picture was made from: `points` is the fingerprint of the points, `drawn` all that was chosen.
-pub(super) fn stamp(points: u64, drawn: &str, camera: &CameraOptions, region: Window) -> Stamp {
+pub(super) fn stamp(points: u64, drawn: &str, camera: &CameraOptions, region: PixelRect) -> Stamp {
     let mut hash = XxHash3_64::default();
     hash.write(&points.to_le_bytes());
     hash.write(drawn.as_bytes());

@@ -4,7 +4,7 @@ use super::Report;
 use super::report::check_output;
 use crate::error::CliError;
 use crate::image_io::{
-    ExrFile, Frame, LayerKind, PngOptions, Precision, Stamp, Window, encode_png, write_atomically,
+    ExrFile, Frame, LayerKind, PixelRect, PngOptions, Precision, Stamp, encode_png, write_atomically,
 };
 use crate::input::is_standard;
 use crate::job::RenderJob;
@@ -157,7 +157,7 @@ fn layers(scene: &Scene, requests: &[LayerRequest]) -> Result<Vec<LayerKind>, Cl
 }
 
 /// Refuses a picture that memory cannot hold, before anything is computed.
-fn check_memory(options: &RenderOptions, window: Window, layers: &[LayerKind]) -> Result<(), CliError> {
+fn check_memory(options: &RenderOptions, window: PixelRect, layers: &[LayerKind]) -> Result<(), CliError> {
     let planes: usize = 5 + layers.iter().map(|layer| layer.channels(&[]).len()).sum::<usize>();
     // Once as computed, and once more as it is written.
     let needed = u128::from(window.pixels()) * planes as u128 * 4 * 2;
@@ -198,7 +198,7 @@ fn stamp(scene: &Scene, job: &RenderJob, options: &RenderOptions) -> Stamp {
 }
 
 /// Whether the output is there already, drawn from the same scene with the same options. A damaged one is not, and is told.
-pub(super) fn is_there(path: &Path, stamp: &Stamp, window: Window, report: &Report<'_>) -> bool {
+pub(super) fn is_there(path: &Path, stamp: &Stamp, window: PixelRect, report: &Report<'_>) -> bool {
     let Ok(bytes) = memory::read(path) else { return false };
     match ExrFile::read(&bytes) {
         Ok(file) => file.window == window && file.stamp.as_ref() == Some(stamp),
@@ -221,7 +221,7 @@ pub(super) fn write_png(path: &Path, frame: &Frame, options: &PngOptions) -> Res
         .map_err(|error| CliError::writing(&path.display().to_string(), &error))
 }
 
-fn tell(report: &Report<'_>, options: &RenderOptions, output: &Path, window: Window) {
+fn tell(report: &Report<'_>, options: &RenderOptions, output: &Path, window: PixelRect) {
     let seconds = report.stats.elapsed().as_secs_f64();
     let (width, height) = (window.width(), window.height());
     report.note(&format!("{}: {width}×{height} pixels in {seconds:.2} s", output.display()));

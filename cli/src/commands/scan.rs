@@ -6,7 +6,7 @@ use crate::error::CliError;
 use crate::options::{ScanOptions, layer_list};
 use crate::points::{Drawn, PointLayer, window_of};
 use crate::scan::{LoadOptions, ScanSet};
-use crate::scene::{Camera, Projection};
+use crate::scene::Camera;
 use pointillist_ibpr as ibpr;
 
 /// Layers of a scan's picture.
@@ -68,13 +68,8 @@ fn draw(
 ) -> Result<(), CliError> {
     // All that the renderer can refuse now is a value of an option.
     let usage = |error: ibpr::IbprError| CliError::Usage(error.to_string());
-    let [width, height] = points::size(&options.camera);
-    let projection = match camera.projection {
-        Projection::Perspective { fov_y_rad } => ibpr::Projection::Perspective { fov_y_rad },
-        Projection::Orthographic { height } => ibpr::Projection::Orthographic { height },
-    };
-    let view = ibpr::View::look_at(camera.eye, camera.target, camera.up, projection, width, height)
-        .map_err(usage)?;
+    let size = points::size(&options.camera);
+    let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
     let frame_options = options.frame_options();
     let mut renderer = ibpr::Renderer::new();
     points::repeat(report, options.repeat, || {

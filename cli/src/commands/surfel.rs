@@ -5,8 +5,6 @@ use super::points::{self, Target};
 use crate::error::CliError;
 use crate::options::{SurfelOptions, layer_list};
 use crate::points::{Drawn, PointLayer, PointSet, window_of};
-use crate::scene::{Camera, Projection};
-use glam::dcamera::rh::view::look_at_affine3;
 use pointillist_surfel as surfel;
 
 /// Layers of a cloud's picture.
@@ -36,7 +34,7 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     report.stats.stage("draw", || {
         // All that the renderer can refuse now is a value of an option.
         let usage = |error: surfel::SurfelError| CliError::Usage(error.to_string());
-        let view = view(&camera, size).map_err(usage)?;
+        let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
         let mut renderer = surfel::Renderer::new();
         points::repeat(&report, options.repeat, || {
             renderer.draw(&cloud, &view, &frame_options, &mut frame).map_err(usage)
@@ -48,15 +46,6 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     let seconds = report.stats.elapsed().as_secs_f64();
     report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));
     report.finish()
-}
-
-fn view(camera: &Camera, [width, height]: [u32; 2]) -> Result<surfel::View, surfel::SurfelError> {
-    let projection = match camera.projection {
-        Projection::Perspective { fov_y_rad } => surfel::Projection::Perspective { fov_y_rad },
-        Projection::Orthographic { height } => surfel::Projection::Orthographic { height },
-    };
-    let view_from_world = look_at_affine3(camera.eye, camera.target, camera.up);
-    surfel::View::new(view_from_world, projection, width, height)
 }
 
 fn as_drawn(frame: &surfel::Frame) -> Drawn<'_> {

@@ -1,6 +1,6 @@
 //! EXR files: one part, any channels, data window within the display window.
 
-use super::{Frame, Stamp, Window, exr_check};
+use super::{Frame, PixelRect, Stamp, exr_check};
 use crate::memory::MemoryError;
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{
@@ -29,7 +29,7 @@ pub struct ExrFile {
     /// Width and height of the display window.
     pub size: [u32; 2],
     /// The data window, relative to the display window's corner.
-    pub window: Window,
+    pub window: PixelRect,
     /// Where it comes from, if from us.
     pub stamp: Option<Stamp>,
     /// In the order of their names.
@@ -139,7 +139,7 @@ impl ExrFile {
         let extent = |n: usize| u32::try_from(n).map_err(|_| ExrError::Window);
         let (x0, y0) = (start(offset.x())?, start(offset.y())?);
         let end = |first: u32, length: usize| extent(length)?.checked_add(first).ok_or(ExrError::Window);
-        let window = Window { x0, y0, x1: end(x0, layer.size.x())?, y1: end(y0, layer.size.y())? };
+        let window = PixelRect { x0, y0, x1: end(x0, layer.size.x())?, y1: end(y0, layer.size.y())? };
         let size = [extent(display.size.x())?, extent(display.size.y())?];
         if window.x1 > size[0] || window.y1 > size[1] || window.pixels() == 0 {
             return Err(ExrError::Window);

@@ -1,45 +1,6 @@
 //! A rendered picture, or a part of one, in memory.
 
-/// A rectangle of pixels, from (x0, y0) to before (x1, y1); (0, 0) is the top left of the whole picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Window {
-    /// First column.
-    pub x0: u32,
-    /// First row.
-    pub y0: u32,
-    /// Column after the last.
-    pub x1: u32,
-    /// Row after the last.
-    pub y1: u32,
-}
-
-impl Window {
-    /// The whole of a picture.
-    pub const fn whole(width: u32, height: u32) -> Self {
-        Self { x0: 0, y0: 0, x1: width, y1: height }
-    }
-
-    /// Columns.
-    pub const fn width(&self) -> u32 {
-        self.x1 - self.x0
-    }
-
-    /// Rows.
-    pub const fn height(&self) -> u32 {
-        self.y1 - self.y0
-    }
-
-    /// Pixels.
-    pub const fn pixels(&self) -> u64 {
-        self.width() as u64 * self.height() as u64
-    }
-}
-
-impl std::fmt::Display for Window {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{},{},{},{}", self.x0, self.y0, self.x1, self.y1)
-    }
-}
+use pointillist_view::PixelRect;
 
 /// What can be asked for beside colour and depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -77,7 +38,7 @@ pub struct Frame {
     /// Width and height of the whole picture.
     pub size: [u32; 2],
     /// What of it is here.
-    pub window: Window,
+    pub window: PixelRect,
     /// Linear, premultiplied R G B A, row-major over the window.
     pub color: Vec<[f32; 4]>,
     /// Depth along the view axis; +∞ where nothing is. Empty if it was not computed.

@@ -10,7 +10,8 @@ mod stamp;
 
 pub use atomic::{check_writable, remove_temporaries, write_atomically};
 pub use exr_file::{Channel, ExrError, ExrFile, Precision};
-pub use frame::{Frame, Layer, LayerKind, Window};
+pub use frame::{Frame, Layer, LayerKind};
 pub use picture::{Levels, Picture, decode_image, read_exr_picture, read_levels, read_picture};
 pub use png::{PngOptions, encode_png, encode_rgb_png};
+pub use pointillist_view::PixelRect;
 pub use stamp::Stamp;

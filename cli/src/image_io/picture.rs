@@ -1,6 +1,6 @@
 //! Reading any picture for its colours.
 
-use super::{ExrError, ExrFile, Window};
+use super::{ExrError, ExrFile, PixelRect};
 use crate::input;
 use crate::input_error::InputError;
 use crate::memory;
@@ -18,7 +18,7 @@ pub struct Picture {
     /// Width and height of what is here.
     pub size: [u32; 2],
     /// Where it lies in the whole picture.
-    pub window: Window,
+    pub window: PixelRect,
     /// Linear R G B A, row-major; premultiplied if it came from an EXR or [`read_picture`].
     pub color: Vec<[f32; 4]>,
 }
@@ -55,7 +55,7 @@ pub fn read_picture(path: &Path) -> Result<Picture, InputError> {
     let pixel = |[r, g, b, a]: [f32; 4]| [decode(r) * a, decode(g) * a, decode(b) * a, a];
     let (width, height) = (image.width(), image.height());
     let color = image.into_rgba32f().pixels().map(|p| pixel(p.0)).collect();
-    Ok(Picture { size: [width, height], window: Window::whole(width, height), color })
+    Ok(Picture { size: [width, height], window: PixelRect::of_picture(width, height), color })
 }
 
 /// The 8-bit values of a photograph.

@@ -1,6 +1,6 @@
 //! What an EXR says about where it comes from.
 
-use super::Window;
+use super::PixelRect;
 
 /// The header line by which parts of one picture know one another.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,7 +10,7 @@ pub struct Stamp {
     /// Hash of scene and options.
     pub fingerprint: u64,
     /// What the whole job covers: the picture, or `--crop`.
-    pub region: Window,
+    pub region: PixelRect,
     /// `--tile` as it was given, if it was.
     pub tile: Option<String>,
     /// What is behind the pixels: needed to take it out again for straight alpha.
@@ -45,7 +45,7 @@ impl Stamp {
         Some(Self {
             version: value("version")?.to_owned(),
             fingerprint: u64::from_str_radix(value("fingerprint")?, 16).ok()?,
-            region: Window { x0, y0, x1, y1 },
+            region: PixelRect { x0, y0, x1, y1 },
             tile: value("tile").map(str::to_owned),
             background: background.try_into().ok()?,
         })

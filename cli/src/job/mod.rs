@@ -6,15 +6,15 @@ mod stats;
 pub use progress::{Progress, ProgressMode};
 pub use stats::{Stats, ThreadClock};
 
-use crate::image_io::{LayerKind, Window};
+use crate::image_io::{LayerKind, PixelRect};
 
 /// What of a scene to draw, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderJob {
     /// The part of the picture that the whole job is about: all of it, or `--crop`.
-    pub region: Window,
+    pub region: PixelRect,
     /// The part that this run draws: `region`, or its share of it with `--tile`.
-    pub window: Window,
+    pub window: PixelRect,
     /// What to deliver beside colour and depth, in this order.
     pub layers: Vec<LayerKind>,
 }

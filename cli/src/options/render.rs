@@ -3,7 +3,7 @@
 use super::Common;
 use super::values::{self, Tile, Vector};
 use crate::error::CliError;
-use crate::image_io::Window;
+use crate::image_io::PixelRect;
 use crate::scene::Overrides;
 use crate::scene::description::view_fault;
 use glam::DVec3;
@@ -70,7 +70,7 @@ pub struct CameraOptions {
     pub size: Option<[u32; 2]>,
     /// Draw only these pixels: from X0,Y0 to before X1,Y1
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = values::window)]
-    pub crop: Option<Window>,
+    pub crop: Option<PixelRect>,
     /// Draw only one of N bands of rows, or several, counted from 0
     #[arg(long, value_name = "I/N")]
     pub tile: Option<Tile>,
@@ -82,8 +82,8 @@ impl CameraOptions {
     /// # Errors
     ///
     /// [`CliError::Usage`] if the crop is not inside the picture, or has fewer rows than tiles.
-    pub fn windows(&self, width: u32, height: u32) -> Result<(Window, Window), CliError> {
-        let region = self.crop.unwrap_or(Window::whole(width, height));
+    pub fn windows(&self, width: u32, height: u32) -> Result<(PixelRect, PixelRect), CliError> {
+        let region = self.crop.unwrap_or(PixelRect::of_picture(width, height));
         if region.x1 > width || region.y1 > height {
             let message = format!("--crop {region} is not inside the picture of {width}×{height} pixels");
             return Err(CliError::Usage(message));

@@ -1,7 +1,7 @@
 //! Values of options: vectors, sizes, windows, tiles.
 
 use crate::coordinate::LARGEST;
-use crate::image_io::Window;
+use crate::image_io::PixelRect;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -71,7 +71,7 @@ impl Tile {
     /// The rows of `region` that this tile covers, `None` if there are fewer rows than tiles.
     ///
     /// Tiles 0 to N − 1 cover the region without gap or overlap.
-    pub fn window(self, region: Window) -> Option<Window> {
+    pub fn window(self, region: PixelRect) -> Option<PixelRect> {
         let rows = u64::from(region.height());
         let count = u64::from(self.count);
         if count > rows {
@@ -79,7 +79,7 @@ impl Tile {
         }
         // Fits: at most `rows`, which is a u32.
         let edge = |band: u64| region.y0 + (rows * band / count) as u32;
-        Some(Window { y0: edge(u64::from(self.first)), y1: edge(u64::from(self.last) + 1), ..region })
+        Some(PixelRect { y0: edge(u64::from(self.first)), y1: edge(u64::from(self.last) + 1), ..region })
     }
 }
 
@@ -94,10 +94,10 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
 }
 
 /// `X0,Y0,X1,Y1` with x0 < x1 and y0 < y1.
-pub(super) fn window(text: &str) -> Result<Window, String> {
+pub(super) fn window(text: &str) -> Result<PixelRect, String> {
     let numbers: Vec<u32> = list(text, ',', "four pixel numbers X0,Y0,X1,Y1")?;
     match numbers[..] {
-        [x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Ok(Window { x0, y0, x1, y1 }),
+        [x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Ok(PixelRect { x0, y0, x1, y1 }),
         [_, _, _, _] => Err("the window is empty: X0 < X1 and Y0 < Y1 are needed".to_owned()),
         _ => Err("must be four pixel numbers X0,Y0,X1,Y1".to_owned()),
     }

@@ -2,7 +2,8 @@
 
 use crate::scene::Scene;
 use glam::{DVec2, DVec3, Vec3};
-use pointillist_micropoint::{MicropointError, TexelCorner, TexelSums, TexelWrap, View};
+use pointillist_micropoint::{MicropointError, TexelCorner, TexelSums, TexelWrap};
+use pointillist_view::View;
 use std::f64::consts::{PI, TAU};
 
 /// A constant colour or an equirectangular environment.
@@ -31,7 +32,7 @@ impl<'a> Background<'a> {
         let size = DVec2::new(f64::from(map.width()), f64::from(map.height()));
         let at = |dx: f64, dy: f64| {
             let pixel = DVec2::new(f64::from(x) + dx, f64::from(y) + dy);
-            equirectangular(self.view.ray(pixel).1) * size
+            equirectangular(self.view.ray(pixel).direction) * size
         };
         let middle = at(0.5, 0.5);
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(dx, dy)| {

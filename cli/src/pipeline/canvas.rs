@@ -1,9 +1,8 @@
 //! Where finished tiles are put together.
 
-use crate::image_io::{Frame, Layer, LayerKind, Window};
+use crate::image_io::{Frame, Layer, LayerKind, PixelRect};
 use crate::job::RenderJob;
 use crate::scene::Scene;
-use pointillist_micropoint::PixelRect;
 
 /// What a tile's pixels hold: sums over their micropoints.
 #[derive(Debug, Default)]
@@ -41,7 +40,7 @@ impl Canvas {
 
     /// Copies a tile into its place.
     pub(crate) fn put(&mut self, rect: PixelRect, pixels: &Pixels) {
-        let Window { x0, y0, .. } = self.frame.window;
+        let PixelRect { x0, y0, .. } = self.frame.window;
         let (width, stride) = (rect.width() as usize, self.frame.window.width() as usize);
         for row in 0..rect.height() as usize {
             let from = row * width..(row + 1) * width;

@@ -4,11 +4,12 @@ use super::PipelineError;
 use super::ambient::Ambient;
 use super::prepared::Prepared;
 use super::shading::{Economy, Style};
-use crate::image_io::{Frame, LayerKind, Window};
+use crate::image_io::{Frame, LayerKind};
 use crate::job::{Progress, ProgressMode, RenderJob, Stats};
 use glam::{DVec3, Vec3};
-use pointillist_micropoint::{Bounds, Projection, View};
+use pointillist_micropoint::Bounds;
 use pointillist_shprobe::sh::{CubePoint, cube_direction, texel_solid_angle};
+use pointillist_view::{Projection, View};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How a probe looks around.
@@ -95,7 +96,7 @@ impl Prepared<'_> {
         let projection = Projection::Perspective { fov_y_rad: FRAC_PI_2 };
         let target = position + forward * position.abs().max_element().max(1.0);
         let view = View::look_at(position, target, up, projection, resolution, resolution)?;
-        let window = Window { x0: 0, y0: 0, x1: resolution, y1: resolution };
+        let window = view.picture();
         let job = RenderJob { region: window, window, layers: vec![LayerKind::Back, LayerKind::Direct] };
         self.draw(view, style, &job, &Progress::new(ProgressMode::Off), stats)
     }

@@ -3,10 +3,9 @@
 use super::PipelineError;
 use super::prepared::occlusion;
 use super::surfaces::Surfaces;
-use crate::scene::{Resolution, Scene};
+use crate::scene::Scene;
 use pointillist_micropoint::{Geometry, Lens};
 use pointillist_shade::{Light, Source};
-use pointillist_shadow as shadow;
 use pointillist_shadow::{Emitter, ShadowLight, ShadowOptions};
 
 /// One point or direction from which light comes: a light, or a sample of an area light.
@@ -27,11 +26,8 @@ pub(super) fn light_samples<'a>(
 ) -> Result<Vec<LightSample<'a>>, PipelineError> {
     let mut samples = Vec::new();
     for (light, source) in scene.lights.iter().enumerate() {
-        let resolution = match source.resolution {
-            Resolution::Auto => shadow::Resolution::Auto,
-            Resolution::Cells(n) => shadow::Resolution::Cells(n),
-        };
-        let options = ShadowOptions::default().with_occlusion(occlusion(scene)).with_resolution(resolution);
+        let options =
+            ShadowOptions::default().with_occlusion(occlusion(scene)).with_resolution(source.resolution);
         for sample in 0..source.light.samples() {
             let shadow = if source.shadow {
                 let emitter = emitter(&source.light, sample);

@@ -27,18 +27,21 @@ pub use prepared::Prepared;
 
 use crate::image_io::Frame;
 use crate::job::{Progress, RenderJob, Stats};
-use crate::scene::{Projection, Scene};
-use pointillist_micropoint as micropoint;
-use pointillist_micropoint::{MicropointError, View};
+use crate::scene::Scene;
+use pointillist_micropoint::MicropointError;
 use pointillist_shadow::ShadowError;
 use pointillist_shprobe::ProbeError;
+use pointillist_view::ViewError;
 
 /// What can go wrong while a valid scene is drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum PipelineError {
-    /// The geometry or the view was refused.
+    /// The geometry was refused.
     #[error(transparent)]
     Micropoint(#[from] MicropointError),
+    /// The camera or the size of the picture was refused.
+    #[error(transparent)]
+    View(#[from] ViewError),
     /// What probes saw was refused.
     #[error(transparent)]
     Probe(#[from] ProbeError),
@@ -69,20 +72,11 @@ pub fn render(
     stats: &Stats,
 ) -> Result<Frame, PipelineError> {
     let prepared = Prepared::new(scene, stats)?;
-    progress.begin("render", prepared::pixel_rect(job.window).tiles(TILE_SIZE).count() as u64);
+    progress.begin("render", job.window.tiles(TILE_SIZE).count() as u64);
     let start = std::time::Instant::now();
-    let frame = prepared.draw(view(scene)?, &prepared.plain_style(), job, progress, stats)?;
+    let view = scene.camera.view([scene.image.width, scene.image.height])?;
+    let frame = prepared.draw(view, &prepared.plain_style(), job, progress, stats)?;
     stats.add_wall("tiles", start.elapsed());
     progress.finish();
     Ok(frame)
-}
-
-/// The scene's camera.
-fn view(scene: &Scene) -> Result<View, MicropointError> {
-    let projection = match scene.camera.projection {
-        Projection::Perspective { fov_y_rad } => micropoint::Projection::Perspective { fov_y_rad },
-        Projection::Orthographic { height } => micropoint::Projection::Orthographic { height },
-    };
-    let (camera, image) = (&scene.camera, &scene.image);
-    View::look_at(camera.eye, camera.target, camera.up, projection, image.width, image.height)
 }

@@ -8,12 +8,12 @@ use super::reflections::Reflections;
 use super::shading::{Shader, ShaderScratch, Style};
 use super::surfaces::Surfaces;
 use super::{PipelineError, TILE_SIZE};
-use crate::image_io::{Frame, Window};
+use crate::image_io::Frame;
 use crate::job::{Progress, RenderJob, Stats, ThreadClock};
 use crate::scene::{AmbientLight, Occlusion, Scene};
-use pointillist_micropoint as micropoint;
-use pointillist_micropoint::{Geometry, MicropointOptions, PixelRect, Renderer, TexelSums, TileCounts, View};
+use pointillist_micropoint::{Geometry, MicropointOptions, Renderer, TexelSums, TileCounts};
 use pointillist_shadow::ShadowCounts;
+use pointillist_view::View;
 use std::sync::{Arc, Mutex};
 
 /// What all views of a scene share: textures summed up, geometry sorted into clusters.
@@ -105,7 +105,7 @@ impl<'a> Prepared<'a> {
         let shader = Shader::new(self, &lights, &view, style);
         let canvas = Mutex::new(Canvas::new(self.scene, [view.width(), view.height()], job));
         let totals = Mutex::new((TileCounts::default(), ShadowCounts::default()));
-        renderer.for_each_tile(pixel_rect(job.window), TILE_SIZE, |scratch: &mut Scratch, tile| {
+        renderer.for_each_tile(job.window, TILE_SIZE, |scratch: &mut Scratch, tile| {
             scratch.clock.book(stats, "visibility");
             let pixels =
                 shader.shade(tile, &background, &job.layers, &mut scratch.shader, &mut scratch.clock, stats);
@@ -143,21 +143,14 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-pub(super) fn pixel_rect(w: Window) -> PixelRect {
-    PixelRect { x0: w.x0, y0: w.y0, x1: w.x1, y1: w.y1 }
-}
-
 fn options(scene: &Scene) -> MicropointOptions {
     let options = MicropointOptions::DEFAULT;
     let cells = scene.render.cells_per_pixel.unwrap_or(options.cells_per_pixel);
     options.with_cells_per_pixel(cells).with_occlusion(occlusion(scene))
 }
 
-pub(super) fn occlusion(scene: &Scene) -> micropoint::Occlusion {
-    match scene.render.occlusion {
-        Some(Occlusion::Paper) => micropoint::Occlusion::Paper,
-        Some(Occlusion::Correlated) | None => micropoint::Occlusion::Correlated,
-    }
+pub(super) fn occlusion(scene: &Scene) -> Occlusion {
+    scene.render.occlusion.unwrap_or_default()
 }
 
 fn record(stats: &Stats, t: &TileCounts, s: &ShadowCounts) {

@@ -1,6 +1,6 @@
 //! A drawn frame as the layers of a picture file.
 
-use crate::image_io::{Frame, Layer, Window};
+use crate::image_io::{Frame, Layer, PixelRect};
 use crate::scene::{Camera, Projection};
 
 /// What can be asked for beside colour and depth.
@@ -32,7 +32,7 @@ pub struct Drawn<'a> {
 }
 
 /// The part of a drawn frame in `window`, with the layers that were asked for.
-pub fn window_of(frame: &Drawn<'_>, window: Window, layers: &[PointLayer], camera: &Camera) -> Frame {
+pub fn window_of(frame: &Drawn<'_>, window: PixelRect, layers: &[PointLayer], camera: &Camera) -> Frame {
     let rows = (window.y0..window.y1).map(|y| {
         let start = y as usize * frame.width;
         start + window.x0 as usize..start + window.x1 as usize

@@ -22,6 +22,10 @@ pub mod text;
 mod texture_lookup;
 mod textures;
 
+pub use pointillist_micropoint::Occlusion;
+pub use pointillist_shadow::Resolution;
+pub use pointillist_view::Projection;
+
 pub use builtin::builtin;
 pub use description::{Description, parse_str};
 pub use details::{Bump, BumpHeight, Channel, Details, Map, Surroundings, Transmission};
@@ -37,6 +41,7 @@ pub use texture_lookup::{linear_from_srgb, srgb_from_linear};
 use crate::input_error::InputError;
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade as shade;
+use pointillist_view::{View, ViewError};
 use std::path::PathBuf;
 
 /// No normal, no texture coordinate: the value of an index that refers to nothing.
@@ -132,21 +137,14 @@ impl Camera {
         let right = self.up.normalize().cross(backward).normalize();
         [right, backward.cross(right), backward]
     }
-}
 
-/// The kind of view.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Projection {
-    /// A pinhole.
-    Perspective {
-        /// Vertical field of view, in (0, π).
-        fov_y_rad: f64,
-    },
-    /// Parallel.
-    Orthographic {
-        /// Height of the view in world units.
-        height: f64,
-    },
+    /// The camera with a picture of this width and height in pixels.
+    ///
+    /// # Errors
+    /// [`ViewError`] if a field is not as it says, or the picture is empty or larger than [`View::LARGEST_SIDE`].
+    pub fn view(&self, [width, height]: [u32; 2]) -> Result<View, ViewError> {
+        View::look_at(self.eye, self.target, self.up, self.projection, width, height)
+    }
 }
 
 /// The picture's size and what is behind everything.
@@ -171,15 +169,6 @@ pub struct RenderSettings {
     pub occlusion: Option<Occlusion>,
     /// What is interpolated across a triangle.
     pub shading: shade::Interpolation,
-}
-
-/// How pieces in a cell hide one another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Occlusion {
-    /// By where in the cell they are.
-    Correlated,
-    /// By opacity alone, as the paper has it.
-    Paper,
 }
 
 /// Triangles of all objects, concatenated and transformed into the world.
@@ -292,14 +281,4 @@ pub struct LightSource {
     pub shadow: bool,
     /// Cells of its shadow grid.
     pub resolution: Resolution,
-}
-
-/// Cells of a light's shadow grid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Resolution {
-    /// Chosen from what receives the light.
-    #[default]
-    Auto,
-    /// This many per side.
-    Cells(u32),
 }

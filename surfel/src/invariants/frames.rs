@@ -2,7 +2,6 @@
 
 use super::{OwnedPoints, check, cloud};
 use crate::{Cloud, Frame, Options, Projection, Renderer, View};
-use glam::dcamera::rh::view::look_at_affine3;
 use glam::{DVec3, Vec3};
 
 /// Rounding allowed to opacities, to lengths of unit normals, and to a colour that all points share.
@@ -11,7 +10,7 @@ pub const TOLERANCE: f32 = 1e-4;
 /// A view from `eye` to `target`; `None` if there is none, or its up is along the way.
 #[must_use]
 pub fn look_at(eye: DVec3, target: DVec3, projection: Projection, width: u32, height: u32) -> Option<View> {
-    View::new(look_at_affine3(eye, target, DVec3::Y), projection, width, height).ok()
+    View::look_at(eye, target, DVec3::Y, projection, width, height).ok()
 }
 
 /// A frame of its own by a renderer of its own; `None` if anything is refused.

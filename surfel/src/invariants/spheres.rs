@@ -2,7 +2,7 @@
 
 use super::{check, drawn};
 use crate::{Cloud, Frame, Options, View};
-use glam::DVec3;
+use glam::{DVec3, dvec2};
 
 /// Sum of all opacities, pixels.
 #[must_use]
@@ -13,15 +13,9 @@ pub fn covered_px(frame: &Frame) -> f64 {
 /// The ray through the centre of pixel `i`: where it starts, and its unit direction.
 #[must_use]
 pub fn ray(view: &View, i: usize) -> (DVec3, DVec3) {
-    let (width, height) = (view.width as usize, view.height as usize);
-    let (x, y) = ((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
-    let (u, v) = (x - 0.5 * width as f64, y - 0.5 * height as f64);
-    let across = (view.right * u + view.down * v) / view.focal_px();
-    if view.is_perspective() {
-        (view.eye, (view.forward + across).normalize())
-    } else {
-        (view.eye + across, view.forward)
-    }
+    let width = view.width() as usize;
+    let ray = view.ray(dvec2((i % width) as f64, (i / width) as f64) + 0.5);
+    (ray.origin, ray.direction.normalize())
 }
 
 /// Depth along the view axis, and place, at which pixel `i` shows a sphere that is before the eye; `None` beside the
@@ -33,7 +27,7 @@ pub fn sphere_at(view: &View, i: usize, centre: DVec3, radius: f64, margin_px: f
     let middle = offset.dot(along);
     let away2 = (offset - along * middle).length_squared();
     // A pixel is nowhere more than 1/focal wide, in radians.
-    let inside = if view.is_perspective() {
+    let inside = if view.projection().is_perspective() {
         let distance = offset.length();
         let angle = (away2.sqrt()).atan2(middle);
         distance > radius && angle < (radius / distance).asin() - margin_px / view.focal_px()
@@ -41,7 +35,7 @@ pub fn sphere_at(view: &View, i: usize, centre: DVec3, radius: f64, margin_px: f
         away2.sqrt() < radius - margin_px / view.focal_px()
     };
     let place = from + along * (middle - (radius * radius - away2).max(0.0).sqrt());
-    (inside && middle > 0.0).then(|| ((place - view.eye).dot(view.forward), place))
+    (inside && middle > 0.0).then(|| ((place - view.eye()).dot(view.forward()), place))
 }
 
 /// All pixels inside a sphere's outline, by more than `margin_px`, are opaque.
