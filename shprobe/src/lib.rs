@@ -57,13 +57,13 @@ mod hull;
 pub mod invariants;
 mod locate;
 mod octahedron;
-mod parallel;
 mod partition;
 pub mod place;
 mod scale;
-pub mod sh;
 mod sight;
 mod simplex;
+
+use pointillist_parallel as parallel;
 
 pub use blend::Blend;
 pub use delaunay::Delaunay;
@@ -72,3 +72,5 @@ pub use error::ProbeError;
 pub use field::{Field, LitObject};
 pub use locate::{Hint, Locator};
 pub use partition::{OUTSIDE, Partition, Tetrahedra, Triangles};
+/// The functions that probes hold.
+pub use pointillist_sh as sh;

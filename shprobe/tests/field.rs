@@ -135,7 +135,7 @@ fn bad_input_is_refused_with_what_is_wrong() {
     let mixed = [Sh::constant(DVec3::ONE, 1).unwrap(), Sh::constant(DVec3::ONE, 2).unwrap()];
     assert_eq!(
         Field::new(&[DVec3::ZERO, DVec3::X], &mixed).err(),
-        Some(ProbeError::MixedOrders { left: 1, right: 2 })
+        Some(ProbeError::MixedOrders { index: 1, order: 2, expected: 1 })
     );
     let field = Field::new(&[DVec3::ZERO, DVec3::X], &constant(&[1.0, 1.0])).unwrap();
     assert_eq!(

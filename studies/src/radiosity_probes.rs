@@ -8,7 +8,7 @@ use pointillist_cli::job::{Progress, ProgressMode, Stats};
 use pointillist_cli::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, look_all};
 use pointillist_cli::radiosity::{BakedFile, Lamps, Lightmap, scene_surfaces, with_lamps};
 use pointillist_radiosity::{Scene as Patches, SceneOptions, Solution, SolveOptions, Transport};
-use pointillist_shprobe::sh::{Irradiance, Sh};
+use pointillist_sh::{Irradiance, Sh};
 use pointillist_shprobe::{Field, Hint, place};
 
 use crate::probe_rooms::{BOX, closed_box};

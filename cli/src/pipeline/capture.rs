@@ -8,7 +8,7 @@ use crate::image_io::{Frame, LayerKind, Window};
 use crate::job::{Progress, ProgressMode, RenderJob, Stats};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Bounds, Projection, View};
-use pointillist_shprobe::sh::{CubePoint, cube_direction, texel_solid_angle};
+use pointillist_sh::{CubePoint, cube_direction, texel_solid_angle};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How a probe looks around.

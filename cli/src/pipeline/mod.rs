@@ -30,6 +30,7 @@ use crate::job::{Progress, RenderJob, Stats};
 use crate::scene::{Projection, Scene};
 use pointillist_micropoint as micropoint;
 use pointillist_micropoint::{MicropointError, View};
+use pointillist_sh::ShError;
 use pointillist_shadow::ShadowError;
 use pointillist_shprobe::ProbeError;
 
@@ -42,6 +43,9 @@ pub enum PipelineError {
     /// What probes saw was refused.
     #[error(transparent)]
     Probe(#[from] ProbeError),
+    /// An image of a probe cannot be projected.
+    #[error(transparent)]
+    Harmonics(#[from] ShError),
     /// A light was refused.
     #[error("light `{name}`: {source}")]
     Shadow {

@@ -3,7 +3,6 @@
 //! Each takes any input at all. What is refused satisfies every fact.
 
 pub mod delaunay;
-pub mod sh;
 
 fn check(holds: bool, message: impl FnOnce() -> String) -> Result<(), String> {
     if holds { Ok(()) } else { Err(message()) }

@@ -1,6 +1,6 @@
 //! How well some candidates light all of them.
 
-use crate::field::help;
+use crate::field::{common_order, help};
 use crate::sh::{Lobe, Sh};
 use crate::sight::{Near, Shares, by_sight};
 use crate::{Blend, Delaunay, DistanceMap, Hint, Locator, Partition, ProbeError};
@@ -59,10 +59,7 @@ impl<'a> Bench<'a> {
         if let Some(index) = candidates.positions.iter().position(|p| !p.is_finite()) {
             return Err(ProbeError::PositionNotFinite { index });
         }
-        let order = candidates.radiance[0].order();
-        if let Some(other) = candidates.radiance.iter().find(|sh| sh.order() != order) {
-            return Err(ProbeError::MixedOrders { left: order, right: other.order() });
-        }
+        common_order(candidates.radiance)?;
         let norm = (4.0 * std::f64::consts::PI).sqrt();
         let normed = |sh: &Sh| sh.convolved(&Lobe::COSINE).scaled(1.0 / norm).into_coefficients();
         let irradiance: Vec<Vec<DVec3>> = candidates.radiance.iter().map(normed).collect();
