@@ -1,5 +1,6 @@
 //! What can be wrong with probes and what they hold.
 
+use crate::delaunay::DelaunayError;
 use crate::sh::ShError;
 
 /// What can be wrong with the input of this crate.
@@ -23,25 +24,11 @@ pub enum ProbeError {
         /// How many there may be.
         limit: usize,
     },
-    /// A cell of a partition whose corners are no points given, or whose neighbours are no neighbours.
-    #[error("cell {cell} of the partition {problem}")]
-    BadCell {
-        /// Which, from 0; of a line, the place in its list; of a point, 0.
-        cell: usize,
-        /// What is wrong.
-        problem: &'static str,
-    },
     /// A position asked for has a coordinate that is NaN or infinite.
     #[error("query {index} is not finite")]
     QueryNotFinite {
         /// Which, from 0.
         index: usize,
-    },
-    /// The Delaunay tetrahedra of these points are more than 32-bit links can tell apart.
-    #[error("more than {limit} cells are needed")]
-    TooManyCells {
-        /// How many there may be.
-        limit: usize,
     },
     /// There is no probe of this index, or no longer.
     #[error("there is no probe {index}")]
@@ -76,4 +63,21 @@ pub enum ProbeError {
     /// What a probe holds, or an image of it, is wrong.
     #[error(transparent)]
     Harmonics(#[from] ShError),
+    /// Space cannot be divided between the probes.
+    #[error("cells between probes: {0}")]
+    Cells(DelaunayError),
+}
+
+impl From<DelaunayError> for ProbeError {
+    /// Points are probes here: what is wrong with them is said of the probes.
+    fn from(error: DelaunayError) -> Self {
+        match error {
+            DelaunayError::NoPoints => Self::NoProbes,
+            DelaunayError::PointNotFinite { index } => Self::PositionNotFinite { index },
+            DelaunayError::TooManyPoints { count, limit } => Self::TooManyProbes { count, limit },
+            DelaunayError::NoSuchPoint { index } => Self::NoSuchProbe { index },
+            DelaunayError::QueryNotFinite { index } => Self::QueryNotFinite { index },
+            other => Self::Cells(other),
+        }
+    }
 }

@@ -1,8 +1,9 @@
 //! Probes that light what lies between them.
 
+use crate::delaunay::{Delaunay, Hint, Locator, Partition};
 use crate::sh::{Irradiance, Lobe, MAX_COUNT, Sh, basis, coefficient_count};
 use crate::sight::{Near, Shares, by_sight};
-use crate::{Delaunay, DistanceMap, Hint, Locator, Partition, ProbeError, parallel};
+use crate::{DistanceMap, ProbeError, parallel};
 use glam::{DVec3, Vec3};
 
 /// Probes with what they hold, ready to light positions between them.

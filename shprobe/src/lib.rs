@@ -47,30 +47,20 @@
 //! The parts name theirs.
 #![forbid(unsafe_code)]
 
-mod blend;
-mod delaunay;
 mod distance;
 mod error;
 mod field;
-mod hull;
-#[cfg(feature = "invariants")]
-pub mod invariants;
-mod locate;
 mod octahedron;
-mod partition;
 pub mod place;
-mod scale;
 mod sight;
-mod simplex;
 
 use pointillist_parallel as parallel;
 
-pub use blend::Blend;
-pub use delaunay::Delaunay;
 pub use distance::{DEFAULT_DISTANCE_SIZE, DistanceMap};
 pub use error::ProbeError;
 pub use field::{Field, LitObject};
-pub use locate::{Hint, Locator};
-pub use partition::{OUTSIDE, Partition, Tetrahedra, Triangles};
+/// The cells between probes.
+pub use pointillist_delaunay as delaunay;
+pub use pointillist_delaunay::Hint;
 /// The functions that probes hold.
 pub use pointillist_sh as sh;

@@ -1,7 +1,8 @@
 //! Takes out probes that are missed least.
 
 use super::trial::{Bench, Outcome};
-use crate::{Partition, ProbeError, parallel};
+use crate::delaunay::Partition;
+use crate::{ProbeError, parallel};
 
 /// What is left, and how the error grew.
 pub(super) struct Thinned {

@@ -1,9 +1,10 @@
 //! How well some candidates light all of them.
 
+use crate::delaunay::{Blend, Delaunay, Hint, Locator, Partition};
 use crate::field::{common_order, help};
 use crate::sh::{Lobe, Sh};
 use crate::sight::{Near, Shares, by_sight};
-use crate::{Blend, Delaunay, DistanceMap, Hint, Locator, Partition, ProbeError};
+use crate::{DistanceMap, ProbeError};
 use glam::DVec3;
 
 /// Positions at which probes may be, and the light there.
@@ -91,7 +92,7 @@ impl<'a> Bench<'a> {
             let part = self.squared_error(i, chosen, &plain, &near);
             outcome.error2 += part;
             outcome.parts.push(part);
-            outcome.cells.push(plain.probes);
+            outcome.cells.push(plain.points);
         }
         Ok(outcome)
     }

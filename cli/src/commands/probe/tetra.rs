@@ -9,7 +9,8 @@ use crate::job::ThreadClock;
 use crate::options::TetraOptions;
 use crate::probe_io::{format_cells, read_points};
 use glam::{DVec3, dvec3};
-use pointillist_shprobe::{Delaunay, Hint, Locator, Partition, ProbeError, Tetrahedra};
+use pointillist_delaunay::{Delaunay, DelaunayError, Hint, Locator, Partition, Tetrahedra};
+
 use std::f64::consts::TAU;
 
 pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
@@ -18,7 +19,7 @@ pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
         .writing(options.result())?;
     let points = report.stats.stage("load", || read_points(&options.points))?;
     let name = name_of(&options.points);
-    let refused = |error: ProbeError| {
+    let refused = |error: DelaunayError| {
         let error = InputError::of_file(&name, error.to_string());
         CliError::Input(error.with_help("points are finite numbers, `x y z` a line"))
     };
@@ -45,7 +46,7 @@ pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
 }
 
 /// The cells between points; none if there are no points, which is no fault of the caller's.
-fn partition(points: &[DVec3]) -> Result<Partition, ProbeError> {
+fn partition(points: &[DVec3]) -> Result<Partition, DelaunayError> {
     if points.is_empty() {
         return Ok(Partition::Tetrahedra(Tetrahedra { corners: vec![], neighbours: vec![] }));
     }

@@ -4,7 +4,7 @@ use super::cavity::Cavity;
 use super::cell::{Cell, CellId, Link, MAX_CELLS, Vertex};
 use super::mesh::Mesh;
 use super::sites::Sites;
-use crate::ProbeError;
+use crate::DelaunayError;
 
 /// What became of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,14 +22,14 @@ impl Mesh {
         sites: &Sites,
         cavity: &mut Cavity,
         v: Vertex,
-    ) -> Result<Inserted, ProbeError> {
+    ) -> Result<Inserted, DelaunayError> {
         let start = self.locate(sites, v);
         if let Some(same) = self.corner_at(sites, start, v) {
             return Ok(Inserted::Same(same));
         }
         self.dig(sites, cavity, start, v);
         if self.cells.len() + cavity.rim().len() > MAX_CELLS {
-            return Err(ProbeError::TooManyCells { limit: MAX_CELLS });
+            return Err(DelaunayError::TooManyCells { limit: MAX_CELLS });
         }
         self.fill(cavity, v);
         Ok(Inserted::New)

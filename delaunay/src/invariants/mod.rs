@@ -1,8 +1,8 @@
-//! Facts that hold for every set of probes and every image, as functions: property tests and fuzz targets call the same ones.
+//! Facts that hold for every set of points, as functions: property tests and fuzz targets call the same ones.
 //!
 //! Each takes any input at all. What is refused satisfies every fact.
 
-pub mod delaunay;
+pub mod triangulation;
 
 fn check(holds: bool, message: impl FnOnce() -> String) -> Result<(), String> {
     if holds { Ok(()) } else { Err(message()) }

@@ -1,8 +1,11 @@
-//! The facts of `invariants::delaunay`, and closed forms.
+//! The facts of `invariants::triangulation`, and closed forms.
 
+mod generators;
+
+use generators::{point, points, scaled};
 use glam::{DMat3, DVec3, dvec3};
-use pointillist_shprobe::invariants::delaunay as facts;
-use pointillist_shprobe::{Delaunay, OUTSIDE, Partition, ProbeError, Tetrahedra};
+use pointillist_delaunay::invariants::triangulation as facts;
+use pointillist_delaunay::{Delaunay, DelaunayError, OUTSIDE, Partition, Tetrahedra};
 use proptest::prelude::*;
 
 macro_rules! holds {
@@ -28,68 +31,6 @@ fn tetrahedra(points: &[DVec3]) -> Tetrahedra {
         Partition::Tetrahedra(t) => t,
         other => panic!("not tetrahedra: {other:?}"),
     }
-}
-
-/// Any coordinate, with trouble: on a grid, repeated, tiny, huge, far from 0, an ulp apart.
-fn coordinate() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        4 => -1.0..1.0,
-        4 => (-3..=3).prop_map(|i| 0.5 * f64::from(i)),
-        1 => (-3..=3).prop_map(|i| 0.1 * f64::from(i)),
-        1 => (0..4u32).prop_map(|i| 1.0 + f64::from(i) * f64::EPSILON),
-        1 => Just(-0.0),
-    ]
-}
-
-fn point() -> impl Strategy<Value = DVec3> {
-    (coordinate(), coordinate(), coordinate()).prop_map(|(x, y, z)| dvec3(x, y, z))
-}
-
-fn lattice_point(side: i32) -> impl Strategy<Value = DVec3> {
-    [0..side, 0..side, 0..side].prop_map(|c| DVec3::from_array(c.map(f64::from)))
-}
-
-/// A point of a line or plane, up to rounding: nearly degenerate.
-fn flat_point() -> impl Strategy<Value = DVec3> {
-    (-4..=4, -4..=4)
-        .prop_map(|(u, v)| dvec3(0.1, 0.2, 0.3) * f64::from(u) + dvec3(0.3, -0.1, 0.7) * f64::from(v))
-}
-
-/// A point near a unit sphere.
-fn sphere_point() -> impl Strategy<Value = DVec3> {
-    (-1.0..1.0f64, 0.0..6.3f64).prop_map(|(z, a)| {
-        let r = (1.0 - z * z).sqrt();
-        dvec3(r * a.cos(), r * a.sin(), z)
-    })
-}
-
-/// Exponents of two that a whole set is multiplied by.
-fn scale() -> impl Strategy<Value = i32> {
-    prop_oneof![4 => Just(0), 1 => -900..900]
-}
-
-fn scaled(points: Vec<DVec3>, exponent: i32) -> Vec<DVec3> {
-    points.into_iter().map(|p| p * 2f64.powi(exponent)).collect()
-}
-
-fn points(max: usize) -> impl Strategy<Value = Vec<DVec3>> {
-    let of = prop_oneof![
-        prop::collection::vec(point(), 1..max),
-        prop::collection::vec(lattice_point(3), 1..max),
-        prop::collection::vec(lattice_point(1 << 20), 1..max),
-        prop::collection::vec(flat_point(), 1..max),
-        prop::collection::vec(sphere_point(), 1..max),
-        // Huge beside tiny.
-        prop::collection::vec((point(), -300..300).prop_map(|(p, e)| p * 10f64.powi(e)), 1..max.min(24)),
-        // A few places off a plane, each point several times.
-        prop::collection::vec(
-            prop_oneof![8 => lattice_point(4).prop_map(|p| p * dvec3(1.0, 1.0, 0.0)), 1 => point()],
-            1..max
-        ),
-    ];
-    (of, scale())
-        .prop_map(|(points, e)| scaled(points, e))
-        .prop_filter("finite", |p| p.iter().all(|p| p.is_finite()))
 }
 
 proptest! {
@@ -131,14 +72,14 @@ proptest! {
 
 #[test]
 fn bad_input_is_refused() {
-    assert_eq!(Delaunay::new(&[]).unwrap_err(), ProbeError::NoProbes);
-    let not_finite = |index| ProbeError::PositionNotFinite { index };
+    assert_eq!(Delaunay::new(&[]).unwrap_err(), DelaunayError::NoPoints);
+    let not_finite = |index| DelaunayError::PointNotFinite { index };
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         assert_eq!(Delaunay::new(&[DVec3::ZERO, dvec3(0.0, bad, 0.0)]).unwrap_err(), not_finite(1));
         let mut delaunay = Delaunay::new(&[DVec3::ZERO]).unwrap();
         assert_eq!(delaunay.insert(dvec3(bad, 0.0, 0.0)), Err(not_finite(1)));
-        assert_eq!(delaunay.remove(1), Err(ProbeError::NoSuchProbe { index: 1 }));
-        assert_eq!(delaunay.remove(0), Err(ProbeError::NoProbes));
+        assert_eq!(delaunay.remove(1), Err(DelaunayError::NoSuchPoint { index: 1 }));
+        assert_eq!(delaunay.remove(0), Err(DelaunayError::NoPoints));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::cell::{Cell, CellId, Link, MAX_CELLS, Vertex};
 use super::mesh::Mesh;
-use crate::ProbeError;
+use crate::DelaunayError;
 use std::collections::{HashMap, HashSet};
 
 /// Corners in a fixed order.
@@ -53,7 +53,7 @@ impl Seam {
     }
 
     /// Puts in those cells of a patch that have corners on both sides, 1 and 2, or were there before.
-    pub(super) fn sew(&self, mesh: &mut Mesh, patch: &Mesh, sides: &[u8]) -> Result<(), ProbeError> {
+    pub(super) fn sew(&self, mesh: &mut Mesh, patch: &Mesh, sides: &[u8]) -> Result<(), DelaunayError> {
         let belongs = |cell: &Cell| {
             let sides = cell.corners.iter().fold(0, |all, v| all | sides[v.slot()]);
             sides == 3 || self.cut.contains(&cell_key(cell))
@@ -63,7 +63,7 @@ impl Seam {
             becomes[id.slot()] = Some(mesh.allocate());
         }
         if mesh.cells.len() > MAX_CELLS {
-            return Err(ProbeError::TooManyCells { limit: MAX_CELLS });
+            return Err(DelaunayError::TooManyCells { limit: MAX_CELLS });
         }
         let mut sewn = 0;
         for (id, cell) in patch.live() {

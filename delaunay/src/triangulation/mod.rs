@@ -1,42 +1,19 @@
-//! Delaunay tetrahedralisation: exact, incremental, of any finite points.
+//! The triangulation itself: exact, incremental, of any finite points. References are those of the crate's documentation.
 //!
-//! Points are inserted one by one (\[1\], \[2\]) in random rounds, each along a Hilbert curve (\[4\]): a point is found by a short walk from
-//! the one before, the cells whose spheres hold it are removed, and it is joined to the faces of the hole. Cells beyond the hull, *ghosts* that
-//! share a vertex at infinity, make the outside like the inside; there is no enclosing tetrahedron. A point is taken out by
-//! triangulating the vertices around it alone (\[3\]).
+//! 1. Coordinates are multiplied by a power of two and, where all are multiples of one, counted from the least (`scale.rs`): without
+//!    rounding, unless their magnitudes span more than `f64` holds.
+//! 2. Points are ordered in random rounds, each along a Hilbert curve (\[4\], `hilbert.rs`), and inserted one by one (\[1\], \[2\]).
+//! 3. A point is found by a walk from the one before (`locate.rs`). The cells whose spheres hold it are removed, and it is joined to the
+//!    faces of the hole (`insert.rs`, `cavity.rs`). Cells beyond the hull, *ghosts* that share a vertex at infinity (`cell.rs`), make the
+//!    outside like the inside; there is no enclosing tetrahedron.
+//! 4. Whether a point lies on a side of a plane or in a sphere is decided in `sites.rs`: by a determinant in `f64` where it exceeds its
+//!    error, and exactly elsewhere (`exact.rs`, `limbs.rs`, `wide.rs`). Ties are broken by a symbolic perturbation (\[3\]).
+//! 5. With several threads, parts divided by planes are built at once and joined (\[6\], `divide.rs`, `border.rs`, `seam.rs`).
+//! 6. A point is taken out by triangulating the vertices around it alone (\[3\], `remove.rs`).
+//! 7. Cells are reported in an order that depends on the points alone (`canonical.rs`).
 //!
-//! With several threads, parts divided by planes are built at once and joined (\[6\]).
-//!
-//! # Accuracy
-//! Every decision is exact, for all finite coordinates. What is computed with are the coordinates times a power of two, counted
-//! from the least where that does not round. A determinant in `f64` decides where it exceeds its error; where not, one of
-//!
-//! * nothing, where differences are integers up to 659 after scaling, as those of most grids: `f64` does not round there;
-//! * `i128`, for integers up to about 2²⁴;
-//! * differences cut to integers of 61 bits, where that is exact or what is cut off cannot change the sign; and Shewchuk's
-//!   expansions (\[5\]) for the rest, while the lowest bit of all coordinates is worth at least 2⁻²⁰⁰ of the largest coordinate;
-//! * integers of any size, for all else: 1e-300 beside 1, or 1e300 beside 1e-300.
-//!
-//! Points on a common sphere are divided by a symbolic perturbation (\[3\]): the later of two points in lexicographic order counts as
-//! lifted infinitely more. So there is one result for every set of points, it has no flat cell, and order, threads and history do not
-//! matter: cells are reported in an order that depends on the points alone (along a Hilbert curve), named by the first of those that coincide.
-//!
-//! Points in a plane get the exact Delaunay triangles of that plane, also of a tilted one: as bases of the tetrahedra with one
-//! vertex more off the plane. Points on a line are ordered along it.
-//!
-//! # Cost
-//! About linear for points spread evenly in space, and for grids; in the worst case, points on a curve, the number of tetrahedra is quadratic.
-//! 32 bytes a cell, about 7 cells a point. Inserting and removing cost a walk, which from an arbitrary place takes about n^⅓ steps, and as
-//! much as there is to change; all is built anew where the dimension changes.
-//!
-//! # References
-//! 1. A. Bowyer: *Computing Dirichlet tessellations*, The Computer Journal 24, 1981.
-//! 2. D. F. Watson: *Computing the n-dimensional Delaunay tessellation*, The Computer Journal 24, 1981.
-//! 3. O. Devillers, M. Teillaud: *Perturbations for Delaunay and weighted Delaunay 3D triangulations*, Computational Geometry 44, 2011.
-//! 4. N. Amenta, S. Choi, G. Rote: *Incremental constructions con BRIO*, SoCG 2003.
-//! 5. J. R. Shewchuk: *Adaptive precision floating-point arithmetic and fast robust geometric predicates*, Discrete & Computational
-//!    Geometry 18, 1997.
-//! 6. D. Funke, P. Sanders: *Parallel d-D Delaunay triangulations in shared and distributed memory*, ALENEX 2017.
+//! Points in a plane get one vertex more, off the plane: the bases of the tetrahedra are their Delaunay triangles, also where the plane
+//! is tilted (`solid.rs`). Points on a line are ordered along it (`build.rs`).
 
 mod border;
 mod build;
@@ -58,7 +35,7 @@ mod sites;
 mod solid;
 mod wide;
 
-use crate::{OUTSIDE, Partition, ProbeError};
+use crate::{DelaunayError, OUTSIDE, Partition};
 use build::Shape;
 use glam::DVec3;
 use solid::Added;
@@ -84,9 +61,9 @@ impl Delaunay {
     ///
     /// # Errors
     /// No points, too many, or one that is not finite.
-    pub fn new(points: &[DVec3]) -> Result<Self, ProbeError> {
+    pub fn new(points: &[DVec3]) -> Result<Self, DelaunayError> {
         if points.is_empty() {
-            return Err(ProbeError::NoProbes);
+            return Err(DelaunayError::NoPoints);
         }
         check_count(points.len())?;
         (0..).zip(points).try_for_each(|(i, p)| check_finite(i, *p))?;
@@ -94,7 +71,7 @@ impl Delaunay {
     }
 
     /// Of those points whose representative is not [`OUTSIDE`].
-    fn of(points: Vec<DVec3>, mut representative: Vec<u32>) -> Result<Self, ProbeError> {
+    fn of(points: Vec<DVec3>, mut representative: Vec<u32>) -> Result<Self, DelaunayError> {
         let indices: Vec<u32> =
             (0..points.len() as u32).filter(|&i| representative[i as usize] != OUTSIDE).collect();
         let shape = build::shape(&points, &indices, &mut representative)?;
@@ -134,7 +111,7 @@ impl Delaunay {
     ///
     /// # Errors
     /// The point is not finite, or one too many. Then nothing has changed.
-    pub fn insert(&mut self, point: DVec3) -> Result<u32, ProbeError> {
+    pub fn insert(&mut self, point: DVec3) -> Result<u32, DelaunayError> {
         let index = self.points.len();
         check_finite(index, point)?;
         check_count(index + 1)?;
@@ -161,11 +138,11 @@ impl Delaunay {
     ///
     /// # Errors
     /// There is no such point, or no other one. Then nothing has changed.
-    pub fn remove(&mut self, index: u32) -> Result<(), ProbeError> {
+    pub fn remove(&mut self, index: u32) -> Result<(), DelaunayError> {
         let first = self.representative.get(index as usize).copied().filter(|&r| r != OUTSIDE);
-        let first = first.ok_or(ProbeError::NoSuchProbe { index })?;
+        let first = first.ok_or(DelaunayError::NoSuchPoint { index })?;
         if self.live == 1 {
-            return Err(ProbeError::NoProbes);
+            return Err(DelaunayError::NoPoints);
         }
         if first != index {
             self.duplicates -= 1;
@@ -207,7 +184,7 @@ impl Delaunay {
     fn rebuild<T>(
         &mut self,
         change: impl FnOnce(&mut Vec<DVec3>, &mut Vec<u32>) -> T,
-    ) -> Result<(), ProbeError> {
+    ) -> Result<(), DelaunayError> {
         let (mut points, mut representative) = (self.points.clone(), self.representative.clone());
         change(&mut points, &mut representative);
         *self = Self::of(points, representative)?;
@@ -215,11 +192,11 @@ impl Delaunay {
     }
 }
 
-fn check_finite(index: usize, p: DVec3) -> Result<(), ProbeError> {
-    if p.is_finite() { Ok(()) } else { Err(ProbeError::PositionNotFinite { index }) }
+fn check_finite(index: usize, p: DVec3) -> Result<(), DelaunayError> {
+    if p.is_finite() { Ok(()) } else { Err(DelaunayError::PointNotFinite { index }) }
 }
 
-fn check_count(count: usize) -> Result<(), ProbeError> {
+fn check_count(count: usize) -> Result<(), DelaunayError> {
     let limit = MAX_POINTS;
-    if count <= limit { Ok(()) } else { Err(ProbeError::TooManyProbes { count, limit }) }
+    if count <= limit { Ok(()) } else { Err(DelaunayError::TooManyPoints { count, limit }) }
 }

@@ -1,4 +1,4 @@
-//! The surface of the probes' convex hull, and its point nearest to a position outside.
+//! The surface of the points' convex hull, and its point nearest to a position outside.
 //!
 //! The nearest point of a convex body is unique and moves continuously, so that light beyond the hull never jumps and never
 //! ends: it is the light at that point.

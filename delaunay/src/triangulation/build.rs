@@ -9,7 +9,7 @@ use super::mesh::Mesh;
 use super::simplex::Simplex;
 use super::sites::Sites;
 use super::solid::Solid;
-use crate::ProbeError;
+use crate::DelaunayError;
 use glam::DVec3;
 
 /// What points span.
@@ -28,7 +28,7 @@ pub(super) fn shape(
     points: &[DVec3],
     indices: &[u32],
     representative: &mut [u32],
-) -> Result<Shape, ProbeError> {
+) -> Result<Shape, DelaunayError> {
     indices.iter().for_each(|&i| representative[i as usize] = i);
     let order = hilbert::insertion_order(points, indices);
     let mut sites = Sites::new(order.iter().map(|&i| points[i as usize]));
@@ -55,7 +55,7 @@ pub(super) fn mesh(
     sites: &Sites,
     vertices: &[Vertex],
     first: [Vertex; 4],
-) -> Result<(Mesh, Same), ProbeError> {
+) -> Result<(Mesh, Same), DelaunayError> {
     let (mut mesh, mut same) = (Mesh::with_capacity(vertices.len()), vec![]);
     let mut cavity = Cavity::new(sites.len());
     mesh.reset(sites, first);

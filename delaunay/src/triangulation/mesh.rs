@@ -2,7 +2,7 @@
 
 use super::cell::{Cell, CellId, Link, MAX_CELLS, Vertex, replaced};
 use super::sites::Sites;
-use crate::ProbeError;
+use crate::DelaunayError;
 
 /// A Delaunay triangulation of some of the vertices of [`Sites`], ghosts included.
 #[derive(Clone, Debug, Default)]
@@ -110,9 +110,9 @@ impl Mesh {
     }
 
     /// Adds the cells of another mesh, and returns how much larger their numbers are now.
-    pub(super) fn append(&mut self, other: Self) -> Result<u32, ProbeError> {
+    pub(super) fn append(&mut self, other: Self) -> Result<u32, DelaunayError> {
         if self.cells.len() + other.cells.len() > MAX_CELLS {
-            return Err(ProbeError::TooManyCells { limit: MAX_CELLS });
+            return Err(DelaunayError::TooManyCells { limit: MAX_CELLS });
         }
         let offset = self.cells.len() as u32;
         let moved = |cell: Cell| Cell { links: cell.links.map(|link| link.moved(offset)), ..cell };

@@ -13,7 +13,7 @@ use super::seam::Seam;
 use super::simplex::Simplex;
 use super::sites::Sites;
 use super::{border, build};
-use crate::{ProbeError, parallel};
+use crate::{DelaunayError, parallel};
 use glam::DVec3;
 use std::cmp::Ordering;
 
@@ -46,7 +46,7 @@ pub(super) fn mesh(
     vertices: &[Vertex],
     first: Option<[Vertex; 4]>,
     depth: u32,
-) -> Result<Option<(Mesh, Same)>, ProbeError> {
+) -> Result<Option<(Mesh, Same)>, DelaunayError> {
     let whole = || {
         let found = first.or_else(|| match Simplex::new(sites, vertices) {
             Simplex::Space(first) => Some(first),
@@ -59,7 +59,7 @@ pub(super) fn mesh(
         return whole();
     }
     let (below, above) = split(sites, vertices);
-    let half = |part: &[Vertex]| -> Result<Option<Half>, ProbeError> {
+    let half = |part: &[Vertex]| -> Result<Option<Half>, DelaunayError> {
         let (lo, hi) = bounds(sites, part);
         let built = mesh(sites, part, None, depth - 1)?;
         Ok(built.map(|(mesh, same)| Half { mesh, same, lo, hi }))
@@ -97,7 +97,7 @@ fn split(sites: &Sites, vertices: &[Vertex]) -> (Vec<Vertex>, Vec<Vertex>) {
 }
 
 /// Both halves as one mesh, if the border spans space.
-fn join(sites: &Sites, below: Half, above: Half) -> Result<Option<(Mesh, Same)>, ProbeError> {
+fn join(sites: &Sites, below: Half, above: Half) -> Result<Option<(Mesh, Same)>, DelaunayError> {
     let (mut mesh, mut same) = (below.mesh, below.same);
     let mut border = border::find(&mesh, sites, above.lo, above.hi);
     let above_border = border::find(&above.mesh, sites, below.lo, below.hi);

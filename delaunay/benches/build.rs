@@ -1,13 +1,13 @@
 //! How long tetrahedra take: random points and grids of 432, 10 k and 100 k, inserting one more point and taking one out. There is
 //! no error to name: results are exact.
 //!
-//! `cargo bench -p pointillist-shprobe --bench delaunay`
+//! `cargo bench -p pointillist-delaunay --bench build`
 
 use std::hint::black_box;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{DVec3, dvec3};
-use pointillist_shprobe::Delaunay;
+use pointillist_delaunay::Delaunay;
 
 /// Pseudorandom points in a unit cube.
 fn random(count: usize) -> Vec<DVec3> {

@@ -6,7 +6,7 @@ use super::insert::Inserted;
 use super::mesh::Mesh;
 use super::remove::Hole;
 use super::sites::Sites;
-use crate::{OUTSIDE, ProbeError};
+use crate::{DelaunayError, OUTSIDE};
 use glam::DVec3;
 
 /// A mesh of tetrahedra, or of the triangles that are their bases.
@@ -71,7 +71,7 @@ impl Solid {
     }
 
     /// Inserts a point of this index, one more than the last.
-    pub(super) fn add(&mut self, p: DVec3, index: u32) -> Result<Added, ProbeError> {
+    pub(super) fn add(&mut self, p: DVec3, index: u32) -> Result<Added, DelaunayError> {
         let Some(v) = self.sites.push(p) else { return Ok(Added::Unfit) };
         if !self.spans(v) {
             self.sites.pop();
@@ -106,7 +106,7 @@ impl Solid {
     }
 
     /// Takes out the point of this index, the only one in its place. False, and nothing done, if the rest may span less.
-    pub(super) fn remove(&mut self, index: u32) -> Result<bool, ProbeError> {
+    pub(super) fn remove(&mut self, index: u32) -> Result<bool, DelaunayError> {
         let v = self.vertex[index as usize];
         let removed = self.mesh.remove(&self.sites, &mut self.cavity, &mut self.hole, v)?;
         if removed {

@@ -4,8 +4,8 @@
 use arbitrary::Arbitrary;
 use glam::{DVec3, dvec3};
 use libfuzzer_sys::fuzz_target;
-use pointillist_shprobe::invariants::weights;
-use pointillist_shprobe::{Delaunay, Locator};
+use pointillist_delaunay::invariants::weights;
+use pointillist_delaunay::{Delaunay, Locator};
 
 #[derive(Arbitrary, Debug)]
 enum Points {

@@ -1,10 +1,10 @@
-//! Finds the cell that holds a position, and the weights of its probes there.
+//! Finds the cell that holds a position, and the weights of its points there.
 
 use crate::blend::Blend;
 use crate::hull::Hull;
 use crate::scale::power_of_two_to_one;
 use crate::simplex::{HULL, Simplex};
-use crate::{OUTSIDE, Partition, ProbeError, parallel};
+use crate::{DelaunayError, OUTSIDE, Partition, parallel};
 use glam::{DVec3, UVec3, dvec3, uvec3};
 
 /// Where the last query ended: the next one nearby starts there. One for each moving object.
@@ -16,9 +16,9 @@ impl Hint {
     pub const START: Self = Self(0);
 }
 
-/// Answers which probes a position lies between.
+/// Finds the cell that holds a position, and the weights of its corners there: barycentric coordinates.
 ///
-/// Positions outside of the probes' hull get the weights of the nearest point on it: weights are continuous everywhere.
+/// Positions outside of the points' hull get the weights of the nearest point on it: weights are continuous everywhere.
 #[derive(Clone, Debug)]
 pub struct Locator {
     cells: Vec<Simplex>,
@@ -48,10 +48,10 @@ impl Locator {
     /// For points and the cells between them, as [`Delaunay::partition`](crate::Delaunay::partition) gives them.
     ///
     /// # Errors
-    /// [`ProbeError::PositionNotFinite`], and [`ProbeError::BadCell`] for cells that are not between these points.
-    pub fn new(positions: &[DVec3], partition: &Partition) -> Result<Self, ProbeError> {
+    /// [`DelaunayError::PointNotFinite`], and [`DelaunayError::BadCell`] for cells that are not between these points.
+    pub fn new(positions: &[DVec3], partition: &Partition) -> Result<Self, DelaunayError> {
         if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
-            return Err(ProbeError::PositionNotFinite { index });
+            return Err(DelaunayError::PointNotFinite { index });
         }
         partition.check(positions.len())?;
         let (low, high) = positions
@@ -74,8 +74,8 @@ impl Locator {
     /// The blend at `p`, walking from where `hint` was left, which is moved along.
     ///
     /// # Errors
-    /// [`ProbeError::QueryNotFinite`].
-    pub fn locate(&self, p: DVec3, hint: &mut Hint) -> Result<Blend, ProbeError> {
+    /// [`DelaunayError::QueryNotFinite`].
+    pub fn locate(&self, p: DVec3, hint: &mut Hint) -> Result<Blend, DelaunayError> {
         let p = self.local(p)?;
         Ok(self.blend(p, hint))
     }
@@ -83,8 +83,8 @@ impl Locator {
     /// The blend at `p`, without a hint.
     ///
     /// # Errors
-    /// [`ProbeError::QueryNotFinite`].
-    pub fn locate_anywhere(&self, p: DVec3) -> Result<Blend, ProbeError> {
+    /// [`DelaunayError::QueryNotFinite`].
+    pub fn locate_anywhere(&self, p: DVec3) -> Result<Blend, DelaunayError> {
         let p = self.local(p)?;
         Ok(self.blend(p, &mut Hint(self.starts.at(p))))
     }
@@ -92,10 +92,10 @@ impl Locator {
     /// The blends at many positions, on all cores.
     ///
     /// # Errors
-    /// [`ProbeError::QueryNotFinite`] for the first that is not.
-    pub fn locate_all(&self, positions: &[DVec3]) -> Result<Vec<Blend>, ProbeError> {
+    /// [`DelaunayError::QueryNotFinite`] for the first that is not.
+    pub fn locate_all(&self, positions: &[DVec3]) -> Result<Vec<Blend>, DelaunayError> {
         if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
-            return Err(ProbeError::QueryNotFinite { index });
+            return Err(DelaunayError::QueryNotFinite { index });
         }
         let unanswered = Blend::of_one(self.only);
         Ok(parallel::map(positions.len(), |i| self.locate_anywhere(positions[i]).unwrap_or(unanswered)))
@@ -147,9 +147,9 @@ impl Locator {
         End::Inside { cell, coordinates: self.cells[cell as usize].coordinates(p) }
     }
 
-    fn local(&self, p: DVec3) -> Result<DVec3, ProbeError> {
+    fn local(&self, p: DVec3) -> Result<DVec3, DelaunayError> {
         if !p.is_finite() {
-            return Err(ProbeError::QueryNotFinite { index: 0 });
+            return Err(DelaunayError::QueryNotFinite { index: 0 });
         }
         let local = (p - self.centre) * self.scale;
         let size = local.abs().max_element();
@@ -253,7 +253,7 @@ impl Starts {
         }
         let bounds = |(low, high): (DVec3, DVec3), p: &DVec3| (low.min(*p), high.max(*p));
         let (low, high) = locator.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), bounds);
-        // Flat extents count for little, so that a plane of probes gets a plane of boxes.
+        // Flat extents count for little, so that a plane of points gets a plane of boxes.
         let extent = (high - low).max(DVec3::splat((high - low).max_element() * 1e-6));
         let boxes = (locator.cells.len() as f64 / CELLS_PER_BOX).max(1.0);
         let size = box_counts(extent, boxes);

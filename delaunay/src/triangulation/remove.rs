@@ -8,7 +8,7 @@ use super::cell::{Cell, CellId, FACE, Link, MAX_CELLS, Vertex};
 use super::mesh::Mesh;
 use super::simplex::Simplex;
 use super::sites::Sites;
-use crate::ProbeError;
+use crate::DelaunayError;
 
 /// A face of the hole.
 #[derive(Clone, Copy, Debug)]
@@ -59,14 +59,14 @@ impl Mesh {
         cavity: &mut Cavity,
         hole: &mut Hole,
         v: Vertex,
-    ) -> Result<bool, ProbeError> {
+    ) -> Result<bool, DelaunayError> {
         self.find_star(sites, hole, v);
         if !hole.triangulate(sites, cavity)? {
             return Ok(false);
         }
         hole.find_fill();
         if self.cells.len() + hole.fill.len() > MAX_CELLS {
-            return Err(ProbeError::TooManyCells { limit: MAX_CELLS });
+            return Err(DelaunayError::TooManyCells { limit: MAX_CELLS });
         }
         self.fill_hole(hole);
         Ok(true)
@@ -124,7 +124,7 @@ impl Mesh {
 
 impl Hole {
     /// Triangulates the vertices around the hole; false if they lie in a plane.
-    fn triangulate(&mut self, sites: &Sites, cavity: &mut Cavity) -> Result<bool, ProbeError> {
+    fn triangulate(&mut self, sites: &Sites, cavity: &mut Cavity) -> Result<bool, DelaunayError> {
         let mut around: Vec<Vertex> = self.faces.iter().flat_map(|f| f.corners).collect();
         // Lower numbers came first along the curve, or in earlier rounds.
         around.sort_unstable_by_key(|v| v.0);

@@ -1,11 +1,11 @@
-//! How probes divide space: tetrahedra, or what is left of them where probes lie in a plane, on a line or in one place.
+//! How points divide space: tetrahedra, or what is left of them where points lie in a plane, on a line or in one place.
 
-use crate::ProbeError;
+use crate::DelaunayError;
 
 /// In the place of a neighbour: beyond this side there is no cell.
 pub const OUTSIDE: u32 = u32::MAX;
 
-/// Cells that fill the convex hull of the probes, by the dimension of that hull.
+/// Cells that fill the convex hull of the points, by the dimension of that hull.
 ///
 /// Corners are indices into the points given; of points that coincide only the first is used.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,16 +52,17 @@ impl Partition {
     /// Checks that every corner is one of `count` points, and that neighbours are mutual: what a walk from cell to cell relies on.
     ///
     /// # Errors
-    /// [`ProbeError::BadCell`] for the first cell that is not so.
-    pub fn check(&self, count: usize) -> Result<(), ProbeError> {
-        let missing = |cell| ProbeError::BadCell { cell, problem: "has a corner that is none of the points" };
+    /// [`DelaunayError::BadCell`] for the first cell that is not so.
+    pub fn check(&self, count: usize) -> Result<(), DelaunayError> {
+        let missing =
+            |cell| DelaunayError::BadCell { cell, problem: "has a corner that is none of the points" };
         match self {
             Self::Point(only) if *only as usize >= count => Err(missing(0)),
             Self::Point(_) => Ok(()),
             Self::Line(line) => match line.iter().position(|&p| p as usize >= count) {
                 Some(place) => Err(missing(place)),
                 None if line.len() < 2 => {
-                    Err(ProbeError::BadCell { cell: 0, problem: "is a line of fewer than two points" })
+                    Err(DelaunayError::BadCell { cell: 0, problem: "is a line of fewer than two points" })
                 }
                 None => Ok(()),
             },
@@ -75,8 +76,8 @@ fn check_cells<const N: usize>(
     corners: &[[u32; N]],
     neighbours: &[[u32; N]],
     count: usize,
-) -> Result<(), ProbeError> {
-    let bad = |cell, problem| Err(ProbeError::BadCell { cell, problem });
+) -> Result<(), DelaunayError> {
+    let bad = |cell, problem| Err(DelaunayError::BadCell { cell, problem });
     if corners.len() != neighbours.len() {
         return bad(corners.len().min(neighbours.len()), "has corners or neighbours, but not both");
     }

@@ -1,6 +1,6 @@
-//! Facts about weights between probes.
+//! Facts about weights between points.
 
-use crate::{Blend, Delaunay, Hint, Locator, ProbeError};
+use crate::{Blend, Delaunay, DelaunayError, Hint, Locator};
 use glam::DVec3;
 
 /// Probes, cells and all.
@@ -10,10 +10,10 @@ fn locator(points: &[DVec3]) -> Result<Locator, String> {
 }
 
 fn mixed(points: &[DVec3], blend: &Blend) -> DVec3 {
-    blend.parts().map(|(probe, weight)| points[probe as usize] * weight).sum()
+    blend.parts().map(|(point, weight)| points[point as usize] * weight).sum()
 }
 
-/// Weights are in [0, 1] and sum to 1, and mixing the positions of the probes by them gives the position asked for, or the nearest
+/// Weights are in [0, 1] and sum to 1, and mixing the positions of the points by them gives the position asked for, or the nearest
 /// point of the hull where that is outside: what is linear is reproduced. `tolerance` is relative to the size of the whole.
 ///
 /// # Errors
@@ -63,7 +63,7 @@ pub fn hints_do_not_matter(points: &[DVec3], queries: &[DVec3], tolerance: f64) 
     Ok(())
 }
 
-/// Where one cell ends and the next begins, what is between probes does not jump: `values` on the way from `a` to `b`.
+/// Where one cell ends and the next begins, what is between points does not jump: `values` on the way from `a` to `b`.
 ///
 /// # Errors
 /// The place of a jump by more than `tolerance`.
@@ -76,16 +76,16 @@ pub fn nothing_jumps(
 ) -> Result<(), String> {
     let locator = locator(points)?;
     let blend = |t: f64| locator.locate_anywhere(a.lerp(b, t));
-    let value = |b: &Blend| b.parts().map(|(probe, weight)| values[probe as usize] * weight).sum::<f64>();
+    let value = |b: &Blend| b.parts().map(|(point, weight)| values[point as usize] * weight).sum::<f64>();
     let set = |b: &Blend| {
-        let mut probes = b.probes;
-        probes.sort_unstable();
-        probes
+        let mut points = b.points;
+        points.sort_unstable();
+        points
     };
     let mut from = 0.0;
     while from < 1.0 {
         // The first of a few steps that ends in another cell, and in it the place where the cell changes.
-        let fault = |error: ProbeError| error.to_string();
+        let fault = |error: DelaunayError| error.to_string();
         let start = blend(from).map_err(fault)?;
         let mut to = (from + 1.0 / 64.0).min(1.0);
         let (mut low, mut high) = (from, to);
