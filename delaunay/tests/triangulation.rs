@@ -72,7 +72,7 @@ proptest! {
 
 #[test]
 fn bad_input_is_refused() {
-    assert_eq!(Delaunay::new(&[]).unwrap_err(), DelaunayError::NoPoints);
+    assert_eq!(Delaunay::new::<DVec3>(&[]).unwrap_err(), DelaunayError::NoPoints);
     let not_finite = |index| DelaunayError::PointNotFinite { index };
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         assert_eq!(Delaunay::new(&[DVec3::ZERO, dvec3(0.0, bad, 0.0)]).unwrap_err(), not_finite(1));

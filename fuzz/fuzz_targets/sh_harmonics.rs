@@ -4,9 +4,7 @@
 use arbitrary::Arbitrary;
 use glam::{DQuat, DVec3, dvec3};
 use libfuzzer_sys::fuzz_target;
-use pointillist_sh::{
-    CubeMap, CubeProjector, IrradianceMatrix, Panorama, PanoramaProjector, Sh, Weights,
-};
+use pointillist_sh::{CubeMap, CubeProjector, IrradianceMatrix, Panorama, PanoramaProjector, Sh, Weights};
 
 #[derive(Arbitrary, Debug)]
 struct Input {

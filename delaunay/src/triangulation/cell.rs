@@ -5,7 +5,7 @@
 
 /// A vertex, by its place in [`Sites`](super::sites::Sites).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Vertex(pub(super) u32);
+pub(crate) struct Vertex(pub(crate) u32);
 
 impl Vertex {
     /// The corner of all ghosts.

@@ -160,8 +160,9 @@ pub(super) fn sphere(corners: [DVec3; 4], p: DVec3) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{exact, wide};
+    use super::super::exact;
     use super::*;
+    use crate::wide;
 
     /// Numbers of one kind: with few bits or many, near and far from each other.
     fn coordinate(kind: u64, seed: &mut u64) -> f64 {

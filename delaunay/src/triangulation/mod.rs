@@ -33,9 +33,11 @@ mod seam;
 mod simplex;
 mod sites;
 mod solid;
-mod wide;
 
 use crate::{DelaunayError, OUTSIDE, Partition};
+pub(crate) use cell::Vertex;
+pub(crate) use sites::Sites;
+
 use build::Shape;
 use glam::DVec3;
 use solid::Added;
@@ -57,17 +59,32 @@ pub struct Delaunay {
 }
 
 impl Delaunay {
-    /// Of these points.
+    /// Of these points: `DVec3`, `[f64; 3]` or `(f64, f64, f64)`. Points of a plane have one coordinate that is 0, or lie in any other
+    /// plane.
     ///
     /// # Errors
-    /// No points, too many, or one that is not finite.
-    pub fn new(points: &[DVec3]) -> Result<Self, DelaunayError> {
+    /// [`DelaunayError::NoPoints`], [`DelaunayError::TooManyPoints`], [`DelaunayError::TooManyCells`], and
+    /// [`DelaunayError::PointNotFinite`] for the first that is not.
+    ///
+    /// ```
+    /// use pointillist_delaunay::Delaunay;
+    ///
+    /// let delaunay = Delaunay::new(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])?;
+    /// assert_eq!((delaunay.dimension(), delaunay.partition().cell_count()), (3, 1));
+    /// # Ok::<(), pointillist_delaunay::DelaunayError>(())
+    /// ```
+    pub fn new<P: Copy + Into<DVec3>>(points: &[P]) -> Result<Self, DelaunayError> {
+        Self::of_points(points.iter().map(|&p| p.into()).collect())
+    }
+
+    fn of_points(points: Vec<DVec3>) -> Result<Self, DelaunayError> {
         if points.is_empty() {
             return Err(DelaunayError::NoPoints);
         }
         check_count(points.len())?;
-        (0..).zip(points).try_for_each(|(i, p)| check_finite(i, *p))?;
-        Self::of(points.to_vec(), vec![0; points.len()])
+        (0..).zip(&points).try_for_each(|(i, p)| check_finite(i, *p))?;
+        let count = points.len();
+        Self::of(points, vec![0; count])
     }
 
     /// Of those points whose representative is not [`OUTSIDE`].
@@ -107,11 +124,21 @@ impl Delaunay {
         }
     }
 
-    /// Adds a point and returns its index: one more than the largest so far, those removed included.
+    /// How many points there are, without those removed.
+    pub const fn live_count(&self) -> usize {
+        self.live
+    }
+
+    /// Adds a point and returns its index: one more than the largest so far, those removed included. Indices are not used again;
+    /// [`Delaunay::compact`] gives back their memory.
     ///
     /// # Errors
     /// The point is not finite, or one too many. Then nothing has changed.
-    pub fn insert(&mut self, point: DVec3) -> Result<u32, DelaunayError> {
+    pub fn insert(&mut self, point: impl Into<DVec3>) -> Result<u32, DelaunayError> {
+        self.insert_point(point.into())
+    }
+
+    fn insert_point(&mut self, point: DVec3) -> Result<u32, DelaunayError> {
         let index = self.points.len();
         check_finite(index, point)?;
         check_count(index + 1)?;
@@ -160,6 +187,39 @@ impl Delaunay {
         self.representative[index as usize] = OUTSIDE;
         self.live -= 1;
         Ok(())
+    }
+
+    /// Forgets the points that were removed and numbers the rest anew, in the same order. Returns the new index of each old one, and
+    /// [`OUTSIDE`] for those removed.
+    ///
+    /// Whoever inserts and removes for long calls it now and then, for example when `points().len()` is twice
+    /// [`Delaunay::live_count`]: it costs what building costs, so it adds a constant amount to each insertion.
+    ///
+    /// # Errors
+    /// [`DelaunayError::TooManyCells`], as of building. Then nothing has changed.
+    ///
+    /// ```
+    /// use pointillist_delaunay::{Delaunay, OUTSIDE};
+    ///
+    /// let mut delaunay = Delaunay::new(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])?;
+    /// delaunay.remove(1)?;
+    /// assert_eq!(delaunay.compact()?, [0, OUTSIDE, 1]);
+    /// assert_eq!(delaunay.points().len(), 2);
+    /// # Ok::<(), pointillist_delaunay::DelaunayError>(())
+    /// ```
+    pub fn compact(&mut self) -> Result<Vec<u32>, DelaunayError> {
+        let is_live = |i: usize| self.representative[i] != OUTSIDE;
+        let mut next = 0;
+        let number = |i: usize| {
+            let number = if is_live(i) { next } else { OUTSIDE };
+            next += u32::from(is_live(i));
+            number
+        };
+        let renumbered = (0..self.points.len()).map(number).collect();
+        let kept: Vec<DVec3> =
+            (0..self.points.len()).filter(|&i| is_live(i)).map(|i| self.points[i]).collect();
+        *self = Self::of_points(kept)?;
+        Ok(renumbered)
     }
 
     /// The next point in the place of this one.

@@ -6,8 +6,9 @@
 
 use super::cell::{Vertex, replaced};
 use super::exact::{self, Exact};
+use super::limbs;
 use super::scale::Scale;
-use super::{limbs, wide};
+use crate::wide;
 use glam::DVec3;
 use std::cmp::Ordering;
 
@@ -20,7 +21,7 @@ struct Site {
 
 /// The positions of all vertices, and how exact signs are had of them.
 #[derive(Clone, Debug)]
-pub(super) struct Sites {
+pub(crate) struct Sites {
     /// Scaled. The first stands for the vertex at infinity and is never used in a product that matters.
     at: Vec<Site>,
     /// As given, and only where scaling rounds or products of scaled coordinates may underflow.
@@ -116,7 +117,7 @@ fn breaks_small_tie(corners: [DVec3; 4], p: DVec3) -> bool {
 
 impl Sites {
     /// These points, from vertex 1 on.
-    pub(super) fn new(points: impl ExactSizeIterator<Item = DVec3> + Clone) -> Self {
+    pub(crate) fn new(points: impl ExactSizeIterator<Item = DVec3> + Clone) -> Self {
         let scale = Scale::new(points.clone());
         let mut at = Vec::with_capacity(points.len() + 1);
         at.push(Site::default());
@@ -181,7 +182,7 @@ impl Sites {
 
     /// One more vertex in the box, off the plane in which all others lie: they and it span tetrahedra whose bases are the
     /// Delaunay triangles of that plane.
-    pub(super) fn push_apex(&mut self, plane: [Vertex; 3]) -> Vertex {
+    pub(crate) fn push_apex(&mut self, plane: [Vertex; 3]) -> Vertex {
         let from = plane[0];
         let apex = Vertex(self.at.len() as u32);
         self.at.push(self.at[from.slot()]);
@@ -253,14 +254,14 @@ impl Sites {
     }
 
     /// Lexicographic order of positions: the same for scaled ones as for those given.
-    pub(super) fn compare(&self, v: Vertex, w: Vertex) -> Ordering {
+    pub(crate) fn compare(&self, v: Vertex, w: Vertex) -> Ordering {
         let (a, b) = (self.exact_position(v), self.exact_position(w));
         a.to_array().partial_cmp(&b.to_array()).expect("positions are finite")
     }
 
     /// A number with the sign of (b−a)×(c−a)·(d−a).
     #[inline]
-    pub(super) fn orient(&self, corners: [Vertex; 4]) -> f64 {
+    pub(crate) fn orient(&self, corners: [Vertex; 4]) -> f64 {
         let [a, b, c, d] = corners.map(|v| self.at[v.slot()].p);
         let det = orient_det(a, b, c, d);
         if det.abs() > self.orient_bound { det } else { self.orient_exactly(corners, det) }
@@ -311,15 +312,32 @@ impl Sites {
         if reach > LEAST_LENGTH && det.abs() > SPHERE_ERROR * reach.powi(5) {
             return det > 0.0;
         }
-        let sign = match self.exact {
+        let sign = self.exact_sphere(corners, v);
+        if sign == 0.0 { self.breaks_tie(corners, v) } else { sign > 0.0 }
+    }
+
+    /// A number with the sign of the sphere's determinant, by exact arithmetic.
+    fn exact_sphere(&self, corners: [Vertex; 4], v: Vertex) -> f64 {
+        let points = corners.map(|v| self.at[v.slot()].p);
+        let p = self.at[v.slot()].p;
+        match self.exact {
             Exact::Small => 0.0,
             Exact::Integer => exact::integer_sphere(points, p),
             Exact::Expansion => {
                 limbs::sphere(points, p).unwrap_or_else(|| exact::expansion_sphere(points, p))
             }
             Exact::Wide => wide::sphere(corners.map(|v| self.given[v.slot()]), self.given[v.slot()]),
-        };
-        if sign == 0.0 { self.breaks_tie(corners, v) } else { sign > 0.0 }
+        }
+    }
+
+    /// Positive where p lies inside the sphere through the corners of a positive tetrahedron, 0 on it, negative outside.
+    pub(crate) fn sphere_sign(&self, corners: [Vertex; 4], p: Vertex) -> f64 {
+        let det = sphere_det(corners.map(|v| self.at[v.slot()].p), self.at[p.slot()].p);
+        if det.abs() > self.sphere_bound || self.exact == Exact::Small {
+            det
+        } else {
+            self.exact_sphere(corners, p)
+        }
     }
 
     /// Whether p, on the sphere through the corners, counts as inside.
@@ -355,7 +373,7 @@ impl Sites {
     }
 
     /// Whether three vertices lie on a line.
-    pub(super) fn are_collinear(&self, corners: [Vertex; 3]) -> bool {
+    pub(crate) fn are_collinear(&self, corners: [Vertex; 3]) -> bool {
         self.normal_signs(corners) == [0.0; 3]
     }
 

@@ -1,12 +1,11 @@
 //! A partition is Delaunay and fills the hull of its points: checked exactly, with nothing of what computed it.
 
-mod exact;
 mod planar;
 mod spatial;
 
 use super::check;
+use super::exact::{self, Points};
 use crate::{Delaunay, OUTSIDE, Partition};
-use exact::Points;
 use glam::DVec3;
 use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! Triangles.
 
-use super::exact::{Points, dot, zero};
 use super::{across, check, check_links};
+use crate::invariants::exact::{Points, dot, zero};
 use crate::{OUTSIDE, Triangles};
 use num_bigint::BigInt;
 use std::collections::BTreeMap;

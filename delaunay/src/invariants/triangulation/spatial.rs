@@ -1,7 +1,7 @@
 //! Tetrahedra.
 
-use super::exact::{Points, zero};
 use super::{across, check, check_links};
+use crate::invariants::exact::{Points, zero};
 use crate::{OUTSIDE, Tetrahedra};
 use num_bigint::BigInt;
 use std::collections::{BTreeMap, BTreeSet};
