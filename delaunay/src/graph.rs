@@ -55,8 +55,9 @@ impl Graph {
     /// Sorts the neighbours of each vertex, of which those before `ends` are set, and keeps one of each.
     fn without_repeats(mut self, ends: &[usize]) -> Self {
         let mut kept = 0;
-        for v in 0..self.point_count() {
-            let (from, to) = (self.first[v], ends[v]);
+        let count = self.point_count();
+        for (v, &to) in ends.iter().enumerate().take(count) {
+            let from = self.first[v];
             self.first[v] = kept;
             self.around[from..to].sort_unstable();
             for i in from..to {
@@ -66,7 +67,6 @@ impl Graph {
                 }
             }
         }
-        let count = self.point_count();
         self.first[count] = kept;
         self.around.truncate(kept);
         self

@@ -112,11 +112,12 @@ pub fn circumcentres_are_equidistant(points: &[DVec3]) -> Result<(), String> {
     let Some((_, partition)) = divided(points) else { return Ok(()) };
     for cell in partition.cells() {
         let corners: Vec<DVec3> = cell.corners().iter().map(|&c| points[c as usize]).collect();
-        // Distances themselves must not overflow or underflow.
-        let Some(centre) = cell.circumcentre(points).filter(|c| c.abs().max_element() < 1e150) else {
-            continue;
-        };
+        let Some(centre) = cell.circumcentre(points) else { continue };
         let largest = corners.iter().fold(centre.abs(), |m, c| m.max(c.abs())).max_element();
+        // Squares of distances overflow.
+        if largest > 1e150 {
+            continue;
+        }
         let distances: Vec<f64> = corners.iter().map(|c| c.distance(centre)).collect();
         let (least, most) =
             distances.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), &d| (l.min(d), m.max(d)));
