@@ -18,7 +18,22 @@ impl Hint {
 
 /// Finds the cell that holds a position, and the weights of its corners there: barycentric coordinates.
 ///
-/// Positions outside of the points' hull get the weights of the nearest point on it: weights are continuous everywhere.
+/// Positions outside of the points' hull get the weights of the nearest point on it: weights are continuous everywhere. The walk from cell to
+/// cell is in `f64`: within 1e-12 of a side it may end in either of the cells beside it, whose weights agree there.
+///
+/// ```
+/// use glam::dvec3;
+/// use pointillist_delaunay::{Delaunay, Locator};
+///
+/// // A function that is known at four points, and is linear between them.
+/// let values = [1.0, 2.0, 1.0, 1.0];
+/// let delaunay = Delaunay::new(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])?;
+/// let locator = Locator::new(delaunay.points(), &delaunay.partition())?;
+/// let blend = locator.locate_anywhere(dvec3(0.25, 0.25, 0.25))?;
+/// let value: f64 = blend.parts().map(|(point, weight)| weight * values[point as usize]).sum();
+/// assert_eq!(value, 1.25);
+/// # Ok::<(), pointillist_delaunay::DelaunayError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Locator {
     cells: Vec<Simplex>,
@@ -87,6 +102,37 @@ impl Locator {
     pub fn locate_anywhere(&self, p: DVec3) -> Result<Blend, DelaunayError> {
         let p = self.local(p)?;
         Ok(self.blend(p, &mut Hint(self.starts.at(p))))
+    }
+
+    /// The cell that holds `p`, walking from where `hint` was left, which is moved along: an index of
+    /// [`Partition::cell`], or `None` outside of the hull. A position up to 1e-12 of a cell's height outside of it counts as inside; of points
+    /// in a plane or line the projection of `p` counts, and a single point's cell is everywhere.
+    ///
+    /// # Errors
+    /// [`DelaunayError::QueryNotFinite`].
+    ///
+    /// ```
+    /// use glam::{DVec3, dvec3};
+    /// use pointillist_delaunay::{Delaunay, Hint, Locator};
+    ///
+    /// let delaunay = Delaunay::new(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])?;
+    /// let locator = Locator::new(delaunay.points(), &delaunay.partition())?;
+    /// let mut hint = Hint::START;
+    /// assert_eq!(locator.cell(dvec3(0.1, 0.2, 0.3), &mut hint)?, Some(0));
+    /// assert_eq!(locator.cell(DVec3::ONE, &mut hint)?, None);
+    /// # Ok::<(), pointillist_delaunay::DelaunayError>(())
+    /// ```
+    pub fn cell(&self, p: DVec3, hint: &mut Hint) -> Result<Option<u32>, DelaunayError> {
+        let p = self.local(p)?;
+        if self.cells.is_empty() {
+            return Ok(Some(0));
+        }
+        let (cell, is_inside) = match self.walk(p, hint.0) {
+            End::Inside { cell, .. } => (cell, true),
+            End::Outside { cell, .. } => (cell, false),
+        };
+        *hint = Hint(cell);
+        Ok(is_inside.then_some(cell))
     }
 
     /// The blends at many positions, on all cores.

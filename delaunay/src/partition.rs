@@ -5,7 +5,8 @@ use crate::DelaunayError;
 /// In the place of a neighbour: beyond this side there is no cell.
 pub const OUTSIDE: u32 = u32::MAX;
 
-/// Cells that fill the convex hull of the points, by the dimension of that hull.
+/// Cells that fill the convex hull of the points, by the dimension of that hull: plain lists, to be matched on, or walked alike in all
+/// dimensions by [`Partition::cells`], [`Partition::graph`] and [`Partition::hull`].
 ///
 /// Corners are indices into the points given; of points that coincide only the first is used.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,7 @@ mod generators;
 use generators::{lattice_points, query};
 use glam::{DVec3, dvec3};
 use pointillist_delaunay::invariants::weights;
-use pointillist_delaunay::{Delaunay, DelaunayError, Locator, OUTSIDE, Partition, Triangles};
+use pointillist_delaunay::{Delaunay, DelaunayError, Hint, Locator, OUTSIDE, Partition, Triangles};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 
@@ -57,6 +57,26 @@ proptest! {
                 prop_assert_eq!(error, DelaunayError::QueryNotFinite { index: 0 });
             }
         }
+    }
+}
+
+#[test]
+fn the_middle_of_a_cell_is_found_in_it_and_what_is_beyond_the_hull_in_none() {
+    let corner = |i: u32| dvec3(f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9));
+    let space: Vec<DVec3> = (0..27).map(corner).collect();
+    for (points, beyond) in
+        [(&space[..], DVec3::splat(2.1)), (&space[..9], dvec3(2.1, 1.0, 0.0)), (&space[..3], -DVec3::X)]
+    {
+        let partition = Delaunay::new(points).unwrap().partition();
+        let locator = Locator::new(points, &partition).unwrap();
+        let mut hint = Hint::START;
+        for cell in partition.cells() {
+            let corners = cell.corners();
+            let middle = corners.iter().map(|&c| points[c as usize]).sum::<DVec3>() / corners.len() as f64;
+            assert_eq!(locator.cell(middle, &mut hint), Ok(Some(cell.index())));
+        }
+        assert_eq!(locator.cell(beyond, &mut hint), Ok(None));
+        assert_eq!(locator.cell(DVec3::NAN, &mut hint), Err(DelaunayError::QueryNotFinite { index: 0 }));
     }
 }
 
