@@ -59,8 +59,7 @@ pub struct Delaunay {
 }
 
 impl Delaunay {
-    /// Of these points: `DVec3`, `[f64; 3]` or `(f64, f64, f64)`. Points of a plane have one coordinate that is 0, or lie in any other
-    /// plane.
+    /// Of these points: `DVec3`, `[f64; 3]` or `(f64, f64, f64)`. Points that lie in one plane, such as z = 0, give its triangles.
     ///
     /// # Errors
     /// [`DelaunayError::NoPoints`], [`DelaunayError::TooManyPoints`], [`DelaunayError::TooManyCells`], and

@@ -26,14 +26,8 @@ pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
     let start = std::time::Instant::now();
     let partition = report.stats.stage("build", || partition(&points)).map_err(refused)?;
     report.stats.figure("build_s", start.elapsed().as_secs_f64());
-    let cells = match &partition {
-        Partition::Tetrahedra(t) => t.corners.len(),
-        Partition::Triangles(t) => t.corners.len(),
-        Partition::Line(line) => line.len() - 1,
-        Partition::Point(_) => 1,
-    };
     report.stats.count("points", points.len() as u64);
-    report.stats.figure("cells", cells as f64);
+    report.stats.figure("cells", partition.cell_count() as f64);
     if let Some(path) = &options.locate {
         let queries = report.stats.stage("load", || read_points(path))?;
         measure(&points, &partition, &queries, &report);
