@@ -4,7 +4,7 @@ mod common;
 
 use common::Folder;
 use pointillist_cli::image_io::read_exr_picture;
-use pointillist_shprobe::sh::Sh;
+use pointillist_sh::Sh;
 use serde_json::Value;
 use std::f64::consts::PI;
 

@@ -3,14 +3,14 @@
 //! `cargo run --release -p pointillist-shprobe --example light_on_a_path`
 
 use glam::{DVec3, Vec3, dvec3};
-use pointillist_shprobe::sh::{CubeMap, CubeProjector, Sh, Weights};
+use pointillist_shprobe::sh::{CubeMap, CubeProjector, Sh, ShError, Weights};
 use pointillist_shprobe::{Field, LitObject, ProbeError, place};
 
 const SIZE: usize = 32;
 const STEPS: usize = 16;
 
 /// A lamp at the near end: light from −x that falls with the distance, and a dim rest.
-fn corridor_seen_from(p: DVec3) -> Result<CubeMap, ProbeError> {
+fn corridor_seen_from(p: DVec3) -> Result<CubeMap, ShError> {
     let lamp = 20.0 / (1.0 + p.x * p.x);
     CubeMap::from_fn(SIZE, |direction| {
         let towards_lamp = direction.normalize().dot(DVec3::NEG_X).max(0.0).powi(4);
@@ -22,7 +22,7 @@ fn main() -> Result<(), ProbeError> {
     let positions = place::grid(DVec3::ZERO, dvec3(10.0, 2.0, 2.0), [8, 2, 2]);
     let projector = CubeProjector::new(SIZE, 2, Weights::Gregory)?;
     let probe = |p: &DVec3| projector.project(&corridor_seen_from(*p)?);
-    let radiance: Vec<Sh> = positions.iter().map(probe).collect::<Result<_, _>>()?;
+    let radiance = positions.iter().map(probe).collect::<Result<Vec<Sh>, ShError>>()?;
     let field = Field::new(&positions, &radiance)?;
 
     // The object keeps its hint: finding the next cell is a step or two.

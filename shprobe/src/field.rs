@@ -1,8 +1,9 @@
 //! Probes that light what lies between them.
 
+use crate::delaunay::{Delaunay, Hint, Locator, Partition};
 use crate::sh::{Irradiance, Lobe, MAX_COUNT, Sh, basis, coefficient_count};
 use crate::sight::{Near, Shares, by_sight};
-use crate::{Delaunay, DistanceMap, Hint, Locator, Partition, ProbeError, parallel};
+use crate::{DistanceMap, ProbeError, parallel};
 use glam::{DVec3, Vec3};
 
 /// Probes with what they hold, ready to light positions between them.
@@ -59,10 +60,7 @@ impl Field {
             return Err(ProbeError::CountMismatch { probes: positions.len(), given: radiance.len() });
         }
         let partition = Delaunay::new(positions)?.partition();
-        let order = radiance.first().map_or(0, Sh::order);
-        if let Some(other) = radiance.iter().find(|sh| sh.order() != order) {
-            return Err(ProbeError::MixedOrders { left: order, right: other.order() });
-        }
+        let order = common_order(radiance)?;
         let scaled = |sh: &Sh| sh.convolved(&Lobe::COSINE).into_coefficients();
         let irradiance = radiance.iter().flat_map(scaled).map(|c| c.as_vec3()).collect();
         let lights = radiance.iter().map(Irradiance::new).collect();
@@ -211,6 +209,18 @@ impl Field {
             self.irradiance(position, normal, normal, &mut hint)
         };
         parallel::map(queries.len(), one).into_iter().collect()
+    }
+}
+
+/// The order of all; 0 of none.
+///
+/// # Errors
+/// [`ProbeError::MixedOrders`] for the first that has another than the first of all.
+pub(crate) fn common_order(radiance: &[Sh]) -> Result<usize, ProbeError> {
+    let expected = radiance.first().map_or(0, Sh::order);
+    match radiance.iter().position(|sh| sh.order() != expected) {
+        Some(index) => Err(ProbeError::MixedOrders { index, order: radiance[index].order(), expected }),
+        None => Ok(expected),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Which probes light a position, once it is known which of them see it.
 
-use crate::blend::Blend;
+use crate::delaunay::Blend;
 use glam::{DVec3, IVec3};
 use std::collections::HashMap;
 

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use std::hint::black_box;
 
 use glam::{DVec3, dvec3};
-use pointillist_shprobe::{Delaunay, Hint, Locator, Partition, ProbeError, place};
+use pointillist_delaunay::{Delaunay, Hint, Locator, Partition};
+use pointillist_shprobe::{ProbeError, place};
 
 use crate::probe_peer::{Peer, Took};
 use crate::report::{Clock, Limit, least_seconds, on_one_thread, on_threads, verdict};

@@ -4,9 +4,10 @@ use std::cell::OnceCell;
 use std::time::Instant;
 
 use glam::DVec3;
+use pointillist_delaunay::{Hint, Partition};
+use pointillist_sh::Irradiance;
+use pointillist_shprobe::Field;
 use pointillist_shprobe::place::{self, AdaptiveOptions, Candidates, FitOptions, adaptive};
-use pointillist_shprobe::sh::Irradiance;
-use pointillist_shprobe::{Field, Hint, Partition};
 
 use crate::probe_site::{Baked, Ground, Site};
 use crate::probe_trilinear::Grid;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::{DVec3, dvec3};
 use pointillist_cli::image_io::read_picture;
-use pointillist_shprobe::sh::{Panorama, PanoramaProjector, Sh, Weights};
+use pointillist_sh::{Panorama, PanoramaProjector, Sh, Weights};
 use rayon::prelude::*;
 
 use crate::data;

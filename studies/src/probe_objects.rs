@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::hint::black_box;
 
 use glam::{DVec3, Vec3, dvec3};
-use pointillist_shprobe::sh::{Irradiance, Sh};
+use pointillist_sh::{Irradiance, Sh, ShError};
 use pointillist_shprobe::{DistanceMap, Field, LitObject, ProbeError, place};
 
 use crate::probe_site::directions;
@@ -15,7 +15,7 @@ const OBJECTS: usize = 10_000;
 const PROBES: usize = 432;
 
 /// Coefficients without meaning, but all different.
-fn some_light(i: usize) -> Result<Sh, ProbeError> {
+fn some_light(i: usize) -> Result<Sh, ShError> {
     let wave = |k: usize| (0.7 * i as f64 + 1.3 * k as f64).sin() * if k == 0 { 0.0 } else { 0.2 };
     Sh::new(
         (0..9).map(|k| dvec3(wave(k), wave(k + 20), wave(k + 40)) + if k == 0 { 3.0 } else { 0.0 }).collect(),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::{DVec3, Vec3};
 use pointillist_cli::scene::{AmbientLight, Scene};
-use pointillist_shprobe::sh::Panorama;
+use pointillist_sh::Panorama;
 
 use crate::picture::Picture;
 use crate::probe_canvas::{save, sheet, sphere};

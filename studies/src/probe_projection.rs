@@ -4,9 +4,8 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 use glam::{DVec3, dvec3};
-use pointillist_shprobe::ProbeError;
-use pointillist_shprobe::sh::{
-    CubeMap, CubeProjector, Sh, SphereQuadrature, Weights, basis, coefficient_count, gauss_legendre,
+use pointillist_sh::{
+    CubeMap, CubeProjector, Sh, ShError, SphereQuadrature, Weights, basis, coefficient_count, gauss_legendre,
 };
 
 use crate::report::{Clock, Row, least_seconds, on_one_thread};
@@ -38,7 +37,7 @@ fn with_edge(d: DVec3) -> DVec3 {
 }
 
 /// The exact coefficients of [`with_edge`], by Funk and Hecke: λ_l·Y_lm(axis), λ_l = 2π ∫ P_l over the cap.
-fn of_edge(order: usize) -> Result<Sh, ProbeError> {
+fn of_edge(order: usize) -> Result<Sh, ShError> {
     let legendre = |l: usize, x: f64| {
         let step = |(a, b): (f64, f64), k: usize| {
             let k = k as f64;
@@ -61,7 +60,7 @@ fn of_edge(order: usize) -> Result<Sh, ProbeError> {
 }
 
 /// Rows: the sky, the rule, the setting; the error is that of the worst coefficient over L00 of its colour.
-pub(crate) fn rows(runs: usize) -> Result<Vec<Row>, ProbeError> {
+pub(crate) fn rows(runs: usize) -> Result<Vec<Row>, ShError> {
     let mut rows = vec![];
     for (sky, name) in [smooth, with_edge].into_iter().zip(SKIES) {
         for size in SIZES {
@@ -83,7 +82,7 @@ pub(crate) fn rows(runs: usize) -> Result<Vec<Row>, ProbeError> {
     Ok(rows)
 }
 
-fn row(map: &CubeMap, truth: &Sh, rule: Weights, runs: usize) -> Result<Row, ProbeError> {
+fn row(map: &CubeMap, truth: &Sh, rule: Weights, runs: usize) -> Result<Row, ShError> {
     let projector = CubeProjector::new(map.size(), truth.order(), rule)?;
     let found = projector.project(map)?;
     let seconds =

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use pointillist_cli::pipeline::Capture;
 use pointillist_cli::scene::Scene;
-use pointillist_shprobe::sh::{CubePoint, cube_direction};
+use pointillist_sh::{CubePoint, cube_direction};
 
 use crate::ray_reference::Tree;
 use crate::scenes::{SurfaceSample, radiance};

@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3, dvec3};
 use pointillist_cli::job::Stats;
 use pointillist_cli::pipeline::{Ambient, CaptureOptions, PipelineError, Prepared};
 use pointillist_cli::scene::{Overrides, Scene, load};
+use pointillist_sh::{CubeMap, CubeProjector, Sh, Weights};
 use pointillist_shade::face_normal;
-use pointillist_shprobe::sh::{CubeMap, CubeProjector, Sh, Weights};
 use pointillist_shprobe::{DEFAULT_DISTANCE_SIZE, DistanceMap, Field, ProbeError, place};
 use rayon::prelude::*;
 

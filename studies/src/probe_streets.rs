@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use glam::{DVec3, Vec3, dvec3, vec3};
+use pointillist_sh::Irradiance;
 use pointillist_shade::{Light, Material};
-use pointillist_shprobe::sh::Irradiance;
 use rayon::prelude::*;
 
 use crate::picture::Picture;

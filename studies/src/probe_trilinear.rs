@@ -1,8 +1,8 @@
 //! The classical comparator: probes on a grid, interpolated along its axes.
 
 use glam::{DVec3, USizeVec3};
+use pointillist_sh::Irradiance;
 use pointillist_shprobe::place;
-use pointillist_shprobe::sh::Irradiance;
 
 use crate::probe_site::{Baked, Ground};
 

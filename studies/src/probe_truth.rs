@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_cli::pipeline::PipelineError;
-use pointillist_shprobe::sh::{
+use pointillist_sh::{
     CubeMap, CubePoint, CubeProjector, Irradiance, Weights, cube_direction, texel_solid_angle,
 };
 use rayon::prelude::*;

@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use glam::{DVec3, Vec3, dvec3};
+use pointillist_delaunay::Hint;
+use pointillist_sh::Irradiance;
 use pointillist_shade::Material;
-use pointillist_shprobe::Hint;
-use pointillist_shprobe::sh::Irradiance;
 
 use crate::draw;
 use crate::probe_canvas::{save, sheet};

@@ -7,9 +7,10 @@ use glam::{DVec3, Vec3, dvec3};
 use pointillist_cli::job::{Progress, ProgressMode, Stats};
 use pointillist_cli::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, look_all};
 use pointillist_cli::radiosity::{BakedFile, Lamps, Lightmap, scene_surfaces, with_lamps};
+use pointillist_delaunay::Hint;
 use pointillist_radiosity::{Scene as Patches, SceneOptions, Solution, SolveOptions, Transport};
-use pointillist_shprobe::sh::{Irradiance, Sh};
-use pointillist_shprobe::{Field, Hint, place};
+use pointillist_sh::{Irradiance, Sh};
+use pointillist_shprobe::{Field, place};
 
 use crate::probe_rooms::{BOX, closed_box};
 use crate::probe_truth::normals;

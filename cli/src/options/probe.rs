@@ -3,7 +3,7 @@
 use super::{Common, TextOutput, Tile, values};
 use crate::input::is_standard;
 use clap::{Subcommand, ValueEnum};
-use pointillist_shprobe::sh;
+use pointillist_sh as sh;
 use std::path::PathBuf;
 
 /// What to do with light probes.

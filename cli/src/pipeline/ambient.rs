@@ -3,8 +3,9 @@
 use crate::radiosity::Lightmap;
 use crate::scene::SkyLight;
 use glam::{DVec3, Vec3};
+use pointillist_delaunay::Hint;
 use pointillist_shade::Environment;
-use pointillist_shprobe::{Field, Hint};
+use pointillist_shprobe::Field;
 use std::f32::consts::FRAC_1_PI;
 
 /// Where ambient light comes from.

@@ -8,7 +8,7 @@ use crate::image_io::{Frame, LayerKind};
 use crate::job::{Progress, ProgressMode, RenderJob, Stats};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::Bounds;
-use pointillist_shprobe::sh::{CubePoint, cube_direction, texel_solid_angle};
+use pointillist_sh::{CubePoint, cube_direction, texel_solid_angle};
 use pointillist_view::{Projection, View};
 use std::f64::consts::{FRAC_PI_2, PI};
 

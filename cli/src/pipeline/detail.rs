@@ -4,9 +4,9 @@ use super::detail_maps::{DetailMaps, DetailMeans};
 use super::shading::{Shader, Surface};
 use crate::scene::{BumpHeight, Details};
 use glam::Vec3;
+use pointillist_delaunay::Hint;
 use pointillist_micropoint::SurfacePoint;
 use pointillist_shade::{Material, Model, UvFrame, coat_albedo, keep_visible, mirror, refract};
-use pointillist_shprobe::Hint;
 
 /// Directions to ask the surroundings about, and what each counts.
 type Looks = [(Vec3, Vec3); 2];

@@ -3,7 +3,7 @@
 use super::{Ambient, Capture, CaptureOptions, PipelineError, Prepared};
 use crate::job::{Progress, Stats};
 use glam::DVec3;
-use pointillist_shprobe::sh::{CubeMap, CubeProjector, Sh, Weights};
+use pointillist_sh::{CubeMap, CubeProjector, Sh, Weights};
 use pointillist_shprobe::{DistanceMap, ProbeError};
 use rayon::prelude::*;
 use std::hash::Hasher as _;

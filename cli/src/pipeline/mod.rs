@@ -29,6 +29,7 @@ use crate::image_io::Frame;
 use crate::job::{Progress, RenderJob, Stats};
 use crate::scene::Scene;
 use pointillist_micropoint::MicropointError;
+use pointillist_sh::ShError;
 use pointillist_shadow::ShadowError;
 use pointillist_shprobe::ProbeError;
 use pointillist_view::ViewError;
@@ -45,6 +46,9 @@ pub enum PipelineError {
     /// What probes saw was refused.
     #[error(transparent)]
     Probe(#[from] ProbeError),
+    /// An image of a probe cannot be projected.
+    #[error(transparent)]
+    Harmonics(#[from] ShError),
     /// A light was refused.
     #[error("light `{name}`: {source}")]
     Shadow {

@@ -12,10 +12,10 @@ use crate::image_io::LayerKind;
 use crate::job::{Stats, ThreadClock};
 use crate::scene::{NONE, Scene};
 use glam::{DVec3, Vec3, Vec4};
+use pointillist_delaunay::Hint;
 use pointillist_micropoint::{Face, Fragment, LensKind, Micropoint, SurfacePoint, Tile};
 use pointillist_shade::{Interpolation, Material, face_normal, interpolate_color, interpolate_normal};
 use pointillist_shadow::ShadowCounts;
-use pointillist_shprobe::Hint;
 use pointillist_view::View;
 
 /// What a frame shows of the scene's light.

@@ -1,8 +1,8 @@
 //! One probe of a file.
 
 use glam::DVec3;
+use pointillist_sh::Sh;
 use pointillist_shprobe::DistanceMap;
-use pointillist_shprobe::sh::Sh;
 use serde::{Deserialize, Serialize};
 
 /// A probe: where it is and, once it is baked, what it holds.

@@ -7,7 +7,7 @@ use crate::input_error::InputError;
 use crate::json_kind::JsonKind;
 use crate::json_words;
 use glam::DVec3;
-use pointillist_shprobe::sh::Sh;
+use pointillist_sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, ProbeError};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};

@@ -5,7 +5,7 @@ use crate::coordinate::LARGEST;
 use crate::input;
 use crate::input_error::InputError;
 use glam::DVec3;
-use pointillist_shprobe::Partition;
+use pointillist_delaunay::Partition;
 use std::io::{self, Write};
 use std::path::Path;
 

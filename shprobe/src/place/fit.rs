@@ -75,8 +75,9 @@ pub fn fit(candidates: Candidates<'_>, chosen: &[u32], options: &FitOptions) -> 
         rest
     });
     let gain = solve(&equations, equations.gathered(&missing, count), count);
-    let sum =
-        |(x, dx): (Vec<DVec3>, Vec<DVec3>)| Sh::new(x.into_iter().zip(dx).map(|(a, b)| a + b).collect());
+    let sum = |(x, dx): (Vec<DVec3>, Vec<DVec3>)| -> Result<Sh, ProbeError> {
+        Ok(Sh::new(x.into_iter().zip(dx).map(|(a, b)| a + b).collect())?)
+    };
     start.into_iter().zip(gain).map(sum).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Takes out probes that are missed least.
 
 use super::trial::{Bench, Outcome};
-use crate::{Partition, ProbeError, parallel};
+use crate::{ProbeError, parallel};
 
 /// What is left, and how the error grew.
 pub(super) struct Thinned {
@@ -54,7 +54,7 @@ fn cheapest(
     count: usize,
     budget: f64,
 ) -> Result<Vec<u32>, ProbeError> {
-    let neighbours = neighbours(chosen.len(), &outcome.partition);
+    let graph = outcome.partition.graph(chosen.len())?;
     let mut lit_by = vec![vec![]; chosen.len()];
     for (i, cell) in outcome.cells.iter().enumerate() {
         for (k, &probe) in cell.iter().enumerate() {
@@ -65,7 +65,7 @@ fn cheapest(
     }
     // Where a probe was, cells between its neighbours are new, and they are Delaunay cells of the neighbours alone, too.
     let cost = |probe: usize| -> Result<f64, ProbeError> {
-        let around: Vec<u32> = neighbours[probe].iter().map(|&n| chosen[n as usize]).collect();
+        let around: Vec<u32> = graph.around(probe as u32).iter().map(|&n| chosen[n as usize]).collect();
         if around.is_empty() {
             // It shares its place with another, which lights what it did.
             return Ok(0.0);
@@ -83,29 +83,8 @@ fn cheapest(
         let affordable = out.is_empty() || spent <= budget;
         if out.len() < count && affordable && !blocked[probe as usize] {
             out.push(probe);
-            neighbours[probe as usize].iter().for_each(|&n| blocked[n as usize] = true);
+            graph.around(probe).iter().for_each(|&n| blocked[n as usize] = true);
         }
     }
     Ok(out)
-}
-
-/// For each probe those it shares a cell with, rising.
-fn neighbours(count: usize, partition: &Partition) -> Vec<Vec<u32>> {
-    let mut neighbours = vec![vec![]; count];
-    let mut join = |corners: &[u32]| {
-        for &a in corners {
-            neighbours[a as usize].extend(corners.iter().filter(|&&b| b != a));
-        }
-    };
-    match partition {
-        Partition::Point(_) => {}
-        Partition::Line(line) => line.windows(2).for_each(&mut join),
-        Partition::Triangles(t) => t.corners.iter().for_each(|c| join(c)),
-        Partition::Tetrahedra(t) => t.corners.iter().for_each(|c| join(c)),
-    }
-    for list in &mut neighbours {
-        list.sort_unstable();
-        list.dedup();
-    }
-    neighbours
 }

@@ -1,9 +1,10 @@
 //! How well some candidates light all of them.
 
-use crate::field::help;
+use crate::delaunay::{Blend, Delaunay, Hint, Locator, Partition};
+use crate::field::{common_order, help};
 use crate::sh::{Lobe, Sh};
 use crate::sight::{Near, Shares, by_sight};
-use crate::{Blend, Delaunay, DistanceMap, Hint, Locator, Partition, ProbeError};
+use crate::{DistanceMap, ProbeError};
 use glam::DVec3;
 
 /// Positions at which probes may be, and the light there.
@@ -59,10 +60,7 @@ impl<'a> Bench<'a> {
         if let Some(index) = candidates.positions.iter().position(|p| !p.is_finite()) {
             return Err(ProbeError::PositionNotFinite { index });
         }
-        let order = candidates.radiance[0].order();
-        if let Some(other) = candidates.radiance.iter().find(|sh| sh.order() != order) {
-            return Err(ProbeError::MixedOrders { left: order, right: other.order() });
-        }
+        common_order(candidates.radiance)?;
         let norm = (4.0 * std::f64::consts::PI).sqrt();
         let normed = |sh: &Sh| sh.convolved(&Lobe::COSINE).scaled(1.0 / norm).into_coefficients();
         let irradiance: Vec<Vec<DVec3>> = candidates.radiance.iter().map(normed).collect();
@@ -94,7 +92,7 @@ impl<'a> Bench<'a> {
             let part = self.squared_error(i, chosen, &plain, &near);
             outcome.error2 += part;
             outcome.parts.push(part);
-            outcome.cells.push(plain.probes);
+            outcome.cells.push(plain.points);
         }
         Ok(outcome)
     }

@@ -13,8 +13,8 @@ use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buri
 use crate::probe_io::ProbeFile;
 use crate::scene::{self, NONE, Scene};
 use glam::DVec3;
+use pointillist_sh::Sh;
 use pointillist_shade::face_normal;
-use pointillist_shprobe::sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, ProbeError, place};
 
 /// Height above their surface of probes at vertices, over the scene's diagonal.

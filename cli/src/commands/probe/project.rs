@@ -7,8 +7,7 @@ use crate::image_io::{Levels, read_levels, read_picture};
 use crate::input_error::InputError;
 use crate::options::{ProjectOptions, ResponseCurve};
 use crate::probe_io::read_rows;
-use pointillist_shprobe::ProbeError;
-use pointillist_shprobe::sh::{CubeMap, CubeProjector, Panorama, PanoramaProjector, Response, Sh};
+use pointillist_sh::{CubeMap, CubeProjector, Panorama, PanoramaProjector, Response, Sh, ShError};
 use std::path::Path;
 
 pub(super) fn run(options: &ProjectOptions) -> Result<(), CliError> {
@@ -17,7 +16,7 @@ pub(super) fn run(options: &ProjectOptions) -> Result<(), CliError> {
     let images = options.images.iter().map(|path| read(path, &response, options.exposure, &report));
     let images = report.stats.stage("load", || images.collect::<Result<Vec<_>, _>>())?;
     let name = options.images[0].display().to_string();
-    let refused = |error: ProbeError| CliError::Input(InputError::of_file(&name, error.to_string()));
+    let refused = |error: ShError| CliError::Input(InputError::of_file(&name, error.to_string()));
     let sh = report.stats.stage("project", || project(&images, &name, options, &refused))?;
     let sh = if options.dering { sh.deringed() } else { sh };
     let rows: Vec<[f64; 3]> = sh.coefficients().iter().map(|c| c.to_array()).collect();
@@ -56,7 +55,7 @@ fn response(curve: &ResponseCurve) -> Result<Response, CliError> {
 /// Photographs are made linear by their response; pictures of floats and of more bits are linear or sRGB as their format has it.
 fn read(path: &Path, response: &Response, exposure: f32, report: &Report<'_>) -> Result<Image, CliError> {
     if let Some(Levels { size: [width, height], pixels }) = read_levels(path)? {
-        let failed = |error: ProbeError| CliError::Usage(format!("--exposure: {error}"));
+        let failed = |error: ShError| CliError::Usage(format!("--exposure: {error}"));
         let (pixels, clipping) = response.linearise(&pixels, exposure).map_err(failed)?;
         if clipping.over_exposed > 0.001 {
             let share = clipping.over_exposed * 100.0;
@@ -77,7 +76,7 @@ fn project(
     images: &[Image],
     name: &str,
     options: &ProjectOptions,
-    refused: &dyn Fn(ProbeError) -> CliError,
+    refused: &dyn Fn(ShError) -> CliError,
 ) -> Result<Sh, CliError> {
     let faces = match images {
         [one] if one.width == 6 * one.height || one.height == 6 * one.width => strip(one),

@@ -7,7 +7,8 @@ use crate::input::name_of;
 use crate::options::QueryOptions;
 use crate::probe_io::{read_probes, read_rows};
 use glam::{DVec3, Vec3};
-use pointillist_shprobe::{Field, Hint, ProbeError};
+use pointillist_delaunay::Hint;
+use pointillist_shprobe::{Field, ProbeError};
 
 pub(super) fn run(options: &QueryOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?

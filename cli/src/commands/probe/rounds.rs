@@ -9,7 +9,7 @@ use crate::options::{BakeOptions, Inside, What};
 use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_again, look_all};
 use crate::scene::Scene;
 use glam::{DVec3, Vec3};
-use pointillist_shprobe::sh::Sh;
+use pointillist_sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, ProbeError, place};
 
 /// Pixels on a side that are enough for light on its way: what is seen at places to which probes are fitted, and what bounces. Coverage is exact at

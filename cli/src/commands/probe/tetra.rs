@@ -9,7 +9,8 @@ use crate::job::ThreadClock;
 use crate::options::TetraOptions;
 use crate::probe_io::{format_cells, read_points};
 use glam::{DVec3, dvec3};
-use pointillist_shprobe::{Delaunay, Hint, Locator, Partition, ProbeError, Tetrahedra};
+use pointillist_delaunay::{Delaunay, DelaunayError, Hint, Locator, Partition, Tetrahedra};
+
 use std::f64::consts::TAU;
 
 pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
@@ -18,21 +19,15 @@ pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
         .writing(options.result())?;
     let points = report.stats.stage("load", || read_points(&options.points))?;
     let name = name_of(&options.points);
-    let refused = |error: ProbeError| {
+    let refused = |error: DelaunayError| {
         let error = InputError::of_file(&name, error.to_string());
         CliError::Input(error.with_help("points are finite numbers, `x y z` a line"))
     };
     let start = std::time::Instant::now();
     let partition = report.stats.stage("build", || partition(&points)).map_err(refused)?;
     report.stats.figure("build_s", start.elapsed().as_secs_f64());
-    let cells = match &partition {
-        Partition::Tetrahedra(t) => t.corners.len(),
-        Partition::Triangles(t) => t.corners.len(),
-        Partition::Line(line) => line.len() - 1,
-        Partition::Point(_) => 1,
-    };
     report.stats.count("points", points.len() as u64);
-    report.stats.figure("cells", cells as f64);
+    report.stats.figure("cells", partition.cell_count() as f64);
     if let Some(path) = &options.locate {
         let queries = report.stats.stage("load", || read_points(path))?;
         measure(&points, &partition, &queries, &report);
@@ -45,7 +40,7 @@ pub(super) fn run(options: &TetraOptions) -> Result<(), CliError> {
 }
 
 /// The cells between points; none if there are no points, which is no fault of the caller's.
-fn partition(points: &[DVec3]) -> Result<Partition, ProbeError> {
+fn partition(points: &[DVec3]) -> Result<Partition, DelaunayError> {
     if points.is_empty() {
         return Ok(Partition::Tetrahedra(Tetrahedra { corners: vec![], neighbours: vec![] }));
     }

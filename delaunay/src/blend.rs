@@ -1,0 +1,32 @@
+//! Weights of the corners of a cell at a position.
+
+/// Up to four points and their weights at a position: barycentric coordinates in the cell that holds it.
+///
+/// Σ wᵢ·f(pᵢ) interpolates values `f` of the points: exactly where `f` is linear, and continuously everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blend {
+    /// Indices of points; one whose weight is 0 may repeat another.
+    pub points: [u32; 4],
+    /// In [0, 1], and 1 together.
+    pub weights: [f64; 4],
+}
+
+impl Blend {
+    /// All of one point.
+    pub(crate) const fn of_one(point: u32) -> Self {
+        Self { points: [point; 4], weights: [1.0, 0.0, 0.0, 0.0] }
+    }
+
+    /// Of coordinates that may be below 0 by rounding, or no numbers where a cell is flat to the last digit: then the first point
+    /// takes all.
+    pub(crate) fn clamped(points: [u32; 4], coordinates: [f64; 4]) -> Self {
+        let weights = coordinates.map(|w| if w.is_nan() { 0.0 } else { w.clamp(0.0, 1.0) });
+        let sum: f64 = weights.iter().sum();
+        if sum > 0.0 { Self { points, weights: weights.map(|w| w / sum) } } else { Self::of_one(points[0]) }
+    }
+
+    /// The points that count, with their weights.
+    pub fn parts(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        self.points.iter().copied().zip(self.weights).filter(|&(_, weight)| weight > 0.0)
+    }
+}

@@ -1,0 +1,84 @@
+//! From points to what they span.
+
+use super::cavity::Cavity;
+use super::cell::Vertex;
+use super::divide::{self, Same};
+use super::hilbert;
+use super::insert::Inserted;
+use super::mesh::Mesh;
+use super::simplex::Simplex;
+use super::sites::Sites;
+use super::solid::Solid;
+use crate::DelaunayError;
+use glam::DVec3;
+
+/// What points span.
+#[derive(Clone, Debug)]
+pub(super) enum Shape {
+    /// All coincide with this one.
+    Point(u32),
+    /// From one end to the other.
+    Line(Vec<u32>),
+    /// Space, or a plane.
+    Solid(Box<Solid>),
+}
+
+/// Of those points that are indexed, at least one. Writes which point stands for each.
+pub(super) fn shape(
+    points: &[DVec3],
+    indices: &[u32],
+    representative: &mut [u32],
+) -> Result<Shape, DelaunayError> {
+    indices.iter().for_each(|&i| representative[i as usize] = i);
+    let order = hilbert::insertion_order(points, indices);
+    let mut sites = Sites::new(order.iter().map(|&i| points[i as usize]));
+    let vertices: Vec<Vertex> = (1..=order.len() as u32).map(Vertex).collect();
+    let (first, apex) = match Simplex::new(&sites, &vertices) {
+        Simplex::Point | Simplex::Line => return Ok(line(points, indices, representative)),
+        Simplex::Plane(three) => {
+            let apex = sites.push_apex(three);
+            ([three[0], three[1], three[2], apex], Some(apex))
+        }
+        Simplex::Space(first) => (first, None),
+    };
+    // Halves of a plane would each need the apex.
+    let depth = if apex.is_some() { 0 } else { divide::depth(vertices.len()) };
+    let (mesh, same) =
+        divide::mesh(&sites, &vertices, Some(first), depth)?.expect("the first four span space");
+    let mut solid = Solid::new(sites, mesh, &order, apex, points.len());
+    solid.merge(&same, representative);
+    Ok(Shape::Solid(Box::new(solid)))
+}
+
+/// The mesh of these vertices, built from the first, and those that are not in it, each with the one in its place that is.
+pub(super) fn mesh(
+    sites: &Sites,
+    vertices: &[Vertex],
+    first: [Vertex; 4],
+) -> Result<(Mesh, Same), DelaunayError> {
+    let (mut mesh, mut same) = (Mesh::with_capacity(vertices.len()), vec![]);
+    let mut cavity = Cavity::new(sites.len());
+    mesh.reset(sites, first);
+    for &v in vertices.iter().filter(|v| !first.contains(v)) {
+        if let Inserted::Same(kept) = mesh.insert(sites, &mut cavity, v)? {
+            same.push((v, kept));
+        }
+    }
+    Ok((mesh, same))
+}
+
+/// Points of a line, in lexicographic order, which is that along the line.
+fn line(points: &[DVec3], indices: &[u32], representative: &mut [u32]) -> Shape {
+    let of = |i: u32| points[i as usize].to_array();
+    let compare = |&i: &u32, &j: &u32| of(i).partial_cmp(&of(j)).expect("positions are finite");
+    let mut along = indices.to_vec();
+    along.sort_unstable_by(|i, j| compare(i, j).then(i.cmp(j)));
+    along.dedup_by(|next, first| {
+        let is_same = compare(next, first).is_eq();
+        if is_same {
+            representative[*next as usize] = *first;
+        }
+        is_same
+    });
+    if along.len() == 1 { Shape::Point(along[0]) } else { Shape::Line(along) }
+}

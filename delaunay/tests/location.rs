@@ -1,0 +1,138 @@
+//! Weights and location: the facts of `invariants::weights`, and what went wrong once.
+
+mod generators;
+
+use generators::{lattice_points, query};
+use glam::{DVec3, dvec3};
+use pointillist_delaunay::invariants::weights;
+use pointillist_delaunay::{Delaunay, DelaunayError, Hint, Locator, OUTSIDE, Partition, Triangles};
+use proptest::prelude::*;
+use proptest::test_runner::TestCaseError;
+
+fn fail(message: String) -> TestCaseError {
+    TestCaseError::fail(message)
+}
+
+proptest! {
+    #![proptest_config(testkit::config(96))]
+
+    #[test]
+    fn weights_reproduce_linear_functions_and_are_those_of_the_nearest_point_beyond_the_hull(
+        points in lattice_points(), queries in prop::collection::vec(query(), 1..20)
+    ) {
+        weights::weights_find_the_nearest_point(&points, &queries, 1e-9).map_err(fail)?;
+    }
+
+    #[test]
+    fn far_away_and_resized_points_are_weighted_alike(
+        points in lattice_points(), queries in prop::collection::vec(query(), 1..8), power in -200..200_i32
+    ) {
+        let scale = 2.0_f64.powi(power);
+        let resized = |list: &[DVec3]| list.iter().map(|p| *p * scale).collect::<Vec<_>>();
+        weights::weights_find_the_nearest_point(&resized(&points), &resized(&queries), 1e-9).map_err(fail)?;
+        let moved = |list: &[DVec3]| list.iter().map(|p| *p + dvec3(1e8, -2e8, 3e8)).collect::<Vec<_>>();
+        weights::weights_find_the_nearest_point(&moved(&points), &moved(&queries), 1e-6).map_err(fail)?;
+    }
+
+    #[test]
+    fn hints_change_nothing(points in lattice_points(), queries in prop::collection::vec(query(), 1..20)) {
+        weights::hints_do_not_matter(&points, &queries, 1e-9).map_err(fail)?;
+    }
+
+    #[test]
+    fn values_do_not_jump_on_the_way_through_cells_and_out_of_the_hull(
+        points in lattice_points(), values in prop::collection::vec(-1.0..1.0_f64, 24), a in query(), b in query()
+    ) {
+        weights::nothing_jumps(&points, &values, a, b, 1e-6).map_err(fail)?;
+    }
+
+    #[test]
+    fn location_ends_for_any_query(points in lattice_points(), raw in prop::array::uniform3(any::<f64>())) {
+        let locator = Locator::new(&points, &Delaunay::new(&points).unwrap().partition()).unwrap();
+        let p = DVec3::from_array(raw);
+        match locator.locate_anywhere(p) {
+            Ok(blend) => prop_assert!((blend.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12),
+            Err(error) => {
+                prop_assert!(!p.is_finite());
+                prop_assert_eq!(error, DelaunayError::QueryNotFinite { index: 0 });
+            }
+        }
+    }
+}
+
+#[test]
+fn the_middle_of_a_cell_is_found_in_it_and_what_is_beyond_the_hull_in_none() {
+    let corner = |i: u32| dvec3(f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9));
+    let space: Vec<DVec3> = (0..27).map(corner).collect();
+    for (points, beyond) in
+        [(&space[..], DVec3::splat(2.1)), (&space[..9], dvec3(2.1, 1.0, 0.0)), (&space[..3], -DVec3::X)]
+    {
+        let partition = Delaunay::new(points).unwrap().partition();
+        let locator = Locator::new(points, &partition).unwrap();
+        let mut hint = Hint::START;
+        for cell in partition.cells() {
+            let corners = cell.corners();
+            let middle = corners.iter().map(|&c| points[c as usize]).sum::<DVec3>() / corners.len() as f64;
+            assert_eq!(locator.cell(middle, &mut hint), Ok(Some(cell.index())));
+        }
+        assert_eq!(locator.cell(beyond, &mut hint), Ok(None));
+        assert_eq!(locator.cell(DVec3::NAN, &mut hint), Err(DelaunayError::QueryNotFinite { index: 0 }));
+    }
+}
+
+/// Found by fuzzing: from 1e31 sizes away the distances of all facets of the hull are the same number.
+#[test]
+fn the_nearest_point_is_found_from_very_far_away() {
+    let scale = 2.0_f64.powi(-111);
+    let points = [[5.0, 5.0, 5.0], [-6.0, -6.0, -6.0], [3.0, 7.0, 3.0], [3.0, 3.0, 3.0]]
+        .map(|p| DVec3::from_array(p) * scale);
+    let queries = [dvec3(-2.3e-28, -2.3e-28, 0.0462), dvec3(11.9, 9.1e-44, 0.0), dvec3(0.0, -1e5, 1.0)];
+    weights::weights_find_the_nearest_point(&points, &queries, 1e-9).unwrap();
+}
+
+/// Found by fuzzing: two of three points are one, once the third is scaled to 1; their cell is flat and its coordinates are no numbers.
+#[test]
+fn cells_that_are_flat_to_the_last_digit_have_weights() {
+    let points = [dvec3(-2.2e-272, -1.1e-204, 0.0), DVec3::splat(-2.2e-272), dvec3(-1.8e267, -2.3e305, 0.0)];
+    let locator = Locator::new(&points, &Delaunay::new(&points).unwrap().partition()).unwrap();
+    for query in [DVec3::ZERO, DVec3::Y, points[2] * 0.5] {
+        let weights = locator.locate_anywhere(query).unwrap().weights;
+        assert!(weights.iter().all(|w| (0.0..=1.0).contains(w)), "{weights:?}");
+        assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-14, "{weights:?}");
+    }
+}
+
+/// A partition with an index beyond the points used to panic, and one without mutual neighbours may send a walk in circles.
+#[test]
+fn a_partition_that_is_not_of_these_points_is_refused_by_cell() {
+    let points: Vec<DVec3> = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]]
+        .map(DVec3::from_array)
+        .to_vec();
+    let Partition::Tetrahedra(good) = Delaunay::new(&points).unwrap().partition() else { panic!("flat") };
+    assert!(Locator::new(&points, &Partition::Tetrahedra(good.clone())).is_ok());
+    let bad_cell = |partition: &Partition| match Locator::new(&points, partition) {
+        Err(DelaunayError::BadCell { cell, .. }) => cell,
+        other => panic!("{other:?}"),
+    };
+    let mut beyond = good.clone();
+    beyond.corners[1][2] = 5;
+    assert_eq!(bad_cell(&Partition::Tetrahedra(beyond)), 1);
+    let mut one_way = good.clone();
+    let side = one_way.neighbours[0].iter().position(|&n| n != OUTSIDE).expect("two cells");
+    let other = one_way.neighbours[0][side] as usize;
+    for n in &mut one_way.neighbours[other] {
+        *n = OUTSIDE;
+    }
+    assert_eq!(bad_cell(&Partition::Tetrahedra(one_way)), 0);
+    let mut short = good;
+    short.neighbours.pop();
+    assert_eq!(bad_cell(&Partition::Tetrahedra(short.clone())), short.neighbours.len());
+    assert_eq!(bad_cell(&Partition::Point(9)), 0);
+    assert_eq!(bad_cell(&Partition::Line(vec![0, 1, 7])), 2);
+    assert_eq!(bad_cell(&Partition::Line(vec![0])), 0);
+    assert_eq!(bad_cell(&Partition::Triangles(Triangles::default())), 0);
+    let mut nowhere = points.clone();
+    nowhere[3].y = f64::NAN;
+    let refused = Locator::new(&nowhere, &Partition::Point(0));
+    assert!(matches!(refused, Err(DelaunayError::PointNotFinite { index: 3 })));
+}

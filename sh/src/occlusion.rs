@@ -1,0 +1,20 @@
+//! Visibility of the sky.
+
+use crate::{Channel, Sh};
+use glam::DVec3;
+use std::f64::consts::FRAC_1_PI;
+
+impl Sh<f64> {
+    /// Of visibility (1 where nothing is in the way, 0 elsewhere): the share of an even sky's irradiance that arrives at a
+    /// surface, ∫ V·max(cos θ, 0) dω/π. From 0, all occluded, to 1; what truncation leaves beyond is cut off.
+    pub fn ambient_occlusion(&self, normal: DVec3) -> f64 {
+        (self.irradiance(normal) * FRAC_1_PI).clamp(0.0, 1.0)
+    }
+
+    /// Of visibility: the radiance of a sky where it is visible. Its [`Sh::irradiance`] is the light from the sky; light from
+    /// what occludes it is to be added.
+    #[must_use]
+    pub fn lit_by<T: Channel>(&self, sky: &Sh<T>) -> Sh<T> {
+        sky.product(self, sky.order()).expect("functions have orders that products take")
+    }
+}
