@@ -20,14 +20,13 @@ struct Part {
 
 pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?.reading(&options.parts)?.writing([&options.output])?;
+    let is_text = is_standard(&options.output) && options.parts.iter().all(|part| is_probe_file(part));
+    let holds_probes = is_text || is_probe_file(&options.output);
+    let format = if holds_probes { None } else { Some(OutputFormat::of(&options.output)?) };
     if let Some(part) = options.parts.iter().find(|part| !is_standard(part) && !part.exists()) {
         return Err(CliError::Parts(format!("part {} is missing", part.display())));
     }
-    let is_text = is_standard(&options.output) && options.parts.iter().all(|part| is_probe_file(part));
-    if is_text || is_probe_file(&options.output) {
-        return merge_probes(options, &report);
-    }
-    let format = OutputFormat::of(&options.output)?;
+    let Some(format) = format else { return merge_probes(options, &report) };
     let parts = options.parts.iter().map(|path| report.stats.stage("load", || read_part(path)));
     let mut parts = parts.collect::<Result<Vec<_>, _>>()?;
     report.stats.count("parts", parts.len() as u64);

@@ -1,6 +1,6 @@
 //! Joins what `probe bake --part` wrote.
 
-use super::{check_output, write};
+use super::write;
 use crate::commands::Report;
 use crate::commands::report::name_of_output;
 use crate::error::CliError;
@@ -10,7 +10,6 @@ use crate::probe_io::{ProbeFile, read_probes};
 
 /// `merge` of probes.
 pub(in crate::commands) fn merge_probes(options: &MergeOptions, report: &Report<'_>) -> Result<(), CliError> {
-    check_output(&options.output)?;
     let mut parts = vec![];
     for path in &options.parts {
         let name = name_of(path);
