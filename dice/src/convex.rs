@@ -317,6 +317,24 @@ pub fn has_separating_edge(a: &[DVec2], b: &[DVec2]) -> bool {
     false
 }
 
+/// Whether two convex polygons have no common interior, within rounding.
+#[must_use]
+#[inline]
+pub fn are_disjoint(a: &[DVec2], b: &[DVec2]) -> bool {
+    has_separating_edge(a, b) || has_separating_edge(b, a)
+}
+
+/// Whether every point lies inside a convex outline.
+#[must_use]
+pub fn contains(outline: &[DVec2], points: &[DVec2]) -> bool {
+    let Some(&(mut previous)) = outline.last() else { return false };
+    outline.iter().all(|&v| {
+        let half = HalfPlane::left_of(previous, v);
+        previous = v;
+        points.iter().all(|&p| half.value(p) >= 0.0)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

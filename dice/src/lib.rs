@@ -41,6 +41,8 @@
 //! [`cut`] is the engine for renderers: one convex piece a cell, in `f64`. The area in a cell is off by at most [`CUT_ERROR`] (2⁻⁴⁹) times
 //! the largest coordinate; neighbours share their crossings bit for bit, and a window shows the cells of the whole.
 //!
+//! [`hide`] finds what is left of a polygon behind other polygons, opaque or translucent.
+//!
 //! `split` costs time for each piece, `accumulate` for each cell on the outline and each row. The figures are in the
 //! README, with the commands that give them.
 //!
@@ -71,6 +73,7 @@ mod error;
 mod fill;
 mod fixed;
 mod grid;
+pub mod hide;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod outline;

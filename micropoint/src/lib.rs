@@ -41,11 +41,11 @@
 mod closed;
 mod error;
 mod face;
+mod front;
 mod geometry;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod lens;
-mod occlude;
 mod render;
 mod resolve;
 mod texel;
@@ -56,9 +56,9 @@ pub use error::MicropointError;
 pub use face::{
     Face, GridRect, Outline, PlainOpacity, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity, set_up_face,
 };
+pub use front::{Front, Layer, in_front};
 pub use geometry::{Bounds, Cluster, ClusterQueue, Geometry, HiddenSides, Surface, Triangle};
 pub use lens::{Lens, LensKind, Plane, TIE};
-pub use occlude::{Blocker, Front, Layer, Occluders, Region, Regions, are_disjoint, contains, in_front};
 pub use pointillist_view::{PixelRect, Projected, Projection, Ray, View, ViewError};
 pub use render::{Fragment, Micropoint, MicropointOptions, Renderer, Tile};
 pub use resolve::Occlusion;

@@ -1,10 +1,11 @@
 //! From the parts in a cell to what is seen of them.
 
+use crate::front::{Front, Layer, in_front};
 use crate::lens::Lens;
-use crate::occlude::{Blocker, Front, Layer, Occluders, Region, Regions, are_disjoint, contains, in_front};
 use crate::tile::Dicer;
 use glam::DVec2;
-use pointillist_dice::ConvexPolygon;
+use pointillist_dice::hide::{Blocker, Occluders, Region, Regions};
+use pointillist_dice::{ConvexPolygon, convex};
 
 /// How parts in one cell hide one another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -195,7 +196,7 @@ fn hide(
     let following = order[i + 1..].iter().take_while(|&&o| dicer.part(o).nearness.1 >= behind);
     for &o in scratch.standing.iter().chain(following) {
         let other = dicer.part(o);
-        if !part.bounds.overlap(&other.bounds) || are_disjoint(outline, dicer.outline(other)) {
+        if !part.bounds.overlap(&other.bounds) || convex::are_disjoint(outline, dicer.outline(other)) {
             continue;
         }
         let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
@@ -205,7 +206,7 @@ fn hide(
         let first = fo.precedence(fp) == std::cmp::Ordering::Less;
         match in_front(lens, corner, upper, lower, first) {
             Front::Nowhere => {}
-            Front::Everywhere if other.opacity >= 1.0 && contains(dicer.outline(other), outline) => {
+            Front::Everywhere if other.opacity >= 1.0 && convex::contains(dicer.outline(other), outline) => {
                 return Sight::Hidden;
             }
             Front::Everywhere => scratch.blockers.push((o, None)),

@@ -3,7 +3,6 @@
 use crate::face::{Face, GridRect, ProjectedVertex, Setup, TexturedOpacity, set_up_face};
 use crate::geometry::{ClusterQueue, Geometry, HiddenSides};
 use crate::lens::{Lens, LensKind};
-use crate::occlude::are_disjoint;
 use crate::volume::ViewVolume;
 use glam::{DVec2, IVec2, Vec2};
 use pointillist_dice::{CellWindow, ConvexPolygon, Cut, convex, cut};
@@ -446,7 +445,7 @@ impl Dicer {
             let outline = self.outline(part);
             let disjoint = |&o: &u32| {
                 let other = &self.parts[o as usize];
-                !part.bounds.overlap(&other.bounds) || are_disjoint(outline, self.outline(other))
+                !part.bounds.overlap(&other.bounds) || convex::are_disjoint(outline, self.outline(other))
             };
             if !order[..i].iter().all(disjoint) {
                 break;

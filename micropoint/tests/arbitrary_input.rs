@@ -1,11 +1,10 @@
 //! Any values at all into every public function: an answer or a typed error, never a panic.
 
 use glam::{DAffine3, DMat3, DVec2, DVec3, dvec2, dvec3};
-use pointillist_dice::{ConvexPolygon, HalfPlane};
 use pointillist_micropoint::{
     Bounds, ClusterQueue, Geometry, GridRect, HiddenSides, Lens, MicropointError, MicropointOptions,
-    Occlusion, PixelRect, PlainOpacity, ProjectedVertex, Projection, Regions, Renderer, Setup, Surface,
-    TexelCorner, TexelSums, TexelWrap, Tile, View, ViewVolume, are_disjoint, set_up_face,
+    Occlusion, PixelRect, PlainOpacity, ProjectedVertex, Projection, Renderer, Setup, Surface, TexelCorner,
+    TexelSums, TexelWrap, Tile, View, ViewVolume, set_up_face,
 };
 use proptest::prelude::*;
 
@@ -131,22 +130,6 @@ proptest! {
                 prop_assert!(least <= mean && mean <= most, "{mean} is not from {least} to {most}");
             }
         }
-    }
-
-    #[test]
-    fn kernels_take_any_polygon(
-        a in prop::collection::vec((number(), number()), 0..9), b in prop::collection::vec((number(), number()), 0..9),
-        half in prop::collection::vec(number(), 5), negligible in number(), opacity in number(),
-    ) {
-        let [a, b] = [a, b].map(|p| p.iter().map(|&(x, y)| dvec2(x, y)).collect::<Vec<DVec2>>());
-        let _ = are_disjoint(&a, &b);
-        let mut regions = Regions::default();
-        regions.start(ConvexPolygon::from_vertices(&a), negligible);
-        let front = HalfPlane { anchor: dvec2(half[0], half[1]), normal: dvec2(half[2], half[3]), offset: half[4] };
-        for front in [None, Some(front)] {
-            regions.attenuate(&b, front, |_| opacity);
-        }
-        let _ = regions.is_hidden();
     }
 
     #[test]

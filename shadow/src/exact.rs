@@ -3,8 +3,9 @@
 use crate::light::{Measure, Query};
 use crate::scratch::{Caster, Nearby, Target, Work};
 use glam::DVec2;
+use pointillist_dice::hide::Occluders;
 use pointillist_dice::{ConvexPolygon, convex};
-use pointillist_micropoint::{Face, Front, Layer, Occluders, in_front};
+use pointillist_micropoint::{Face, Front, Layer, in_front};
 use std::cmp::Ordering;
 
 /// Overlaps below this share of a receiver are rounding.

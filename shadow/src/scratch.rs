@@ -3,8 +3,9 @@
 use crate::layers::LightCells;
 use crate::light::Resolution;
 use glam::DVec2;
+use pointillist_dice::hide::{Blocker, Regions};
 use pointillist_dice::{ConvexPolygon, convex};
-use pointillist_micropoint::{Blocker, Bounds, ClusterQueue, Face, Lens, ProjectedVertex, Regions};
+use pointillist_micropoint::{Bounds, ClusterQueue, Face, Lens, ProjectedVertex};
 
 /// Which side of a face the viewer sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,10 +4,16 @@
 //! satisfies every fact.
 
 mod cut;
+mod hide;
 
 pub use cut::{
     Part, cut_equals_accumulate, cut_pieces_lie_in_their_cells, cut_shares_edges,
     cut_window_is_part_of_the_whole, parts,
+};
+
+pub use hide::{
+    Rectangle, Sheet, attenuated, hidden, order_of_occluders_does_not_matter,
+    rectangles_take_what_they_cover, regions_make_up_the_polygon,
 };
 
 use std::collections::BTreeMap;

@@ -1,9 +1,27 @@
-//! What is left of a polygon behind other polygons, exactly: the kernel of hiding and of shadow.
+//! What is left of a polygon behind other polygons, exactly: the kernel of visibility and of shadows.
+//!
+//! A polygon is divided into convex [`Region`]s, each behind the same set of occluders, by half-planes along the occluders' edges. No area is
+//! lost: pieces too small to cut off stay with their neighbours.
+//!
+//! ```
+//! use glam::dvec2;
+//! use pointillist_dice::ConvexPolygon;
+//! use pointillist_dice::hide::Regions;
+//!
+//! // A unit square behind a bar that covers its left third, and glass that takes half of the light of its lower half.
+//! let square = ConvexPolygon::rectangle(dvec2(0.0, 0.0), dvec2(1.0, 1.0));
+//! let bar = ConvexPolygon::rectangle(dvec2(-1.0, -1.0), dvec2(1.0 / 3.0, 2.0));
+//! let glass = ConvexPolygon::rectangle(dvec2(-1.0, 0.5), dvec2(2.0, 2.0));
+//! let mut regions = Regions::default();
+//! regions.start(square, 1e-13);
+//! regions.attenuate(bar.vertices(), None, |_| 1.0);
+//! regions.attenuate(glass.vertices(), None, |_| 0.5);
+//! let light: f64 = regions.list().iter().map(|region| region.polygon.area() * region.transmittance).sum();
+//! assert!((light - 2.0 / 3.0 * 0.75).abs() < 1e-15);
+//! ```
 
-use crate::face::Face;
-use crate::lens::Lens;
+use crate::convex::{self, ConvexPolygon, HalfPlane};
 use glam::DVec2;
-use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
 
 /// A part of a polygon and the light that reaches it.
 #[derive(Clone, Copy, Debug)]
@@ -14,23 +32,23 @@ pub struct Region {
     pub transmittance: f64,
 }
 
-/// Light that is fainter than this, of 1, is none: what it would show has no bit in any picture.
+/// Transmittance below this counts as zero: it changes no bit of a picture.
 const FAINT: f64 = 1e-12;
 
-/// Regions beyond which an occluder no longer divides but dims what it touches, by the share that it
-/// covers. Reached only where hundreds of occluders overlap in a spot that halving does not separate.
+/// With more regions than this an occluder no longer divides a region that it overlaps, but scales its transmittance by the
+/// covered share. Reached only where hundreds of occluders overlap in one place that halving does not separate.
 const MOST_REGIONS: usize = 256;
 
-/// The same for translucent occluders where more than [`FEW`] overlap and halving does not separate them: in
-/// foliage each of them is a mean over its region as it is. Few of them are exact, whatever regions they make.
+/// The same limit for translucent occluders where more than [`FEW`] overlap and halving does not separate them. In foliage the opacity of
+/// each is a mean over its region anyway. At most [`FEW`] of them are always exact.
 const MOST_TRANSLUCENT_REGIONS: usize = 24;
 
-/// Occluders that are worth dividing a polygon for at once. With more, the polygon is halved first:
-/// each half meets fewer, and the splinters of one do not get cut by the occluders of the other.
+/// Most occluders by which a polygon is divided at once. With more, the polygon is halved first: each half meets fewer, and the
+/// pieces in one half are not cut by occluders of the other.
 const FEW: usize = 12;
 
-/// How often a polygon is halved. A half that still meets most of the occluders counts as four: long
-/// slivers side by side are better cut one after the other.
+/// How often a polygon is halved. Halving that leaves more than three quarters of the occluders in a half counts as four times:
+/// long slivers side by side are better cut one after the other.
 const MOST_HALVINGS: u32 = 12;
 
 /// What stands before a polygon, by numbers that the caller gives meaning to.
@@ -138,10 +156,12 @@ impl Regions {
             let (number, front) = self.stack[i];
             let outline = occluders.outline(number);
             let (olow, ohigh) = convex::bounds(outline);
-            if !(olow.cmplt(high).all() && ohigh.cmpgt(low).all()) || are_disjoint(half.vertices(), outline) {
+            if !(olow.cmplt(high).all() && ohigh.cmpgt(low).all())
+                || convex::are_disjoint(half.vertices(), outline)
+            {
                 continue;
             }
-            if front.is_none() && occluders.is_opaque(number) && contains(outline, half.vertices()) {
+            if front.is_none() && occluders.is_opaque(number) && convex::contains(outline, half.vertices()) {
                 return false;
             }
             self.stack.push((number, front));
@@ -220,8 +240,11 @@ impl Regions {
         if region.has_separating_edge(occluder) {
             return None;
         }
+        let mut edges = convex::half_planes(occluder).peekable();
+        // An outline whose corners coincide has no edges that would cut anything off.
+        edges.peek()?;
         let mut inside = *region;
-        for half in convex::half_planes(occluder).chain(front.copied()) {
+        for half in edges.chain(front.copied()) {
             if inside.vertices().iter().all(|&v| half.value(v) >= 0.0) {
                 continue;
             }
@@ -235,88 +258,6 @@ impl Regions {
             }
         }
         (inside.area() > self.negligible).then_some(inside)
-    }
-}
-
-/// Whether two convex polygons have no common interior, within rounding.
-#[must_use]
-#[inline]
-pub fn are_disjoint(a: &[DVec2], b: &[DVec2]) -> bool {
-    convex::has_separating_edge(a, b) || convex::has_separating_edge(b, a)
-}
-
-/// Whether every point lies inside a convex outline.
-#[must_use]
-pub fn contains(outline: &[DVec2], points: &[DVec2]) -> bool {
-    let Some(&(mut previous)) = outline.last() else { return false };
-    outline.iter().all(|&v| {
-        let half = HalfPlane::left_of(previous, v);
-        previous = v;
-        points.iter().all(|&p| half.value(p) >= 0.0)
-    })
-}
-
-/// A polygon on a face, with its range of nearness.
-#[derive(Clone, Copy)]
-pub struct Layer<'a> {
-    /// The face it lies on.
-    pub face: &'a Face,
-    /// Its outline, convex and in positive order; [`in_front`] says in which frame.
-    pub outline: &'a [DVec2],
-    /// Smallest and largest nearness over the outline.
-    pub nearness: (f64, f64),
-}
-
-/// Where one layer is nearer than another.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Front {
-    /// Nowhere on their common area.
-    Nowhere,
-    /// On all of their common area.
-    Everywhere,
-    /// On this side of the line in which they cross.
-    Within(HalfPlane),
-}
-
-/// Where `upper` is in front of `lower`, over their common area; outlines are relative to `corner`.
-///
-/// Coincident layers (see [`Lens::tie`]) are in front of each other if `if_coincident` says so. Nearness
-/// is affine on either, so its extremes are at corners of the common area and the line of equal
-/// nearness is straight.
-#[must_use]
-pub fn in_front(
-    lens: &Lens,
-    corner: DVec2,
-    upper: Layer<'_>,
-    lower: Layer<'_>,
-    if_coincident: bool,
-) -> Front {
-    let (fu, fl) = (&upper.face.plane, &lower.face.plane);
-    let tie = lens.tie(lower.nearness.1, fu.slope.abs() + fl.slope.abs());
-    // Ranges that lie apart need no planes, however steep these are.
-    if upper.nearness.0 >= lower.nearness.1 + lens.tie(lower.nearness.1, DVec2::ZERO) {
-        return Front::Everywhere;
-    }
-    let mut common = ConvexPolygon::from_vertices(lower.outline);
-    for half in convex::half_planes(upper.outline) {
-        common = common.clipped(&half);
-    }
-    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-    for &v in common.vertices() {
-        let difference = upper.face.nearness_at(v + corner) - lower.face.nearness_at(v + corner);
-        least = least.min(difference);
-        most = most.max(difference);
-    }
-    if common.is_empty() {
-        Front::Nowhere
-    } else if most <= tie {
-        if least >= -tie && if_coincident { Front::Everywhere } else { Front::Nowhere }
-    } else if least >= -tie {
-        Front::Everywhere
-    } else {
-        let anchor = lower.outline[0];
-        let offset = fu.at(anchor + corner) - fl.at(anchor + corner);
-        Front::Within(HalfPlane { anchor, normal: fu.slope - fl.slope, offset })
     }
 }
 

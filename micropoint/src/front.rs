@@ -1,0 +1,70 @@
+//! Which of two surfaces is in front, over the area that they have in common.
+
+use crate::face::Face;
+use crate::lens::Lens;
+use glam::DVec2;
+use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
+
+/// A polygon on a face, with its range of nearness.
+#[derive(Clone, Copy)]
+pub struct Layer<'a> {
+    /// The face it lies on.
+    pub face: &'a Face,
+    /// Its outline, convex and in positive order; [`in_front`] says in which frame.
+    pub outline: &'a [DVec2],
+    /// Smallest and largest nearness over the outline.
+    pub nearness: (f64, f64),
+}
+
+/// Where one layer is nearer than another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Front {
+    /// Nowhere on their common area.
+    Nowhere,
+    /// On all of their common area.
+    Everywhere,
+    /// On this side of the line in which they cross.
+    Within(HalfPlane),
+}
+
+/// Where `upper` is in front of `lower`, over their common area; outlines are relative to `corner`.
+///
+/// Coincident layers (see [`Lens::tie`]) are in front of each other if `if_coincident` says so. Nearness
+/// is affine on either, so its extremes are at corners of the common area and the line of equal
+/// nearness is straight.
+#[must_use]
+pub fn in_front(
+    lens: &Lens,
+    corner: DVec2,
+    upper: Layer<'_>,
+    lower: Layer<'_>,
+    if_coincident: bool,
+) -> Front {
+    let (fu, fl) = (&upper.face.plane, &lower.face.plane);
+    let tie = lens.tie(lower.nearness.1, fu.slope.abs() + fl.slope.abs());
+    // Ranges that lie apart need no planes, however steep these are.
+    if upper.nearness.0 >= lower.nearness.1 + lens.tie(lower.nearness.1, DVec2::ZERO) {
+        return Front::Everywhere;
+    }
+    let mut common = ConvexPolygon::from_vertices(lower.outline);
+    for half in convex::half_planes(upper.outline) {
+        common = common.clipped(&half);
+    }
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for &v in common.vertices() {
+        let difference = upper.face.nearness_at(v + corner) - lower.face.nearness_at(v + corner);
+        least = least.min(difference);
+        most = most.max(difference);
+    }
+    if common.is_empty() {
+        Front::Nowhere
+    } else if most <= tie {
+        if least >= -tie && if_coincident { Front::Everywhere } else { Front::Nowhere }
+    } else if least >= -tie {
+        Front::Everywhere
+    } else {
+        let anchor = lower.outline[0];
+        let offset = fu.at(anchor + corner) - fl.at(anchor + corner);
+        Front::Within(HalfPlane { anchor, normal: fu.slope - fl.slope, offset })
+    }
+}
