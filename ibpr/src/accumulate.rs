@@ -10,6 +10,7 @@ use crate::layers;
 use crate::options::{Translucency, Weighting};
 use crate::parallel::*;
 use crate::project::{Band, LANES, Projected};
+use pointillist_parallel::Pool;
 use pulp::Arch;
 
 /// Rows per band: the sums of a band of 1024 pixels fit into the second-level cache.

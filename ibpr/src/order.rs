@@ -1,8 +1,8 @@
 //! The order of points that every frame uses: it depends on what the points are, not on how they came.
 
-use crate::parallel::sort_by;
 use crate::scan::Scan;
 use glam::DVec3;
+use pointillist_parallel::sort_by;
 use std::cmp::Ordering;
 
 /// Cells per axis of the finest lattice, as a power of 2: three times this fits into 64 bits.

@@ -17,6 +17,7 @@ use crate::parallel::*;
 use crate::pixels::{Nearest, Stack};
 use crate::raster::{Pixels, Strip};
 use crate::shade::{RowsOut, Shaded, Shader};
+use pointillist_parallel::{Pool, threads};
 use pointillist_view::{Projection, View};
 
 /// Rows of the picture that are drawn together: their surfaces fit into the second-level cache.

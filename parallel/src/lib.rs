@@ -14,6 +14,10 @@
 //! `rayon` (default): rayon's current pool. Without it nothing but the calling thread is used.
 #![forbid(unsafe_code)]
 
+mod pool;
+
+pub use pool::Pool;
+
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -40,6 +44,21 @@ pub fn map_heavy<T: Send>(count: usize, f: impl Fn(usize) -> T + Send + Sync) ->
     return (0..count).into_par_iter().map(f).collect();
     #[cfg(not(feature = "rayon"))]
     (0..count).map(f).collect()
+}
+
+/// As [`map_heavy`]; each call gets memory that no other call uses at the time.
+pub fn map_with<T: Send, S: Send>(
+    count: usize,
+    memory: impl Fn() -> S + Send + Sync,
+    f: impl Fn(&mut S, usize) -> T + Send + Sync,
+) -> Vec<T> {
+    #[cfg(feature = "rayon")]
+    return (0..count).into_par_iter().map_init(memory, f).collect();
+    #[cfg(not(feature = "rayon"))]
+    {
+        let mut memory = memory();
+        (0..count).map(|i| f(&mut memory, i)).collect()
+    }
 }
 
 /// As [`map`], to two lists.
@@ -81,6 +100,14 @@ pub fn flat_map<T: Send>(count: usize, f: impl Fn(usize, &mut Vec<T>) + Send + S
 pub fn for_each_mut<T: Send>(list: &mut [T], f: impl Fn(&mut T) + Send + Sync) {
     #[cfg(feature = "rayon")]
     list.par_iter_mut().with_min_len(MIN_ENTRIES).for_each(f);
+    #[cfg(not(feature = "rayon"))]
+    list.iter_mut().for_each(f);
+}
+
+/// As [`for_each_mut`], where each call is worth a thread.
+pub fn for_each_mut_heavy<T: Send>(list: &mut [T], f: impl Fn(&mut T) + Send + Sync) {
+    #[cfg(feature = "rayon")]
+    list.par_iter_mut().with_max_len(1).for_each(f);
     #[cfg(not(feature = "rayon"))]
     list.iter_mut().for_each(f);
 }

@@ -10,12 +10,12 @@ use glam::DVec3;
 
 use crate::gather::visible_share;
 use crate::kernel::lambert;
-use crate::parallel;
 use crate::solve::Solution;
 use crate::surface::Rgb;
 use crate::transport::Transport;
 use crate::tree::ElementId;
 use crate::visible::parts::Pieces;
+use pointillist_parallel as parallel;
 
 /// Where light is gathered for a vertex on the rim of a surface: this share of the way to its patches' centres. On the rim itself
 /// the share of a wall that begins there is not defined.
@@ -81,7 +81,7 @@ impl Transport {
         let mut mesh = Mesh::new(self);
         mesh.collect();
         let (count, all) = (AtomicUsize::new(0), mesh.places.len() as f64);
-        let light = parallel::map(mesh.places.len(), Pieces::default, |pieces, i| {
+        let light = parallel::map_with(mesh.places.len(), Pieces::default, |pieces, i| {
             done(count.fetch_add(1, Ordering::Relaxed) as f64 / all);
             self.light_at(solution, &mesh.places[i], pieces)
         });

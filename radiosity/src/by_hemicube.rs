@@ -3,11 +3,11 @@
 use crate::error::RadiosityError;
 use crate::hemicube::{Hemicube, HemicubeKind};
 use crate::lamp::check_direct;
-use crate::parallel;
 use crate::polygon::Polygon;
 use crate::scene::Scene;
 use crate::surface::Rgb;
 use crate::transport::{Link, Transport};
+use pointillist_parallel as parallel;
 
 impl Scene {
     /// As [`Scene::transport`] without a tolerance, with a hemicube of `resolution` cells at each patch's centre.
@@ -34,7 +34,7 @@ impl Scene {
         let polygons: Vec<&Polygon> =
             leaves.iter().map(|&l| &self.tree.elements[l as usize].polygon).collect();
         let occluders: Vec<&Polygon> = self.occluders.iter().collect();
-        let rows = parallel::map(
+        let rows = parallel::map_with(
             leaves.len(),
             || Hemicube::new(kind, resolution),
             |hemicube, i| {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::error::RadiosityError;
+use crate::factor;
 use crate::kernel::gauss;
 use crate::polygon::Polygon;
 use crate::scene::Scene;
@@ -10,7 +11,7 @@ use crate::surface::{Rgb, is_light};
 use crate::tree::{Element, ElementId};
 use crate::visible::cubature;
 use crate::visible::parts::{Eye, Pieces, Source};
-use crate::{factor, parallel};
+use pointillist_parallel as parallel;
 
 /// Gauss points along each side of a visible piece.
 const ORDER: usize = 4;
@@ -96,7 +97,7 @@ impl Scene {
                 break;
             }
             let found =
-                parallel::map(open.len(), Pieces::default, |pieces, i| self.lit(open[i], lamps, pieces));
+                parallel::map_with(open.len(), Pieces::default, |pieces, i| self.lit(open[i], lamps, pieces));
             for (&leaf, found) in open.iter().zip(found) {
                 let (irradiance, edge) = found.map_err(|problem| self.not_lit(leaf, problem))?;
                 of_element[leaf as usize] = Some(irradiance);

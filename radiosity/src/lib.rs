@@ -52,7 +52,6 @@ mod hemicube;
 pub mod invariants;
 mod kernel;
 mod lamp;
-mod parallel;
 mod polygon;
 mod rows;
 mod scene;

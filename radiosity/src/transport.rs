@@ -7,7 +7,6 @@ use crate::factor::{FactorOptions, of_mutual};
 use crate::kernel::lambert;
 use crate::kernel::pair::{self, Rule, facing_parts};
 use crate::lamp::check_direct;
-use crate::parallel;
 use crate::polygon::Polygon;
 use crate::scene::Scene;
 use crate::solve::{Solution, add};
@@ -17,6 +16,7 @@ use crate::visible::boxes::Boxes;
 use crate::visible::cubature;
 use crate::visible::parts::{Eye, Pieces, Source};
 use crate::visible::shaft::Shaft;
+use pointillist_parallel as parallel;
 
 /// How far towards the centre corners are moved when the light on them is compared: on an edge that two walls share, the share of
 /// the other wall jumps.
@@ -167,7 +167,7 @@ impl Scene {
         let mut lost = vec![0.0; self.tree.elements.len()];
         let roots = self.tree.roots.clone();
         let refiner = Refiner { scene: &self, estimate: &radiosity, boxes: &boxes };
-        let mut round: Vec<Found> = parallel::map(roots.len(), Pieces::default, |pieces, i| {
+        let mut round: Vec<Found> = parallel::map_with(roots.len(), Pieces::default, |pieces, i| {
             let mut found = Found::default();
             for &q in &roots[i + 1..] {
                 refiner.roots(roots[i], q, &mut found, pieces);
@@ -185,7 +185,7 @@ impl Scene {
             }
             lost.resize(self.tree.elements.len(), 0.0);
             let refiner = Refiner { scene: &self, estimate: &radiosity, boxes: &boxes };
-            round = parallel::map(wanted.len(), Pieces::default, |pieces, i| {
+            round = parallel::map_with(wanted.len(), Pieces::default, |pieces, i| {
                 let mut found = Found::default();
                 let (p, q, which, list) = &wanted[i];
                 // What cannot be divided any further is linked as it is.

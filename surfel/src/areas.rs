@@ -7,8 +7,8 @@
 //! too large, and the sum at other places ripples by 0.090 where it does by 0.071 here.)
 
 use crate::neighbours::{Places, Sides};
-use crate::parallel;
 use glam::Vec3;
+use pointillist_parallel as parallel;
 use std::f64::consts::PI;
 
 /// Deviation σ of a kernel, in parts of its point's radius: `K(d) = (1 − d²/4σ²)²` for `d < 2σ`, over its integral,

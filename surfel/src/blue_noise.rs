@@ -1,8 +1,9 @@
 //! Samples by elimination: random points, evenly by area, of which the most crowded are taken away.
 
 use crate::mesh::Mesh;
-use crate::{SurfacePoint, eliminate, parallel};
+use crate::{SurfacePoint, eliminate};
 use glam::DVec3;
+use pointillist_parallel as parallel;
 
 /// Random points for each point that is asked for: \[2\], §4, finds that more than 5 gain little.
 const OVERSAMPLING: usize = 5;

@@ -6,8 +6,9 @@ use crate::links::{self, Link, Links};
 use crate::neighbours::Places;
 use crate::octree::{self, Cube};
 use crate::points::Points;
-use crate::{areas, normals, pairs, parallel, radius};
+use crate::{areas, normals, pairs, radius};
 use glam::{DVec3, Vec3};
+use pointillist_parallel as parallel;
 use std::cmp::Ordering;
 use std::ops::Range;
 

@@ -1,8 +1,9 @@
 //! Which of many points to keep so that those that are left are far from one another: \[2\].
 
+use crate::SurfacePoint;
 use crate::rows::Rows;
-use crate::{SurfacePoint, parallel};
 use glam::DVec3;
+use pointillist_parallel as parallel;
 
 /// \[2\], eq. 4, β and γ: distances below `β·(1 − (count/candidates)^γ)` of the lattice's spacing crowd no more than that one.
 const BETA: f64 = 0.65;

@@ -6,8 +6,9 @@
 
 use crate::cover::{self, MAX_CELLS};
 use crate::mesh::Mesh;
-use crate::{SurfacePoint, SurfelError, parallel};
+use crate::{SurfacePoint, SurfelError};
 use glam::{DVec2, DVec3};
+use pointillist_parallel as parallel;
 use std::cmp::Ordering;
 
 /// No point of a smooth surface is farther than this many spacings from the nearest sample: √6.

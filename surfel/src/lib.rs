@@ -85,7 +85,6 @@ mod options;
 mod packed;
 mod pairs;
 mod paper;
-mod parallel;
 mod point;
 mod points;
 mod project;

@@ -7,8 +7,8 @@ use crate::cloud::{Attributes, Node};
 use crate::lattice::{CODE_BITS, between, morton, moved};
 use crate::octree::Cube;
 use crate::packed;
-use crate::parallel;
 use glam::Vec3;
+use pointillist_parallel as parallel;
 
 /// A cube of the octree is divided into 2^DIVISIONS cells a side; each cell in which there is surface gets a link for every
 /// side that the surface has there.

@@ -1,7 +1,8 @@
 //! A mesh that was looked at.
 
-use crate::{SurfacePoint, SurfelError, parallel};
+use crate::{SurfacePoint, SurfelError};
 use glam::DVec3;
+use pointillist_parallel as parallel;
 
 /// Areas whose square roots, divided by any count, can be squared again.
 const AREAS: std::ops::RangeInclusive<f64> = 1e-280..=1e280;

@@ -5,8 +5,8 @@
 //! *Multidimensional binary search trees used for associative searching*, CACM 1975), so that a search for a number of
 //! neighbours costs the same everywhere. Points that coincide are one place: no search depends on how many they are.
 
-use crate::parallel;
 use glam::{DVec3, Vec3};
+use pointillist_parallel as parallel;
 use std::cmp::Ordering;
 
 /// Places that are not split any further: from 6 to 16, the time of searches is the same to within what can be measured.

@@ -5,8 +5,8 @@
 //! *Surface reconstruction from unorganized points*, SIGGRAPH 1992, §3.2).
 
 use crate::neighbours::Places;
-use crate::parallel;
 use glam::{DVec3, Vec3};
+use pointillist_parallel as parallel;
 
 /// Places that a plane is fitted to, the point's own among them. Mean angle to the true normal on a sphere of 4000 points of
 /// blue noise, and with noise of 0.1 spacings along the normal: 0.70° and 3.5° with 8, 0.50° and 2.0° with 14, 0.42° and 1.0°

@@ -7,8 +7,8 @@ use crate::cloud::{Attributes, radius_of_area};
 use crate::lattice::between;
 use crate::links::Link;
 use crate::octree::Cube;
-use crate::parallel;
 use glam::Vec3;
+use pointillist_parallel as parallel;
 
 /// Neighbours whose normals have a smaller product than this are no pair, nor are those that are farther apart than this, in
 /// the larger of their radii: one disc cannot stand for both.

@@ -4,11 +4,12 @@
 //! that is as near to two neighbours, the farthest that are needed. The cell is cut out of the tangent plane, neighbour by
 //! neighbour, up to the distance at which none can cut any more.
 
+use crate::SurfacePoint;
 use crate::eliminate::OTHER_SIDE;
 use crate::neighbours::{Near, Places, Sides};
 use crate::rows::Rows;
-use crate::{SurfacePoint, parallel};
 use glam::{DVec2, DVec3, Vec3};
+use pointillist_parallel as parallel;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Corners of the square that a cell begins as, and of what the cell is cut to where it has no neighbours.

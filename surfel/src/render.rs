@@ -6,10 +6,10 @@ use crate::error::SurfelError;
 use crate::frame::{Frame, FrameCounts};
 use crate::options::{Options, Procedure};
 use crate::paper::{self, Cell, PaperTile};
-use crate::parallel::{self, Pool};
 use crate::select::{self, Selected};
 use crate::shade::Shader;
 use crate::tile::{Place, Scene, Tile};
+use pointillist_parallel::{self as parallel, Pool};
 use pointillist_view::View;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -77,7 +77,7 @@ impl Renderer {
     }
 
     fn blend(&self, scene: &Scene<'_>, frame: &mut Frame) {
-        parallel::for_each_mut(&mut frame.bands(), |band| {
+        parallel::for_each_mut_heavy(&mut frame.bands(), |band| {
             let of_band: Vec<Selected> = nodes_in(&self.selected, &band.whole()).collect();
             self.tiles.with(|tile| {
                 for number in 0..band.drawn.len() {
@@ -98,7 +98,7 @@ impl Renderer {
         paper::reshape(&mut self.cells, width, height);
         let mut bands = frame.bands();
         let mut rows: Vec<_> = paper::rows(&mut self.cells, width).zip(&bands).collect();
-        parallel::for_each_mut(&mut rows, |(cells, band)| {
+        parallel::for_each_mut_heavy(&mut rows, |(cells, band)| {
             self.paper_tiles.with(|tile| {
                 for number in 0..band.drawn.len() {
                     let place = band.place(number);
@@ -108,7 +108,7 @@ impl Renderer {
             });
         });
         let cells = &self.cells;
-        parallel::for_each_mut(&mut bands, |band| paper::reconstruct(scene, cells, band));
+        parallel::for_each_mut_heavy(&mut bands, |band| paper::reconstruct(scene, cells, band));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Points near a place.
 
-use crate::parallel;
 use glam::DVec3;
+use pointillist_parallel as parallel;
 
 /// Points in rows along the longest side of their box, sorted along each row: a search looks into a few rows and, in each,
 /// at the points within reach only.
