@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     Geometry, Lens, LensKind, MicropointError, MicropointOptions, PixelRect, PlainOpacity, Renderer, Surface,
-    Tile, View,
+    TIE, Tile, View,
 };
 
 /// Rounding allowed to a sum of weights over a pixel.
@@ -361,7 +361,7 @@ impl Bounded {
 /// The share of each surface in each pixel by another way: exact integration of the arrangement of all edges and
 /// crossings, without dicing, tiles, culling or polygons. For few triangles: time grows with the sixth power.
 ///
-/// Surfaces closer than 1e-9 of their nearness coincide; the one with the higher number is in front.
+/// Surfaces closer than [`TIE`] of their nearness coincide; the one with the lower number is in front.
 #[must_use]
 pub fn shares_by_arrangement(soup: &Soup, view: &View) -> Vec<Vec<f64>> {
     let lens = Lens::of_view(view, 1);
@@ -419,8 +419,8 @@ fn add_line(strips: &[Strip], half_width: f64, thickness: f64, row: &mut [Vec<f6
         let nearness = |s: &Strip| s.nearness.0 + s.nearness.1 * x;
         here.sort_by(|a, b| {
             let (qa, qb) = (nearness(a), nearness(b));
-            let coincide = (qa - qb).abs() <= 1e-9 * qa.abs().max(qb.abs());
-            if coincide { b.surface.cmp(&a.surface) } else { qb.total_cmp(&qa) }
+            let coincide = (qa - qb).abs() <= TIE * qa.abs().max(qb.abs());
+            if coincide { a.surface.cmp(&b.surface) } else { qb.total_cmp(&qa) }
         });
         let mut transmittance = thickness * length;
         let column = ((x + half_width) as usize).min(row.len() - 1);

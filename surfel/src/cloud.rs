@@ -137,7 +137,8 @@ pub struct Cloud {
     pub(crate) two_sided: bool,
 }
 
-/// Radius of a disc for its share of the surface: half the diagonal of a square.
+/// Radius of a disc over the square root of its share of the surface: a little more than half the diagonal of a square (0.71), so that discs
+/// on a square lattice overlap at its corners.
 const RADIUS_PER_ROOT_AREA: f32 = 0.75;
 
 /// The radius that a link is drawn with.
