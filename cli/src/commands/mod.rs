@@ -8,6 +8,7 @@ mod info;
 mod json_lines;
 mod merge;
 mod points;
+mod polygon_lines;
 mod probe;
 mod radiosity;
 mod render;

@@ -1,6 +1,7 @@
 //! `radiosity` and its command.
 
 mod bake;
+mod factor_lines;
 mod factors;
 
 use crate::error::CliError;

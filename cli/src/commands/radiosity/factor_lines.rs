@@ -38,7 +38,7 @@ const EXAMPLE: &str =
 ///
 /// # Errors
 /// Stops at the first line that cannot be used. The lines before it have been answered.
-pub fn run(
+pub(super) fn answer_all(
     lines: &mut Lines<'_>,
     output: &mut dyn Write,
     options: &FactorOptions,

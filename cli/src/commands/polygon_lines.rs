@@ -80,7 +80,11 @@ const EXAMPLE: &str =
 ///
 /// # Errors
 /// Stops at the first line that cannot be used. The lines before it have been written.
-pub fn run(lines: &mut Lines<'_>, output: &mut dyn Write, areas: bool) -> Result<(), JsonLinesError> {
+pub(super) fn answer_all(
+    lines: &mut Lines<'_>,
+    output: &mut dyn Write,
+    areas: bool,
+) -> Result<(), JsonLinesError> {
     let mut scratch = Accumulator::new();
     while let Some((line, text)) = lines.next_line()? {
         let result = answer(&text, output, areas, &mut scratch);
@@ -277,12 +281,12 @@ fn way_out(error: DiceError) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use super::{Lines, run};
+    use super::{Lines, answer_all};
 
     fn answer(input: &str, areas: bool) -> Result<String, String> {
         let mut output = Vec::new();
         let mut lines = Lines::new(Box::new(input.as_bytes()), "shapes.jsonl");
-        run(&mut lines, &mut output, areas).map_err(|e| e.to_string())?;
+        answer_all(&mut lines, &mut output, areas).map_err(|e| e.to_string())?;
         String::from_utf8(output).map_err(|e| e.to_string())
     }
 
