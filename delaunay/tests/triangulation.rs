@@ -7,12 +7,7 @@ use glam::{DMat3, DVec3, dvec3};
 use pointillist_delaunay::invariants::triangulation as facts;
 use pointillist_delaunay::{Delaunay, DelaunayError, OUTSIDE, Partition, Tetrahedra};
 use proptest::prelude::*;
-
-macro_rules! holds {
-    ($fact:expr) => {
-        $fact.map_err(TestCaseError::fail)?
-    };
-}
+use testkit::holds;
 
 /// Points of a grid, the last axis fastest.
 fn grid(counts: [u32; 3], spacing: f64) -> Vec<DVec3> {

@@ -5,6 +5,7 @@ use pointillist_dice::hide::Regions;
 use pointillist_dice::invariants::{self, Rectangle, Sheet};
 use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
 use proptest::prelude::*;
+use testkit::holds;
 
 /// A coordinate about the unit square, often on its border or shared with others.
 fn coordinate() -> BoxedStrategy<f64> {
@@ -60,12 +61,6 @@ fn number() -> BoxedStrategy<f64> {
         ],
     ]
     .boxed()
-}
-
-macro_rules! holds {
-    ($fact:expr) => {
-        $fact.map_err(TestCaseError::fail)?
-    };
 }
 
 proptest! {

@@ -6,6 +6,7 @@ use pointillist_dice::{
     clip_guard_band, clip_near, invariants, split,
 };
 use proptest::prelude::*;
+use testkit::holds;
 
 /// A coordinate on a grid line, next to one, or anywhere. Boxed: nested, the strategies outgrow a test's stack.
 fn coordinate(size: f64) -> BoxedStrategy<f64> {
@@ -112,12 +113,6 @@ fn anything() -> impl Strategy<Value = f64> {
 
 fn any_ring() -> impl Strategy<Value = Vec<DVec2>> {
     prop::collection::vec((anything(), anything()).prop_map(|(x, y)| dvec2(x, y)), 0..8)
-}
-
-macro_rules! holds {
-    ($fact:expr) => {
-        $fact.map_err(TestCaseError::fail)?
-    };
 }
 
 proptest! {

@@ -9,6 +9,7 @@ use pointillist_ibpr::{
     View, Weighting,
 };
 use proptest::prelude::*;
+use testkit::holds;
 
 /// Any number, or one on a coarse grid.
 fn coordinate() -> BoxedStrategy<f64> {
@@ -114,12 +115,6 @@ fn options() -> impl Strategy<Value = Options> {
         o.eye_dome = light.2.then_some(EyeDome { strength: 1.0, radius: 2 });
         o
     })
-}
-
-macro_rules! holds {
-    ($fact:expr) => {
-        $fact.map_err(TestCaseError::fail)?
-    };
 }
 
 proptest! {

@@ -6,6 +6,7 @@ use pointillist_micropoint::{
     Geometry, MicropointOptions, Occlusion, PixelRect, PlainOpacity, Projection, Renderer, Tile, View,
 };
 use proptest::prelude::*;
+use testkit::holds;
 
 const EXACT: MicropointOptions = MicropointOptions::DEFAULT;
 const PAPER: MicropointOptions = MicropointOptions::DEFAULT.with_occlusion(Occlusion::Paper);
@@ -116,13 +117,6 @@ fn options() -> impl Strategy<Value = MicropointOptions> {
             (if paper { PAPER } else { EXACT }).with_cells_per_pixel(cells).with_cull_solids(cull)
         },
     )
-}
-
-/// Failures become tests in `regressions.rs`; seeds are not kept.
-macro_rules! holds {
-    ($fact:expr) => {
-        $fact.map_err(TestCaseError::fail)?
-    };
 }
 
 proptest! {

@@ -8,6 +8,7 @@ use pointillist_micropoint::{
 use pointillist_shadow::invariants::{self, LitPicture, light_on, lit_picture};
 use pointillist_shadow::{Emitter, Resolution, ShadowLight, ShadowOptions, ShadowScratch};
 use proptest::prelude::*;
+use testkit::holds;
 
 fn exact() -> ShadowOptions {
     ShadowOptions::default()
@@ -93,12 +94,6 @@ fn view() -> BoxedStrategy<View> {
 
 fn options() -> BoxedStrategy<ShadowOptions> {
     prop_oneof![3 => Just(exact()), 1 => Just(paper(Resolution::Auto)), 1 => Just(paper(Resolution::Cells(256)))].boxed()
-}
-
-macro_rules! holds {
-    ($fact:expr) => {
-        $fact.map_err(TestCaseError::fail)?
-    };
 }
 
 /// Area of a convex polygon of the plane y = 0 inside each pixel of `down(height, pixels)`.

@@ -7,6 +7,7 @@ use pointillist_surfel::invariants::{
 use pointillist_surfel::{Cloud, Focus, Light, Options, Procedure, Projection, View};
 use proptest::prelude::*;
 use std::sync::LazyLock;
+use testkit::holds;
 
 /// Any number, or one on a coarse grid.
 fn coordinate() -> BoxedStrategy<f64> {
@@ -99,12 +100,6 @@ fn options() -> BoxedStrategy<Options> {
 fn with(mut options: Options, change: impl Fn(&mut Options)) -> Options {
     change(&mut options);
     options
-}
-
-macro_rules! holds {
-    ($fact:expr) => {
-        $fact.map_err(TestCaseError::fail)?
-    };
 }
 
 proptest! {

@@ -5,6 +5,7 @@ use pointillist_surfel::invariants::{self, LEAST_DISTANCE};
 use pointillist_surfel::{MAX_COUNT, Method, SampleOptions, SurfacePoint, SurfelError, sample};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2, TAU};
+use testkit::holds;
 
 const NOISE: SampleOptions = SampleOptions::DEFAULT;
 const RAYS: SampleOptions = SampleOptions::DEFAULT.with_method(Method::Ldi);
@@ -83,12 +84,6 @@ fn mesh() -> BoxedStrategy<Mesh> {
             (Just(positions), prop::collection::vec([0..n, 0..n, 0..n], 0..16))
         })
         .boxed()
-}
-
-macro_rules! holds {
-    ($fact:expr) => {
-        $fact.map_err(TestCaseError::fail)?
-    };
 }
 
 proptest! {

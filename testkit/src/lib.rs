@@ -29,6 +29,14 @@ pub fn config(cases: u32) -> Config {
     }
 }
 
+/// Ends the case of a property test with what is wrong if a fact, a `Result<(), String>`, does not hold.
+#[macro_export]
+macro_rules! holds {
+    ($fact:expr) => {
+        $fact.map_err(proptest::test_runner::TestCaseError::fail)?
+    };
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::{Path, PathBuf};
