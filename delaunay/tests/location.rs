@@ -1,13 +1,11 @@
 //! Weights and location: the facts of `invariants::weights`, and what went wrong once.
 
-mod generators;
-
-use generators::{lattice_points, query};
 use glam::{DVec3, dvec3};
 use pointillist_delaunay::invariants::weights;
 use pointillist_delaunay::{Delaunay, DelaunayError, Hint, Locator, OUTSIDE, Partition, Triangles};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
+use testkit::points::{lattice_points, query};
 
 fn fail(message: String) -> TestCaseError {
     TestCaseError::fail(message)

@@ -1,14 +1,12 @@
 //! What is asked of cells, edges, facets and vertices: the facts of `invariants::queries`, and closed forms.
 
-mod generators;
-
-use generators::{lattice_points, points, query};
 use glam::{DVec3, dvec3};
 use pointillist_delaunay::invariants::queries as facts;
 use pointillist_delaunay::{
     Delaunay, DelaunayError, NearestVertex, OUTSIDE, Partition, Tetrahedra, Triangles, circumcentre,
 };
 use proptest::prelude::*;
+use testkit::points::{lattice_points, points, query};
 
 fn hold(fact: Result<(), String>) -> Result<(), TestCaseError> {
     fact.map_err(TestCaseError::fail)

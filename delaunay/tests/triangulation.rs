@@ -1,13 +1,11 @@
 //! The facts of `invariants::triangulation`, and closed forms.
 
-mod generators;
-
-use generators::{point, points, scaled};
 use glam::{DMat3, DVec3, dvec3};
 use pointillist_delaunay::invariants::triangulation as facts;
 use pointillist_delaunay::{Delaunay, DelaunayError, OUTSIDE, Partition, Tetrahedra};
 use proptest::prelude::*;
 use testkit::holds;
+use testkit::points::{point, points, scaled};
 
 /// Points of a grid, the last axis fastest.
 fn grid(counts: [u32; 3], spacing: f64) -> Vec<DVec3> {

@@ -6,6 +6,7 @@ use pointillist_dice::invariants::{self, Rectangle, Sheet};
 use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
 use proptest::prelude::*;
 use testkit::holds;
+use testkit::numbers::number;
 
 /// A coordinate about the unit square, often on its border or shared with others.
 fn coordinate() -> BoxedStrategy<f64> {
@@ -48,19 +49,6 @@ fn sheets() -> impl Strategy<Value = Vec<Sheet>> {
 
 fn rectangle() -> impl Strategy<Value = Rectangle> {
     (point(), point(), opacity()).prop_map(|(a, b, opacity)| (a.min(b), a.max(b), opacity))
-}
-
-/// Any number, for what must not panic.
-fn number() -> BoxedStrategy<f64> {
-    prop_oneof![
-        4 => -2.0..2.0,
-        1 => any::<f64>(),
-        1 => prop_oneof![
-            Just(0.0), Just(f64::NAN), Just(f64::INFINITY), Just(f64::NEG_INFINITY), Just(1e300), Just(-1e89),
-            Just(5e-324), Just(1e7), Just(-1e16),
-        ],
-    ]
-    .boxed()
 }
 
 proptest! {

@@ -1,37 +1,13 @@
 //! Any values at all into every public function: an answer or a typed error, never a panic.
 
-use glam::{DAffine3, DMat3, DVec2, DVec3, dvec2, dvec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3, dvec2};
 use pointillist_micropoint::{
     Bounds, ClusterQueue, Geometry, GridRect, HiddenSides, Lens, MicropointError, MicropointOptions,
     Occlusion, PixelRect, PlainOpacity, ProjectedVertex, Projection, Renderer, Setup, Surface, TexelCorner,
     TexelSums, TexelWrap, Tile, View, ViewVolume, set_up_face,
 };
 use proptest::prelude::*;
-
-fn number() -> BoxedStrategy<f64> {
-    prop_oneof![
-        4 => -2.0..2.0,
-        1 => any::<f64>(),
-        1 => prop_oneof![
-            Just(0.0), Just(f64::NAN), Just(f64::INFINITY), Just(f64::NEG_INFINITY), Just(1e300), Just(-1e89),
-            Just(5e-324), Just(1e7), Just(-1e16),
-        ],
-    ]
-    .boxed()
-}
-
-/// Finite, so that more than the door is tested.
-fn finite() -> BoxedStrategy<f64> {
-    prop_oneof![
-        6 => -2.0..2.0,
-        1 => prop_oneof![Just(0.0), Just(1e80), Just(-1e89), Just(5e-324), Just(1e7), Just(-1e16), Just(1e-160)],
-    ]
-    .boxed()
-}
-
-fn vector(n: fn() -> BoxedStrategy<f64>) -> BoxedStrategy<DVec3> {
-    (n(), n(), n()).prop_map(|(x, y, z)| dvec3(x, y, z)).boxed()
-}
+use testkit::numbers::{finite, number, vector};
 
 fn projection() -> impl Strategy<Value = Projection> {
     prop_oneof![

@@ -8,27 +8,15 @@ use pointillist_shadow::{
     Emitter, Receivers, Resolution, ShadowError, ShadowLight, ShadowOptions, ShadowScratch, Viewer,
 };
 use proptest::prelude::*;
-
-fn number() -> BoxedStrategy<f64> {
-    prop_oneof![
-        6 => -2.0..2.0,
-        1 => any::<f64>(),
-        1 => prop_oneof![Just(0.0), Just(f64::NAN), Just(f64::INFINITY), Just(1e300), Just(-1e89), Just(5e-324), Just(1e16)],
-    ]
-    .boxed()
-}
-
-fn vector() -> BoxedStrategy<DVec3> {
-    (number(), number(), number()).prop_map(|(x, y, z)| dvec3(x, y, z)).boxed()
-}
+use testkit::numbers::{number, vector};
 
 proptest! {
     #![proptest_config(testkit::config(512))]
 
     #[test]
     fn any_light_on_any_receivers_gives_fractions_or_an_error(
-        triangles in prop::collection::vec(([vector(), vector(), vector()], 0.0..=1.0f32), 1..5), position in vector(), axis in vector(),
-        directional: bool, cells in prop::option::of(any::<u32>()), paper: bool, extra in prop::collection::vec(vector(), 0..9),
+        triangles in prop::collection::vec(([vector(number), vector(number), vector(number)], 0.0..=1.0f32), 1..5), position in vector(number), axis in vector(number),
+        directional: bool, cells in prop::option::of(any::<u32>()), paper: bool, extra in prop::collection::vec(vector(number), 0..9),
     ) {
         let finite = |p: &DVec3| p.is_finite() && p.abs().max_element() < 1e80;
         let triangles: Vec<_> = triangles.into_iter().filter(|(c, _)| c.iter().all(finite)).collect();

@@ -5,22 +5,7 @@ use pointillist_shprobe::delaunay::{Delaunay, Partition};
 use pointillist_shprobe::sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, Hint, LitObject, ProbeError, place};
 use proptest::prelude::*;
-
-/// Points of a small lattice: grids, planes, lines and repeats come often, and no cell is thinner than a thousandth.
-fn lattice_points() -> impl Strategy<Value = Vec<DVec3>> {
-    let coordinate = -4..=4_i8;
-    let axis = prop_oneof![
-        coordinate.clone().prop_map(|c| [c, c]),
-        (coordinate.clone(), coordinate).prop_map(|(a, b)| [a, b])
-    ];
-    // Both numbers of an axis equal: all points lie in one plane.
-    let point = |x: [i8; 2], y: [i8; 2], z: [i8; 2]| {
-        prop::collection::vec((x[0]..=x[0].max(x[1]), y[0]..=y[0].max(y[1]), z[0]..=z[0].max(z[1])), 1..24)
-    };
-    (axis.clone(), axis.clone(), axis)
-        .prop_flat_map(move |(x, y, z)| point(x, y, z))
-        .prop_map(|list| list.into_iter().map(|(x, y, z)| dvec3(x.into(), y.into(), z.into())).collect())
-}
+use testkit::points::lattice_points;
 
 proptest! {
     #![proptest_config(testkit::config(96))]

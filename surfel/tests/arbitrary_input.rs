@@ -8,38 +8,7 @@ use pointillist_surfel::{
 };
 use proptest::prelude::*;
 use std::time::{Duration, Instant};
-
-fn number() -> BoxedStrategy<f64> {
-    prop_oneof![
-        4 => -2.0..2.0,
-        1 => any::<f64>(),
-        1 => prop_oneof![
-            Just(0.0), Just(f64::NAN), Just(f64::INFINITY), Just(f64::NEG_INFINITY), Just(1e300), Just(-1e89),
-            Just(5e-324), Just(1e7), Just(-1e16),
-        ],
-    ]
-    .boxed()
-}
-
-/// Finite, so that more than the door is tested.
-fn finite() -> BoxedStrategy<f64> {
-    prop_oneof![
-        6 => -2.0..2.0,
-        1 => prop_oneof![
-            Just(0.0), Just(1e80), Just(-1e89), Just(5e-324), Just(1e7), Just(-1e16), Just(1e-160), Just(1e300),
-        ],
-    ]
-    .boxed()
-}
-
-/// Of one size, huge or tiny.
-fn of_one_size() -> BoxedStrategy<f64> {
-    (-2.0..2.0f64).boxed()
-}
-
-fn vector(n: fn() -> BoxedStrategy<f64>) -> BoxedStrategy<DVec3> {
-    [n(), n(), n()].prop_map(DVec3::from_array).boxed()
-}
+use testkit::numbers::{finite, number, of_one_size, vector};
 
 fn normal() -> BoxedStrategy<Vec3> {
     prop_oneof![4 => vector(of_one_size).prop_map(|v| v.as_vec3()), 1 => any::<[f32; 3]>().prop_map(Vec3::from_array)]

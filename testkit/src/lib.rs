@@ -1,6 +1,9 @@
 //! What the tests of several crates share. Not published: crates name it as a dependency of their tests, by path alone.
 #![forbid(unsafe_code)]
 
+pub mod numbers;
+pub mod points;
+
 use proptest::test_runner::{Config, FileFailurePersistence, RngSeed};
 
 /// Seed of every property test, unless `PROPTEST_RNG_SEED` gives another.

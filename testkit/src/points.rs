@@ -1,5 +1,4 @@
-//! Points and queries that property tests draw.
-#![allow(dead_code, unreachable_pub, reason = "each test takes what it needs")]
+//! Sets of points that geometry finds hard, and places to ask about.
 
 use glam::{DVec3, dvec3};
 use proptest::prelude::*;
@@ -15,6 +14,7 @@ fn coordinate() -> impl Strategy<Value = f64> {
     ]
 }
 
+/// A point of any coordinates about the origin, which are often the same as those of others.
 pub fn point() -> impl Strategy<Value = DVec3> {
     (coordinate(), coordinate(), coordinate()).prop_map(|(x, y, z)| dvec3(x, y, z))
 }
@@ -42,10 +42,13 @@ fn scale() -> impl Strategy<Value = i32> {
     prop_oneof![4 => Just(0), 1 => -900..900]
 }
 
+/// Points times a power of two.
+#[must_use]
 pub fn scaled(points: Vec<DVec3>, exponent: i32) -> Vec<DVec3> {
     points.into_iter().map(|p| p * 2f64.powi(exponent)).collect()
 }
 
+/// Fewer than `max` finite points: anywhere, on lattices, lines, planes and spheres, repeated, huge beside tiny.
 pub fn points(max: usize) -> impl Strategy<Value = Vec<DVec3>> {
     let of = prop_oneof![
         prop::collection::vec(point(), 1..max),
@@ -82,6 +85,7 @@ pub fn lattice_points() -> impl Strategy<Value = Vec<DVec3>> {
         .prop_map(|list| list.into_iter().map(|(x, y, z)| dvec3(x.into(), y.into(), z.into())).collect())
 }
 
+/// A place in and about [`lattice_points`], often on the lattice.
 pub fn query() -> impl Strategy<Value = DVec3> {
     let near = prop::array::uniform3(-6.0..6.0_f64);
     let on_lattice = prop::array::uniform3((-12..=12_i8).prop_map(|c| f64::from(c) * 0.5));
