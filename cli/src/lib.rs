@@ -3,6 +3,7 @@
 //! The crates below this one are the library to build on; this one may change with every version.
 #![forbid(unsafe_code)]
 
+mod baked_file;
 pub mod cloud_io;
 mod commands;
 pub mod compare;
@@ -18,10 +19,8 @@ mod json_words;
 pub mod memory;
 pub mod mesh_io;
 pub mod options;
-pub mod pipeline;
 pub mod points;
 pub mod probe_io;
-pub mod radiosity;
 pub mod scan;
 pub mod scene;
 

@@ -255,37 +255,38 @@ impl<'a> Renderer<'a> {
         &self.lens
     }
 
-    /// Renders a rectangle tile by tile and hands each to `visit`, together with the state of the thread
-    /// that made it. Tiles come in any order, and from all cores with the feature `rayon`.
+    /// Renders a rectangle tile by tile and hands each to `visit`, together with a state that only one thread uses at a time,
+    /// made by `start`. Tiles come in any order, and from all cores with the feature `rayon`. After an error of `visit`, which
+    /// may be used to cancel, no further tile is begun.
     ///
     /// # Errors
-    /// [`MicropointError::BadTileSize`] unless `size` is 4 to 64 pixels.
-    pub fn for_each_tile<S: Default>(
+    /// [`MicropointError::BadTileSize`] unless `size` is 4 to 64 pixels, or an error of `visit`.
+    pub fn for_each_tile<S, E: From<MicropointError> + Send>(
         &self,
         rect: PixelRect,
         size: u32,
-        visit: impl Fn(&mut S, &Tile) + Sync,
-    ) -> Result<(), MicropointError> {
+        start: impl Fn() -> S + Send + Sync,
+        visit: impl Fn(&mut S, &Tile) -> Result<(), E> + Send + Sync,
+    ) -> Result<(), E> {
         if !(4..=64).contains(&size) {
-            return Err(MicropointError::BadTileSize(size));
+            return Err(MicropointError::BadTileSize(size).into());
         }
         let tiles: Vec<PixelRect> = rect.intersection(&self.picture()).tiles(size).collect();
+        let start = || (Tile::default(), start());
         let render = |(tile, state): &mut (Tile, S), rect: &PixelRect| {
             self.render(*rect, tile);
-            visit(state, tile);
+            visit(state, tile)
         };
-        let start = <(Tile, S)>::default;
         #[cfg(feature = "rayon")]
         {
             use rayon::prelude::*;
-            tiles.par_iter().for_each_init(start, render);
+            tiles.par_iter().try_for_each_init(start, render)
         }
         #[cfg(not(feature = "rayon"))]
         {
             let mut state = start();
-            tiles.iter().for_each(|rect| render(&mut state, rect));
+            tiles.iter().try_for_each(|rect| render(&mut state, rect))
         }
-        Ok(())
     }
 
     /// Finds the visible micropoints of some pixels. What a pixel gets does not depend on the

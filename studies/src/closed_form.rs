@@ -1,7 +1,7 @@
 //! Pictures that can be written down.
 
 use glam::{DVec2, DVec3, dvec2};
-use pointillist_cli::scene::Scene;
+use pointillist_render::Scene;
 
 use crate::picture::Picture;
 use crate::point_sampling::Pinhole;

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use pointillist_cli::scene::{Overrides, Scene, load};
+use pointillist_cli::scene::{Overrides, load};
+use pointillist_render::Scene;
 
 use crate::picture::Picture;
 
@@ -29,7 +30,7 @@ pub(crate) fn references() -> Vec<Reference> {
     let Some(folder) = folder() else { return vec![] };
     let read = |name: &'static str| {
         let path = |ending: &str| folder.join("reference").join(format!("{name}{ending}"));
-        let scene = load(&path(".toml"), &Overrides::default()).map_err(|e| e.to_string())?;
+        let scene = load(&path(".toml"), &Overrides::default()).map_err(|e| e.to_string())?.scene;
         let exact = path(".exact.npz");
         let picture = Picture::read(&if exact.exists() { exact } else { path(".ref.exr") })?;
         Ok::<_, String>(Reference { name, scene, picture })

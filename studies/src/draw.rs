@@ -1,13 +1,11 @@
 //! Our own pictures: through the whole pipeline, or from the micropoints alone.
 
 use glam::DVec3;
-use pointillist_cli::image_io::PixelRect;
-use pointillist_cli::job::{Progress, ProgressMode, RenderJob, Stats};
-use pointillist_cli::pipeline::{self, PipelineError};
-use pointillist_cli::scene::Scene;
 use pointillist_micropoint::{
     Geometry, MicropointError, MicropointOptions, PlainOpacity, Renderer, Surface, Tile, View, ViewError,
 };
+use pointillist_render::Scene;
+use pointillist_render::{DrawOptions, RenderError, render};
 
 use crate::picture::Picture;
 
@@ -15,16 +13,14 @@ use crate::picture::Picture;
 pub(crate) const TILE_SIZE: u32 = 16;
 
 /// Draws a scene as `pointillist render` does.
-pub(crate) fn with_pipeline(scene: &Scene) -> Result<Picture, PipelineError> {
-    let window = PixelRect::of_picture(scene.image.width, scene.image.height);
-    let job = RenderJob { region: window, window, layers: vec![] };
-    let frame = pipeline::render(scene, &job, &Progress::new(ProgressMode::Off), &Stats::new())?;
+pub(crate) fn with_pipeline(scene: &Scene) -> Result<Picture, RenderError> {
+    let frame = render(scene, &DrawOptions::DEFAULT, &())?;
     Ok(Picture::from_frame(&frame))
 }
 
 /// The geometry of a scene without textures.
 pub(crate) fn geometry(scene: &Scene) -> Result<Geometry, MicropointError> {
-    let surface = |m: &pointillist_cli::scene::Material| Surface {
+    let surface = |m: &pointillist_render::Material| Surface {
         opacity: m.surface.opacity,
         textured_opacity: false,
         two_sided: true,

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use glam::{DVec3, dvec2};
-use pointillist_cli::scene::Scene;
+use pointillist_render::Scene;
 
 use crate::picture::Picture;
 use crate::point_sampling::{Pinhole, Projected, by_rows, project, span};

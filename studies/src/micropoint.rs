@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use glam::{DVec3, dvec3};
-use pointillist_cli::scene::Scene;
 use pointillist_micropoint::{MicropointOptions, Occlusion};
+use pointillist_render::Scene;
 
 use crate::picture::Picture;
 use crate::ray_reference::Tree;

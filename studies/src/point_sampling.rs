@@ -1,7 +1,7 @@
 //! The comparator for pictures: plain N × N point samples a pixel through a z-buffer.
 
 use glam::{DVec2, DVec3, dvec2};
-use pointillist_cli::scene::{Projection, Scene};
+use pointillist_render::{Projection, Scene};
 
 use crate::picture::Picture;
 use crate::scenes::{SurfaceSample, Visibility, corners, opacity, radiance};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use pointillist_cli::image_io::encode_rgb_png;
-use pointillist_cli::scene::srgb_from_linear;
+use pointillist_render::srgb_from_linear;
 
 use crate::picture::Picture;
 

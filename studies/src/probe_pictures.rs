@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::{DVec3, Vec3};
-use pointillist_cli::scene::{AmbientLight, Scene};
+use pointillist_render::{AmbientLight, Scene};
 use pointillist_sh::Panorama;
 
 use crate::picture::Picture;
@@ -79,7 +79,9 @@ fn three(scene: &Scene, [blind, seeing]: &[Baked; 2]) -> Result<Picture, Fault> 
 /// A scene whose ambient light is that of probes.
 pub(crate) fn lit_by(scene: &Scene, baked: &Baked, distances: bool) -> Result<Scene, Fault> {
     let field = Box::new(baked.field(distances)?);
-    Ok(Scene { ambient: AmbientLight::Probes { field, fingerprint: 0 }, ..scene.clone() })
+    let mut scene = scene.clone();
+    scene.ambient = AmbientLight::Probes { field, fingerprint: 0 };
+    Ok(scene)
 }
 
 /// For each map three spheres: lit by order 2, by the map, and by order 2 and a light.

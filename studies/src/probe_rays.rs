@@ -1,8 +1,8 @@
 //! What a probe sees, by rays: an independent eye, and for scenes of many small triangles a cheaper one than pictures.
 
 use glam::DVec3;
-use pointillist_cli::pipeline::Capture;
-use pointillist_cli::scene::Scene;
+use pointillist_render::Capture;
+use pointillist_render::Scene;
 use pointillist_sh::{CubePoint, cube_direction};
 
 use crate::ray_reference::Tree;

@@ -1,7 +1,7 @@
 //! Rooms made by code, to be lit by probes.
 
 use glam::{DVec3, Vec3, dvec3, vec3};
-use pointillist_cli::scene::Scene;
+use pointillist_render::Scene;
 use pointillist_shade::{Falloff, Light, Material};
 
 use crate::scenes::Sketch;
@@ -129,13 +129,12 @@ fn dividing_wall(sketch: &mut Sketch) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pointillist_cli::job::Stats;
-    use pointillist_cli::pipeline::Prepared;
+    use pointillist_render::Prepared;
 
     #[test]
     fn the_wall_is_solid_and_the_rooms_and_the_doorway_are_not() {
         let scene = two_rooms();
-        let prepared = Prepared::new(&scene, &Stats::new()).expect("the rooms are a valid scene");
+        let prepared = Prepared::new(&scene, &()).expect("the rooms are a valid scene");
         let solids = |x, y, z| prepared.geometry().solids_around(dvec3(x, y, z)).len();
         assert_eq!(solids(4.0, 1.0, 0.5), 1);
         assert_eq!(solids(4.0, 2.5, 2.0), 1);

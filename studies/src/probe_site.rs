@@ -4,9 +4,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use glam::{DVec3, Vec3, dvec3};
-use pointillist_cli::job::Stats;
-use pointillist_cli::pipeline::{Ambient, CaptureOptions, PipelineError, Prepared};
-use pointillist_cli::scene::{Overrides, Scene, load};
+use pointillist_cli::scene::{Overrides, load};
+use pointillist_render::{Ambient, CaptureOptions, Prepared, RenderError, Scene};
 use pointillist_sh::{CubeMap, CubeProjector, Sh, Weights};
 use pointillist_shade::face_normal;
 use pointillist_shprobe::{DEFAULT_DISTANCE_SIZE, DistanceMap, Field, ProbeError, place};
@@ -162,7 +161,7 @@ pub(crate) fn read_text(text: &str) -> Result<Scene, Box<dyn std::error::Error +
     std::fs::write(&path, text)?;
     let scene = load(Path::new(&path), &Overrides::default());
     std::fs::remove_file(&path)?;
-    Ok(scene?)
+    Ok(scene?.scene)
 }
 
 /// Probes with what they saw.
@@ -210,12 +209,12 @@ const CLOSE: f64 = 0.002;
 const STEPS: [f64; 5] = [0.005, 0.01, 0.02, 0.04, 0.06];
 
 impl<'a> Ground<'a> {
-    pub(crate) fn new(site: &'a Site) -> Result<Self, PipelineError> {
-        Ok(Self { site, prepared: Prepared::new(&site.scene, &Stats::new())?, tree: Tree::new(&site.scene) })
+    pub(crate) fn new(site: &'a Site) -> Result<Self, RenderError> {
+        Ok(Self { site, prepared: Prepared::new(&site.scene, &())?, tree: Tree::new(&site.scene) })
     }
 
     /// Light sent on once by what the lights shine on. Does not depend on other probes.
-    pub(crate) fn look(&self, positions: &[DVec3]) -> Result<Baked, PipelineError> {
+    pub(crate) fn look(&self, positions: &[DVec3]) -> Result<Baked, RenderError> {
         let size = self.site.probe_px;
         let projector = CubeProjector::new(size as usize, 2, Weights::Gregory)?;
         let far = (2.0 * (self.site.high - self.site.low).length()) as f32;
@@ -224,18 +223,18 @@ impl<'a> Ground<'a> {
             let map = DistanceMap::from_cube(DEFAULT_DISTANCE_SIZE, capture.size, &capture.distance, far)?;
             Ok((projector.project(&CubeMap::from_planes(capture.size, capture.radiance)?)?, map))
         };
-        let seen: Result<Vec<_>, PipelineError> = positions.par_iter().map(one).collect();
+        let seen: Result<Vec<_>, RenderError> = positions.par_iter().map(one).collect();
         let (radiance, distances) = seen?.into_iter().unzip();
         Ok(Baked { positions: positions.to_vec(), radiance, distances })
     }
 
     /// What is seen from a position, under no other light than that of the lights.
-    pub(crate) fn capture(&self, p: DVec3, resolution: u32, thorough: bool) -> Result<Look, PipelineError> {
+    pub(crate) fn capture(&self, p: DVec3, resolution: u32, thorough: bool) -> Result<Look, RenderError> {
         if self.site.eye == Eye::Rays {
             return Ok(look_by_rays(&self.site.scene, &self.tree, p, resolution));
         }
         let options = CaptureOptions { resolution, emission: false, lights: true, thorough };
-        Ok(self.prepared.capture(p, options, Ambient::Color(Vec3::ZERO), &Stats::new())?.into())
+        Ok(self.prepared.capture(p, options, Ambient::Color(Vec3::ZERO), &())?.into())
     }
 
     /// Whether a position is neither in a solid nor among the backs of surfaces that are not closed.

@@ -1,7 +1,7 @@
 //! Irradiance by direct integration of what is seen, not by spherical harmonics.
 
 use glam::{DVec3, Vec3, dvec3};
-use pointillist_cli::pipeline::PipelineError;
+use pointillist_render::RenderError;
 use pointillist_sh::{
     CubeMap, CubePoint, CubeProjector, Irradiance, Weights, cube_direction, texel_solid_angle,
 };
@@ -35,11 +35,11 @@ pub(crate) struct Wrong {
 
 impl Truth {
     /// At random positions of a site.
-    pub(crate) fn new(ground: &Ground<'_>) -> Result<Self, PipelineError> {
+    pub(crate) fn new(ground: &Ground<'_>) -> Result<Self, RenderError> {
         Self::at(ground, ground.random(ground.site.queries, 7))
     }
 
-    pub(crate) fn at(ground: &Ground<'_>, positions: Vec<DVec3>) -> Result<Self, PipelineError> {
+    pub(crate) fn at(ground: &Ground<'_>, positions: Vec<DVec3>) -> Result<Self, RenderError> {
         let normals = normals();
         let size = ground.site.truth_px as usize;
         let projector = CubeProjector::new(size, 2, Weights::Exact)?;
@@ -48,7 +48,7 @@ impl Truth {
             let cube = CubeMap::from_planes(size, look.radiance.clone())?;
             Ok((integrated(&look, &normals), Irradiance::new(&projector.project(&cube)?)))
         };
-        let found: Result<Vec<_>, PipelineError> = positions.par_iter().map(one).collect();
+        let found: Result<Vec<_>, RenderError> = positions.par_iter().map(one).collect();
         let (irradiance, best) = found?.into_iter().unzip();
         Ok(Self { positions, normals, irradiance, best })
     }

@@ -4,11 +4,12 @@ use std::fmt::Write as _;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3, dvec3};
-use pointillist_cli::job::{Progress, ProgressMode, Stats};
-use pointillist_cli::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, look_all};
-use pointillist_cli::radiosity::{BakedFile, Lamps, Lightmap, scene_surfaces, with_lamps};
 use pointillist_delaunay::Hint;
 use pointillist_radiosity::{Scene as Patches, SceneOptions, Solution, SolveOptions, Transport};
+use pointillist_render::{
+    Ambient, CaptureOptions, Lamps, Lightmap, LookOptions, Prepared, Seen, look_all, scene_surfaces,
+    with_lamps,
+};
 use pointillist_sh::{Irradiance, Sh};
 use pointillist_shprobe::{Field, place};
 
@@ -27,7 +28,7 @@ const TOLD: [usize; 5] = [0, 1, 2, 5, 10];
 /// The section.
 pub(crate) fn compare(text: &mut String) -> Result<(), Fault> {
     let scene = closed_box();
-    let surfaces = scene_surfaces(&scene, "the box")?;
+    let surfaces = scene_surfaces(&scene)?;
     let start = Instant::now();
     let mut patches = Patches::new(&surfaces.surfaces, &SceneOptions::DEFAULT.with_patch(0.25))?;
     let direct = with_lamps(&Lamps::new(&scene), |lamps| patches.direct(lamps))?;
@@ -49,7 +50,7 @@ pub(crate) fn compare(text: &mut String) -> Result<(), Fault> {
         GRID[1],
         GRID[2]
     )?;
-    let prepared = Prepared::new(&scene, &Stats::new())?;
+    let prepared = Prepared::new(&scene, &())?;
     let grid = place::grid(DVec3::ZERO, BOX, GRID);
     let mut seen = look(&prepared, &grid, Ambient::Color(Vec3::ZERO))?;
     for bounce in 0..=BOUNCES {
@@ -60,8 +61,8 @@ pub(crate) fn compare(text: &mut String) -> Result<(), Fault> {
         }
         seen = look(&prepared, &grid, Ambient::Probes(&field))?;
     }
-    let file = BakedFile::new(&transport.bake(&solution, &direct), &surfaces.faces);
-    let baked = Lightmap::new(&file, "the box", scene.mesh.triangles.len())?;
+    let baked = transport.bake(&solution, &direct);
+    let baked = Lightmap::of_baked(&baked, &surfaces.faces, scene.mesh.triangles.len())?;
     let seen = radiance(&look(&prepared, &places, Ambient::Radiosity(&baked))?);
     writeln!(text, "| baked | {:.2} |", 100.0 * error(&truth, |i| Irradiance::new(&seen[i])))?;
     Ok(())
@@ -74,7 +75,7 @@ fn radiance(seen: &[Seen]) -> Vec<Sh> {
 fn look(prepared: &Prepared<'_>, at: &[DVec3], ambient: Ambient<'_>) -> Result<Vec<Seen>, Fault> {
     let capture = CaptureOptions { resolution: RESOLUTION, emission: true, lights: true, thorough: true };
     let options = LookOptions { capture, order: 2, distances: 0 };
-    Ok(look_all(prepared, at, options, ambient, &Progress::new(ProgressMode::Off), &Stats::new())?)
+    Ok(look_all(prepared, at, options, ambient, &())?)
 }
 
 /// For each place and normal.

@@ -1,7 +1,7 @@
 //! Reference pictures with shadows: rays through a tree of boxes, many a pixel.
 
 use glam::{DVec2, DVec3, dvec2};
-use pointillist_cli::scene::Scene;
+use pointillist_render::Scene;
 use pointillist_shade::Source;
 use rayon::prelude::*;
 

@@ -1,12 +1,10 @@
 //! Scenes made by code, and what light leaves their surfaces.
 
 use std::f64::consts::TAU;
-use std::path::PathBuf;
 
 use glam::{DMat3, DVec2, DVec3, Vec3, dvec2, dvec3};
-use pointillist_cli::scene::{
-    AmbientLight, Camera, ImageSettings, LightSource, Material, Mesh, NONE, Object, Projection,
-    RenderSettings, Resolution, Scene, Texels, Texture,
+use pointillist_render::{
+    AmbientLight, Camera, LightSource, Material, NONE, Object, Projection, Scene, Texels, Texture,
 };
 use pointillist_shade::{self as shade, Falloff, Light, face_normal, sees_light};
 
@@ -18,23 +16,11 @@ pub(crate) struct Sketch {
 impl Sketch {
     /// An empty scene seen from `eye` by a camera with this vertical field of view.
     pub(crate) fn new(eye: DVec3, target: DVec3, fov_deg: f64, size: u32) -> Self {
-        let projection = Projection::Perspective { fov_y_rad: fov_deg.to_radians() };
-        let mesh = Mesh { objects: vec![object("sketch")], ..Mesh::default() };
-        Self {
-            scene: Scene {
-                camera: Camera { eye, target, up: DVec3::Y, projection },
-                image: ImageSettings { width: size, height: size, background: Vec3::ZERO, environment: None },
-                render: RenderSettings { shading: shade::Interpolation::Flat, ..RenderSettings::default() },
-                mesh,
-                materials: vec![],
-                textures: vec![],
-                lights: vec![],
-                ambient: AmbientLight::Color(Vec3::ZERO),
-                unmatched: vec![],
-                warnings: vec![],
-                fingerprint: 0,
-            },
-        }
+        let camera = Camera::perspective(eye, target, fov_deg.to_radians());
+        let mut scene = Scene::new(camera, [size, size]);
+        scene.render.shading = shade::Interpolation::Flat;
+        scene.mesh.objects.push(object("sketch"));
+        Self { scene }
     }
 
     /// A surface that shows this colour whatever the light.
@@ -50,9 +36,9 @@ impl Sketch {
 
     pub(crate) fn material(&mut self, surface: shade::Material, diffuse_map: Option<usize>) -> u32 {
         let name = format!("m{}", self.scene.materials.len());
-        let material = Material { diffuse_map, ..Material::plain(name, surface) };
-        self.scene.materials.push(material);
-        self.scene.materials.len() as u32 - 1
+        let mut material = Material::new(name, surface);
+        material.diffuse_map = diffuse_map;
+        self.scene.add_material(material)
     }
 
     /// Triangles with their own vertices.
@@ -106,7 +92,7 @@ impl Sketch {
 
     pub(crate) fn light(&mut self, light: Light) {
         let name = format!("light{}", self.scene.lights.len());
-        self.scene.lights.push(LightSource { name, light, shadow: true, resolution: Resolution::Auto });
+        self.scene.lights.push(LightSource::new(name, light));
     }
 
     /// A texture of black and white texels: `size` × `size`, alternating.
@@ -116,13 +102,7 @@ impl Sketch {
             [v, v, v, 255]
         };
         let texels = Texels::Linear8((0..size * size).map(texel).collect());
-        self.scene.textures.push(Texture {
-            width: size,
-            height: size,
-            texels,
-            path: PathBuf::from("checker"),
-        });
-        self.scene.textures.len() - 1
+        self.scene.add_texture(Texture::new("checker", [size, size], texels))
     }
 
     /// Gives the latest `count` triangles these texture coordinates.

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use pointillist_cli::scene::Scene;
 use pointillist_micropoint::{MicropointOptions, Occlusion, PlainOpacity, Renderer, Tile};
+use pointillist_render::Scene;
 use pointillist_shade::{Source, sees_light};
 use pointillist_shadow::{Emitter, Receivers, Resolution, ShadowLight, ShadowOptions, ShadowScratch, Viewer};
 

@@ -1,7 +1,7 @@
 //! The comparator for shadows: a depth map seen from the light, looked up through a small kernel.
 
 use glam::{DVec2, DVec3, dvec2};
-use pointillist_cli::scene::Scene;
+use pointillist_render::Scene;
 use pointillist_shade::Source;
 
 use crate::scenes::{SurfaceSample, corners, normal_towards};

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec3, Vec3, dvec3};
-use pointillist_cli::scene::Scene;
+use pointillist_render::Scene;
 use pointillist_shade::{Falloff, Light};
 
 use crate::scenes::Sketch;

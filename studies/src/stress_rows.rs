@@ -1,11 +1,12 @@
 //! The rows of the stress report.
 
 use glam::{DMat3, DVec3, Vec3, dvec2, dvec3};
-use pointillist_cli::scene::{Format, Overrides, Projection, Scene, load, parse_str};
+use pointillist_cli::scene::{Format, Overrides, load, parse_str};
 use pointillist_dice::{Accumulator, Grid, accumulate};
 use pointillist_micropoint::{
     Geometry, MicropointOptions, PlainOpacity, Surface, TexelCorner, TexelSums, TexelWrap,
 };
+use pointillist_render::{Projection, Scene};
 use pointillist_shade::{Falloff, Light};
 use pointillist_shadow::{Emitter, ShadowLight, ShadowOptions};
 

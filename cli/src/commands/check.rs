@@ -13,13 +13,14 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
     let result = (!options.common.quiet).then(|| PathBuf::from("-"));
     let report = Report::new(&options.common)?.writing(&result)?;
     let overrides = CameraOptions::default().overrides(&options.set);
-    let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides))?;
-    let faults: Vec<String> = scene.unmatched.iter().map(InputError::to_string).collect();
-    scene.warnings.iter().filter(|w| !faults.contains(w)).for_each(|warning| report.warn(warning));
-    if let Some((first, rest)) = scene.unmatched.split_first() {
+    let loaded = report.stats.stage("load", || scene::load(&options.scene, &overrides))?;
+    let faults: Vec<String> = loaded.unmatched.iter().map(InputError::to_string).collect();
+    loaded.warnings.iter().filter(|w| !faults.contains(w)).for_each(|warning| report.warn(warning));
+    if let Some((first, rest)) = loaded.unmatched.split_first() {
         rest.iter().for_each(|fault| report.warn(&fault.to_string()));
         return Err(first.clone().into());
     }
+    let scene = &loaded.scene;
     report.stats.count("triangles", scene.mesh.triangles.len() as u64);
     report.stats.count("lights", scene.lights.len() as u64);
     let text = format!(

@@ -2,6 +2,7 @@
 
 use super::Report;
 use super::report::write_text;
+use crate::baked_file::{BakedFile, read_baked};
 use crate::cloud_io::{self, CloudOptions, CloudSummary, Pose};
 use crate::error::CliError;
 use crate::image_io::{ExrFile, read_picture};
@@ -14,8 +15,7 @@ use crate::mesh_io::gltf::read_gltf;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::options::InfoOptions;
 use crate::probe_io::{ProbeEntry, ProbeFile, read_probes};
-use crate::radiosity::{BakedFile, read_baked};
-use crate::scene::{self, Material, Overrides, Projection, Scene};
+use crate::scene::{self, LoadedScene, Material, Overrides, Projection};
 use glam::DVec3;
 use pointillist_shade::Model;
 use serde::Deserialize;
@@ -66,7 +66,8 @@ fn describe(path: &Path) -> Result<Value, InputError> {
     }
 }
 
-fn of_scene(scene: &Scene) -> Value {
+fn of_scene(loaded: &LoadedScene) -> Value {
+    let LoadedScene { scene, warnings, fingerprint, .. } = loaded;
     let camera = &scene.camera;
     let mut view = json!({
         "eye": camera.eye.to_array(),
@@ -88,11 +89,11 @@ fn of_scene(scene: &Scene) -> Value {
         "materials": scene.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
         "surfaces": scene.materials.iter().map(of_material).collect::<Vec<_>>(),
         "textures": scene.textures.iter()
-            .map(|t| json!({ "path": t.path.display().to_string(), "size": [t.width, t.height] }))
+            .map(|t| json!({ "path": t.name, "size": [t.width, t.height] }))
             .collect::<Vec<_>>(),
         "lights": scene.lights.iter().map(|light| &light.name).collect::<Vec<_>>(),
-        "fingerprint": format!("{:016x}", scene.fingerprint),
-        "warnings": scene.warnings,
+        "fingerprint": format!("{:016x}", fingerprint),
+        "warnings": warnings,
     })
 }
 

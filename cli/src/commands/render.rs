@@ -7,12 +7,14 @@ use crate::image_io::{
     ExrFile, Frame, LayerKind, PixelRect, PngOptions, Precision, Stamp, encode_png, write_atomically,
 };
 use crate::input::is_standard;
-use crate::job::RenderJob;
+use crate::job::{RenderJob, Watch};
+use crate::memory;
 use crate::options::{LayerRequest, RenderOptions};
-use crate::scene::{self, Scene};
-use crate::{memory, pipeline};
+use crate::scene::{self, LoadedScene, Scene};
+use pointillist_render::{DrawOptions, Prepared, RenderError};
 use std::hash::Hasher as _;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 use twox_hash::XxHash3_64;
 
 /// How a picture is written, by the end of its name.
@@ -57,14 +59,15 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     options.camera.check_view()?;
     check_size(options)?;
     let overrides = options.camera.overrides(&options.set);
-    let scene = report.stats.stage("load", || match &options.scene {
+    let loaded = report.stats.stage("load", || match &options.scene {
         Some(path) => scene::load(path, &overrides),
         None => scene::builtin(&overrides),
     })?;
-    scene.warnings.iter().for_each(|warning| report.warn(warning));
-    let job = job(&scene, options)?;
+    let scene = &loaded.scene;
+    loaded.warnings.iter().for_each(|warning| report.warn(warning));
+    let job = job(scene, options)?;
     check_memory(options, job.window, &job.layers)?;
-    let stamp = stamp(&scene, &job, options);
+    let stamp = stamp(&loaded, &job, options);
     if format == OutputFormat::Exr
         && !options.picture.overwrite
         && is_there(&output, &stamp, job.window, &report)
@@ -72,10 +75,7 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
         report.note(&format!("{} is already there; --overwrite draws it again", output.display()));
         return report.finish();
     }
-    let progress = report.progress();
-    let result = pipeline::render(&scene, &job, &progress, &report.stats);
-    progress.finish();
-    let frame = result.map_err(|error| CliError::Failed(error.to_string()))?;
+    let frame = draw(scene, &job, &report).map_err(|error| CliError::Failed(error.to_string()))?;
     report.stats.count("pixels", job.window.pixels());
     report.stats.stage("write", || match format {
         OutputFormat::Exr => write_exr(&output, ExrFile::from_frame(&frame, stamp, precision(options))),
@@ -86,6 +86,18 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     })?;
     tell(&report, options, &output, job.window);
     report.finish()
+}
+
+fn draw(scene: &Scene, job: &RenderJob, report: &Report<'_>) -> Result<Frame, RenderError> {
+    let progress = report.progress();
+    let watch = Watch { task: "render", progress: &progress, stats: &report.stats };
+    let prepared = Prepared::new(scene, &watch)?;
+    let start = Instant::now();
+    let options = DrawOptions::DEFAULT.with_window(job.window).with_layers(job.layers.clone());
+    let frame = prepared.draw(&options, &watch);
+    report.stats.add_wall("tiles", start.elapsed());
+    progress.finish();
+    frame
 }
 
 fn output_path(options: &RenderOptions) -> PathBuf {
@@ -179,9 +191,10 @@ fn check_size(options: &RenderOptions) -> Result<(), CliError> {
     check_memory(options, window, &[])
 }
 
-fn stamp(scene: &Scene, job: &RenderJob, options: &RenderOptions) -> Stamp {
+fn stamp(loaded: &LoadedScene, job: &RenderJob, options: &RenderOptions) -> Stamp {
     let mut hash = XxHash3_64::default();
-    hash.write(&scene.fingerprint.to_le_bytes());
+    let LoadedScene { scene, fingerprint, .. } = loaded;
+    hash.write(&fingerprint.to_le_bytes());
     let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
     for channel in job.layers.iter().flat_map(|layer| layer.channels(&names)) {
         hash.write(channel.as_bytes());

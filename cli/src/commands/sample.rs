@@ -24,8 +24,9 @@ pub(super) fn run(options: &SampleOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?.writing([&output])?;
     check_output(&output, options)?;
     check_memory(options)?;
-    let scene = report.stats.stage("load", || scene::load(&options.model, &overrides(options)?))?;
-    scene.warnings.iter().for_each(|warning| report.warn(warning));
+    let loaded = report.stats.stage("load", || scene::load(&options.model, &overrides(options)?))?;
+    loaded.warnings.iter().for_each(|warning| report.warn(warning));
+    let scene = loaded.scene;
     if scene.materials.iter().any(|m| m.opacity_map.is_some() || m.surface.opacity < 1.0) {
         report.warn("opacity has no place in the cloud: what can be seen through becomes solid");
     }

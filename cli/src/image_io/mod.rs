@@ -3,15 +3,13 @@
 mod atomic;
 mod exr_check;
 mod exr_file;
-mod frame;
 mod picture;
 mod png;
 mod stamp;
 
 pub use atomic::{check_writable, remove_temporaries, write_atomically};
 pub use exr_file::{Channel, ExrError, ExrFile, Precision};
-pub use frame::{Frame, Layer, LayerKind};
 pub use picture::{Levels, Picture, decode_image, read_exr_picture, read_levels, read_picture};
 pub use png::{PngOptions, encode_png, encode_rgb_png};
-pub use pointillist_view::PixelRect;
+pub use pointillist_render::{Frame, Layer, LayerKind, PixelRect};
 pub use stamp::Stamp;

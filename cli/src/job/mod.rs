@@ -2,12 +2,13 @@
 
 mod progress;
 mod stats;
+mod watch;
 
 pub use progress::{Progress, ProgressMode};
 pub use stats::{Stats, ThreadClock};
+pub use watch::Watch;
 
 use crate::image_io::{LayerKind, PixelRect};
-
 /// What of a scene to draw, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderJob {

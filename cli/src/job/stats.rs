@@ -2,14 +2,20 @@
 
 use cpu_time::{ProcessTime, ThreadTime};
 use serde::Serialize;
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+thread_local! {
+    /// When the lap of this thread began.
+    static LAP: Cell<Option<ThreadTime>> = const { Cell::new(None) };
+}
+
 /// Collects seconds and counts of a run, from any thread.
 ///
-/// A stage that runs once is wrapped in [`Stats::stage`]. Stages that alternate inside parallel work measure
-/// themselves on each thread with a [`ThreadClock`]; their wall seconds are then their share of processor time, which
+/// A stage that runs once is wrapped in [`Stats::stage`]. Stages that alternate inside parallel work are
+/// booked lap by lap on each thread ([`Stats::lap`]); their wall seconds are then their share of processor time, which
 /// the caller adds with [`Stats::add_wall`] if it knows better.
 #[derive(Debug)]
 pub struct Stats {
@@ -71,6 +77,18 @@ impl Stats {
         result
     }
 
+    /// The calling thread begins with work whose stages alternate.
+    pub fn start_lap() {
+        LAP.set(ThreadTime::try_now().ok());
+    }
+
+    /// Books the calling thread's processor time since its last [`Stats::start_lap`] or [`Stats::lap`].
+    pub fn lap(&self, name: &str) {
+        let used = LAP.get().and_then(|start| start.try_elapsed().ok()).unwrap_or_default();
+        self.add_cpu(name, used);
+        Self::start_lap();
+    }
+
     /// Adds wall time to a stage.
     pub fn add_wall(&self, name: &str, time: Duration) {
         *self.lock().seconds.entry(name.to_owned()).or_default() += time.as_secs_f64();
@@ -130,7 +148,7 @@ impl Stats {
     }
 }
 
-/// Measures the calling thread's processor time, for stages inside parallel work.
+/// Measures the calling thread's processor time.
 #[derive(Debug)]
 pub struct ThreadClock(Option<ThreadTime>);
 
@@ -140,15 +158,8 @@ impl ThreadClock {
         Self(ThreadTime::try_now().ok())
     }
 
-    /// Seconds of processor time since the start, or the last booking.
+    /// Seconds of processor time since the start.
     pub fn seconds(&self) -> f64 {
         self.0.and_then(|start| start.try_elapsed().ok()).unwrap_or_default().as_secs_f64()
-    }
-
-    /// Books the time since the start, or the last call, under `name`: to be called on the thread that started it.
-    pub fn book(&mut self, stats: &Stats, name: &str) {
-        let used = self.0.and_then(|start| start.try_elapsed().ok()).unwrap_or_default();
-        stats.add_cpu(name, used);
-        self.0 = ThreadTime::try_now().ok();
     }
 }

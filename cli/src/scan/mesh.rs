@@ -32,7 +32,7 @@ pub(super) struct LoadedMesh {
 
 impl LoadedMesh {
     pub(super) fn load(path: &Path) -> Result<Self, InputError> {
-        let Scene { mesh, materials, .. } = scene::load(path, &Overrides::default())?;
+        let Scene { mesh, materials, .. } = scene::load(path, &Overrides::default())?.scene;
         let colour = |material: &u32| {
             materials.get(*material as usize).map_or([0.8; 3], |m| m.surface.diffuse.to_array())
         };

@@ -19,7 +19,8 @@ pub(super) fn build(
     let color = Purpose::Color { srgb: true };
     let number = Purpose::Color { srgb: false };
     let base = pictures.optional(material.base_texture, color)?;
-    let mut details = Details { one_sided: !material.double_sided, ..Details::default() };
+    let mut details = Details::default();
+    details.one_sided = !material.double_sided;
     let mut surface = shade::Material {
         model: Model::Ggx,
         specular: Vec3::splat(material.reflectance),
@@ -52,7 +53,9 @@ pub(super) fn build(
     let opacity_map = pictures.opacity(material)?;
     let wrap = material.base_texture.map_or(Wrap::Repeat, |t| t.wrap);
     let diffuse_map = base.filter(|_| !material.unlit);
-    Ok(Material { name: material.name.clone(), surface, diffuse_map, opacity_map, wrap, details })
+    let mut made = Material::new(&material.name, surface).with_details(details);
+    (made.diffuse_map, made.opacity_map, made.wrap) = (diffuse_map, opacity_map, wrap);
+    Ok(made)
 }
 
 /// The pictures of a model, decoded as they are needed.

@@ -1,7 +1,7 @@
 //! A glTF file as part of a scene, or as the whole of it.
 
 use super::description::CameraDescription;
-use super::{LightSource, Projection, Resolution};
+use super::{LightSource, Projection};
 use crate::input_error::InputError;
 use crate::mesh_io::FileMesh;
 use crate::mesh_io::gltf::{GltfModel, read_gltf};
@@ -43,11 +43,8 @@ pub(super) fn lights(model: &GltfModel) -> Vec<LightSource> {
         let usable = !name.is_empty() && name.chars().all(allowed) && !twice;
         if usable { name.to_owned() } else { format!("light{i}") }
     };
-    let source = |(i, found): (usize, &crate::mesh_io::gltf::GltfLight)| LightSource {
-        name: name(i, &found.name),
-        light: found.light,
-        shadow: true,
-        resolution: Resolution::Auto,
+    let source = |(i, found): (usize, &crate::mesh_io::gltf::GltfLight)| {
+        LightSource::new(name(i, &found.name), found.light)
     };
     model.lights.iter().enumerate().map(source).collect()
 }

@@ -1,7 +1,7 @@
-//! From a path and options to a [`Scene`].
+//! From a path and options to a [`LoadedScene`].
 
 use super::text::{Document, Format, Value};
-use super::{Description, Scene, resolve};
+use super::{Description, LoadedScene, resolve};
 use crate::input;
 use crate::input_error::InputError;
 use crate::json_kind::JsonKind;
@@ -29,7 +29,7 @@ enum Kind {
 /// # Errors
 ///
 /// Whatever is wrong with the file, or with one that it names.
-pub fn load(path: &Path, overrides: &Overrides) -> Result<Scene, InputError> {
+pub fn load(path: &Path, overrides: &Overrides) -> Result<LoadedScene, InputError> {
     let (mut document, kind, folder) = read_document(path)?;
     apply(&mut document, overrides)?;
     let description = Description::new(document)?;
@@ -41,7 +41,7 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Scene, InputError> {
 /// # Errors
 ///
 /// As [`load`].
-pub fn load_to_bake(path: &Path, overrides: &Overrides) -> Result<Scene, InputError> {
+pub fn load_to_bake(path: &Path, overrides: &Overrides) -> Result<LoadedScene, InputError> {
     let (mut document, kind, folder) = read_document(path)?;
     apply(&mut document, overrides)?;
     document.remove("ambient", "radiosity");

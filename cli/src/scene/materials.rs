@@ -167,7 +167,7 @@ impl<'a> MaterialTable<'a> {
         if let Some(number) = self.default {
             return number;
         }
-        let number = self.add(Material::plain("default", shade::Material::default()));
+        let number = self.add(Material::new("default", shade::Material::default()));
         self.default = Some(number);
         number
     }
@@ -208,37 +208,36 @@ impl<'a> MaterialTable<'a> {
             let load = |r: &TextureReference| load(r, Purpose::Color { srgb: false }).map(map);
             reference.as_ref().map(load).transpose()
         };
-        let details = Details {
-            specular_map,
-            emission_map,
-            shininess_map: plain(&found.shininess_map)?,
-            roughness_map: plain(&found.roughness_map)?,
-            metallic_map: plain(&found.metallic_map)?,
-            bump: plain(&found.bump_map)?
-                .map(|map| Bump { map, height: BumpHeight::World(found.bump_scale) }),
-            normal: plain(&found.normal_map)?.map(|map| (map, 1.0)),
-            occlusion: None,
-            one_sided: false,
-            metallic: found.metallic,
-            measured: found.merl.as_ref().map(|file| self.measured_of(file)).transpose()?,
-            reflection: found.reflection,
-            transmission: found.transmission,
-            surroundings: match &found.surroundings {
-                SurroundingsDescription::Scene => Surroundings::Scene,
-                SurroundingsDescription::Capture => Surroundings::Capture,
-                SurroundingsDescription::File(reference) => {
-                    Surroundings::Texture(load(reference, Purpose::Color { srgb: true })?)
-                }
-            },
-            uv: found.uv,
+        let mut details = Details::default();
+        details.specular_map = specular_map;
+        details.emission_map = emission_map;
+        details.shininess_map = plain(&found.shininess_map)?;
+        details.roughness_map = plain(&found.roughness_map)?;
+        details.metallic_map = plain(&found.metallic_map)?;
+        details.bump =
+            plain(&found.bump_map)?.map(|map| Bump { map, height: BumpHeight::World(found.bump_scale) });
+        details.normal = plain(&found.normal_map)?.map(|map| (map, 1.0));
+        details.metallic = found.metallic;
+        details.measured = found.merl.as_ref().map(|file| self.measured_of(file)).transpose()?;
+        details.reflection = found.reflection;
+        details.transmission = found.transmission;
+        details.surroundings = match &found.surroundings {
+            SurroundingsDescription::Scene => Surroundings::Scene,
+            SurroundingsDescription::Capture => Surroundings::Capture,
+            SurroundingsDescription::File(reference) => {
+                Surroundings::Texture(load(reference, Purpose::Color { srgb: true })?)
+            }
         };
+        details.uv = found.uv;
         let opacity_map = found.opacity_map.as_ref().map(|r| load(r, Purpose::Opacity)).transpose()?;
         let mut surface = found.surface;
         if let Some(measured) = &details.measured {
             // What stands for the table in ambient light.
             surface.diffuse = measured.table.albedo();
         }
-        Ok(Material { name: name.to_owned(), surface, diffuse_map, opacity_map, wrap: found.wrap, details })
+        let mut made = Material::new(name, surface).with_details(details);
+        (made.diffuse_map, made.opacity_map, made.wrap) = (diffuse_map, opacity_map, found.wrap);
+        Ok(made)
     }
 
     fn measured_of(&mut self, file: &FileReference) -> Result<MeasuredBrdf, InputError> {

@@ -1,32 +1,10 @@
 //! Measured reflection from files, each read once.
 
+use super::MeasuredBrdf;
 use pointillist_shade::MerlTable;
 use std::collections::HashMap;
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// A measured BRDF, shared by the materials that name its file.
-#[derive(Clone)]
-pub struct MeasuredBrdf {
-    /// The table.
-    pub table: Arc<MerlTable>,
-    /// A hash of the file.
-    pub fingerprint: u64,
-}
-
-impl PartialEq for MeasuredBrdf {
-    fn eq(&self, other: &Self) -> bool {
-        self.fingerprint == other.fingerprint
-    }
-}
-
-impl fmt::Debug for MeasuredBrdf {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Not the table, which has a million entries.
-        write!(f, "MeasuredBrdf({:016x})", self.fingerprint)
-    }
-}
 
 /// The measured BRDFs of a scene.
 #[derive(Default)]

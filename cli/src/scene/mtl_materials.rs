@@ -41,20 +41,20 @@ pub(super) fn build(
     };
     let number = Purpose::Color { srgb: false };
     let bump = map("map_bump", number)?.map(|map| Bump { map, height: bump_height(material) });
-    let mut details = Details {
-        specular_map: map("map_Ks", color)?,
-        shininess_map: map("map_Ns", number)?,
-        emission_map: map("map_Ke", color)?,
-        roughness_map: map("map_Pr", number)?,
-        metallic_map: map("map_Pm", number)?,
-        normal: map("norm", number)?.map(|map| (map, 1.0)),
-        bump,
-        ..Details::default()
-    };
+    let mut details = Details::default();
+    details.specular_map = map("map_Ks", color)?;
+    details.shininess_map = map("map_Ns", number)?;
+    details.emission_map = map("map_Ke", color)?;
+    details.roughness_map = map("map_Pr", number)?;
+    details.metallic_map = map("map_Pm", number)?;
+    details.normal = map("norm", number)?.map(|map| (map, 1.0));
+    details.bump = bump;
     let surface = surface(material, &mut details);
     surroundings(library, material, &mut details, &mut load, warnings)?;
     let wrap = wrap(material.map("map_Kd"));
-    Ok(Material { name: material.name.clone(), surface, diffuse_map, opacity_map, wrap, details })
+    let mut made = Material::new(&material.name, surface).with_details(details);
+    (made.diffuse_map, made.opacity_map, made.wrap) = (diffuse_map, opacity_map, wrap);
+    Ok(made)
 }
 
 fn wrap(map: Option<&MtlMap>) -> Wrap {

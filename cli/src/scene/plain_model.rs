@@ -1,7 +1,7 @@
 //! How a model is shown that comes without camera, lights or normals: a key light with shadow from over the left shoulder, a soft
 //! sky and ground that fill its shadows, and smooth surfaces between creases.
 
-use super::{AmbientLight, LightSource, Resolution, Scene, SkyLight};
+use super::{AmbientLight, LightSource, Scene, SkyLight};
 use glam::Vec3;
 use pointillist_shade::Light;
 
@@ -20,12 +20,7 @@ const GROUND: Vec3 = Vec3::new(0.13, 0.12, 0.11);
 pub(super) fn key_light(scene: &Scene) -> LightSource {
     let [right, up, backward] = scene.camera.axes();
     let towards_light = -0.6 * right + 0.9 * up + 0.8 * backward;
-    LightSource {
-        name: "light0".to_owned(),
-        light: Light::Directional { direction: -towards_light, irradiance: KEY },
-        shadow: true,
-        resolution: Resolution::Auto,
-    }
+    LightSource::new("light0", Light::Directional { direction: -towards_light, irradiance: KEY })
 }
 
 /// The fill light; up is the camera's.

@@ -7,16 +7,17 @@ use super::description::{
 use super::load::DRAW_CLOUD;
 use super::materials::MaterialTable;
 use super::textures::{Purpose, TextureTable};
-use super::{AmbientLight, ImageSettings, LightSource, Mesh, NONE, Object, RenderSettings, Scene, SkyLight};
-use super::{auto_uv, fingerprint, framing, gltf_scene, plain_model, smooth};
+use super::{AmbientLight, LightSource, LoadedScene, Mesh, NONE, Object, Scene, SkyLight};
+use super::{auto_uv, framing, gltf_scene, plain_model, smooth};
+use crate::baked_file::read_baked;
 use crate::cloud_io;
 use crate::coordinate::{LARGEST, is_usable};
 use crate::input;
 use crate::input_error::InputError;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::probe_io::read_probes;
-use crate::radiosity::{Lightmap, read_baked};
 use glam::{DMat3, Vec3};
+use pointillist_render::fingerprint;
 use pointillist_shade::Interpolation;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -33,7 +34,7 @@ pub(super) fn resolve(
     folder: &Path,
     is_plain_model: bool,
     generated: Option<Generated>,
-) -> Result<Scene, InputError> {
+) -> Result<LoadedScene, InputError> {
     let mut builder = Builder::new(description, folder, is_plain_model);
     if let Some(generated) = generated {
         for (name, purpose, texture) in generated.textures {
@@ -62,33 +63,27 @@ pub(super) fn resolve(
     if is_plain_model && lights.is_empty() {
         lights = model.map(|model| gltf_scene::lights(&model)).unwrap_or_default();
     }
-    let mut scene = Scene {
-        camera,
-        image: ImageSettings { width, height, background: description.background, environment },
-        render: RenderSettings {
-            cells_per_pixel: description.render.subpixel,
-            occlusion: description.render.occlusion,
-            shading,
-        },
-        mesh: builder.mesh,
-        materials: builder.materials.into_materials(),
-        unmatched,
-        textures: builder.textures.into_textures(),
-        lights,
-        ambient: AmbientLight::Color(Vec3::ZERO),
-        warnings: builder.warnings,
-        fingerprint: 0,
-    };
+    let mut warnings = builder.warnings;
+    let mut scene = Scene::new(camera, description.size);
+    scene.image.background = description.background;
+    scene.image.environment = environment;
+    scene.render.cells_per_pixel = description.render.subpixel;
+    scene.render.occlusion = description.render.occlusion;
+    scene.render.shading = shading;
+    scene.mesh = builder.mesh;
+    scene.materials = builder.materials.into_materials();
+    scene.textures = builder.textures.into_textures();
+    scene.lights = lights;
     let unlit = is_plain_model && scene.lights.is_empty();
     if unlit {
         scene.lights.push(plain_model::key_light(&scene));
     }
     scene.ambient = match description.ambient {
         AmbientDescription::Nothing if unlit => plain_model::fill_light(&scene),
-        _ => ambient(description, folder, &mut scene)?,
+        _ => ambient(description, folder, &scene, &mut warnings)?,
     };
-    scene.fingerprint = fingerprint::of(&scene);
-    Ok(scene)
+    let fingerprint = fingerprint::of_scene(&scene);
+    Ok(LoadedScene { scene, unmatched, warnings, fingerprint })
 }
 
 /// The file that a key of `[ambient]` names, and a hash of it.
@@ -107,7 +102,12 @@ fn ambient_file(
     Ok((path, fingerprint))
 }
 
-fn ambient(description: &Description, folder: &Path, scene: &mut Scene) -> Result<AmbientLight, InputError> {
+fn ambient(
+    description: &Description,
+    folder: &Path,
+    scene: &Scene,
+    warnings: &mut Vec<String>,
+) -> Result<AmbientLight, InputError> {
     match &description.ambient {
         AmbientDescription::Nothing => Ok(AmbientLight::Color(Vec3::ZERO)),
         AmbientDescription::Color(color) => Ok(AmbientLight::Color(*color)),
@@ -136,11 +136,11 @@ fn ambient(description: &Description, folder: &Path, scene: &mut Scene) -> Resul
             }
             let sources = fingerprint::of_sources(&scene.materials, &scene.textures, &scene.lights);
             if baked.light != format!("{sources:016x}") {
-                scene.warnings.push(format!(
+                warnings.push(format!(
                     "`{name}` was baked with other lights or materials; bake again to see them"
                 ));
             }
-            let light = Box::new(Lightmap::new(&baked, &name, scene.mesh.triangles.len())?);
+            let light = Box::new(baked.lightmap(&name, scene.mesh.triangles.len())?);
             Ok(AmbientLight::Radiosity { light, fingerprint })
         }
         AmbientDescription::Probes(file) => {
@@ -154,11 +154,9 @@ fn ambient(description: &Description, folder: &Path, scene: &mut Scene) -> Resul
 }
 
 fn lights(description: &Description) -> Vec<LightSource> {
-    let source = |light: &super::description::LightDescription| LightSource {
-        name: light.name.clone(),
-        light: light.light,
-        shadow: light.shadow,
-        resolution: light.resolution,
+    let source = |light: &super::description::LightDescription| {
+        let source = LightSource::new(&light.name, light.light);
+        source.with_shadow(light.shadow).with_resolution(light.resolution)
     };
     description.lights.iter().map(source).collect()
 }

@@ -105,7 +105,7 @@ fn read(path: &Path, bytes: &[u8], purpose: Purpose) -> Result<Texture, String> 
     if width == 0 || height == 0 {
         return Err("has no pixels".to_owned());
     }
-    Ok(Texture { width, height, texels: texels(image, purpose), path: path.to_path_buf() })
+    Ok(Texture::new(path.display().to_string(), [width, height], texels(image, purpose)))
 }
 
 fn texels(image: DynamicImage, purpose: Purpose) -> Texels {

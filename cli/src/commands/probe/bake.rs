@@ -8,10 +8,10 @@ use crate::commands::report::name_of_output;
 use crate::error::CliError;
 use crate::memory;
 use crate::options::{BakeOptions, What};
-use crate::pipeline::{Prepared, fingerprints};
 use crate::probe_io::{Distances, ProbeEntry, ProbeFile, read_probes};
 use crate::scene::{self, Scene};
 use glam::DVec3;
+use pointillist_render::{Prepared, fingerprint, fingerprints};
 use std::hash::Hasher as _;
 use std::ops::Range;
 use std::path::Path;
@@ -31,8 +31,9 @@ pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
         let message = "--part and --fit do not go together: probes are fitted to one another, too";
         return Err(CliError::Usage(message.to_owned()));
     }
-    let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
-    scene.warnings.iter().for_each(|warning| report.warn(warning));
+    let loaded = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
+    loaded.warnings.iter().for_each(|warning| report.warn(warning));
+    let scene = loaded.scene;
     let given = report.stats.stage("load", || read_probes(&options.probes))?;
     check_memory(given.probes.len(), options)?;
     let prepared = Prepared::new(&scene, &report.stats).map_err(failed)?;
@@ -147,7 +148,7 @@ fn part(count: usize, options: &BakeOptions) -> Result<Range<usize>, CliError> {
 /// Stands for the scene and the settings.
 fn fingerprint(scene: &Scene, options: &BakeOptions) -> u64 {
     let mut hash = XxHash3_64::default();
-    hash.write(&scene::light_fingerprint(scene).to_le_bytes());
+    hash.write(&fingerprint::of_light(scene).to_le_bytes());
     let numbers =
         [options.resolution, options.bounces, options.fit, options.distances, u32::from(options.order)];
     numbers.iter().for_each(|n| hash.write(&n.to_le_bytes()));

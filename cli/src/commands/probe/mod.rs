@@ -16,9 +16,9 @@ use crate::error::CliError;
 use crate::image_io::write_atomically;
 use crate::input::is_standard;
 use crate::options::ProbeCommand;
-use crate::pipeline::PipelineError;
 use crate::probe_io::{ProbeFile, write_probes};
 use crate::scene::Overrides;
+use pointillist_render::RenderError;
 use std::path::Path;
 
 pub(super) fn run(command: &ProbeCommand) -> Result<(), CliError> {
@@ -35,7 +35,7 @@ fn overrides(set: &[String]) -> Overrides {
     Overrides { assignments: set.iter().map(|assignment| ("--set".to_owned(), assignment.clone())).collect() }
 }
 
-fn failed(error: PipelineError) -> CliError {
+fn failed(error: RenderError) -> CliError {
     CliError::Failed(error.to_string())
 }
 

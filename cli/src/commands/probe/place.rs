@@ -7,12 +7,15 @@ use crate::commands::report::name_of_output;
 use crate::error::CliError;
 use crate::input::name_of;
 use crate::input_error::InputError;
+use crate::job::Watch;
 use crate::memory;
 use crate::options::{Inside, PlaceOptions, Strategy};
-use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_again, look_all};
 use crate::probe_io::ProbeFile;
 use crate::scene::{self, NONE, Scene};
 use glam::DVec3;
+use pointillist_render::{
+    Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_again, look_all,
+};
 use pointillist_sh::Sh;
 use pointillist_shade::face_normal;
 use pointillist_shprobe::{DistanceMap, Field, ProbeError, place};
@@ -27,8 +30,9 @@ pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?.writing([&options.output])?;
     check_output(&options.output)?;
     check_memory(options)?;
-    let scene = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
-    scene.warnings.iter().for_each(|warning| report.warn(warning));
+    let loaded = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
+    loaded.warnings.iter().for_each(|warning| report.warn(warning));
+    let scene = loaded.scene;
     if scene.mesh.positions.is_empty() && options.low.is_none() {
         let error = InputError::of_file(name_of(&options.scene), "the scene is empty");
         return Err(error.with_help("say which box to fill with --low and --high").into());
@@ -175,7 +179,8 @@ fn cluster(
     let progress = report.progress();
     progress.begin("look", 2 * candidates.len() as u64);
     let stats = &report.stats;
-    let first = || look_all(prepared, candidates, look, prepared.ambient(), &progress, stats);
+    let watch = Watch { task: "look", progress: &progress, stats };
+    let first = || look_all(prepared, candidates, look, prepared.ambient(), &watch);
     let seen = stats.stage("look", first).map_err(failed)?;
     let out = match options.inside {
         Inside::Keep => vec![false; candidates.len()],
@@ -187,7 +192,7 @@ fn cluster(
     let seen: Vec<Seen> = seen.into_iter().zip(out).filter(|(_, out)| !out).map(|(seen, _)| seen).collect();
     let (direct, distances) = split(seen.iter().cloned());
     let field = Field::new(&candidates, &direct).and_then(|f| f.with_distances(distances)).map_err(broken)?;
-    let again = || look_again(prepared, &candidates, look, Ambient::Probes(&field), &seen, &progress, stats);
+    let again = || look_again(prepared, &candidates, look, Ambient::Probes(&field), &seen, &watch);
     let (radiance, distances) = split(stats.stage("look", again).map_err(failed)?);
     progress.finish();
     let known = place::Candidates {

@@ -4,11 +4,13 @@ use super::failed;
 use super::solids::Solids;
 use crate::commands::Report;
 use crate::error::CliError;
-use crate::job::Progress;
+use crate::job::{Progress, Watch};
 use crate::options::{BakeOptions, Inside, What};
-use crate::pipeline::{Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_again, look_all};
 use crate::scene::Scene;
 use glam::{DVec3, Vec3};
+use pointillist_render::{
+    Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_again, look_all,
+};
 use pointillist_sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, ProbeError, place};
 
@@ -87,7 +89,7 @@ impl<'a> Rounds<'a> {
         let ambient = self.prepared.ambient();
         let stats = &self.report.stats;
         let all = |places: &[DVec3], most: u32| {
-            look_all(self.prepared, places, self.options_of(emission, most), ambient, &self.progress, stats)
+            look_all(self.prepared, places, self.options_of(emission, most), ambient, &self.watch())
         };
         stats
             .stage("bake", || {
@@ -112,7 +114,7 @@ impl<'a> Rounds<'a> {
         let stats = &self.report.stats;
         let again = |places: &[DVec3], most: u32, before: &[Seen]| {
             let options = self.options_of(emission, most);
-            look_again(self.prepared, places, options, ambient, before, &self.progress, stats)
+            look_again(self.prepared, places, options, ambient, before, &self.watch())
         };
         stats
             .stage("bake", || {
@@ -121,6 +123,10 @@ impl<'a> Rounds<'a> {
                 Ok(seen)
             })
             .map_err(failed)
+    }
+
+    fn watch(&self) -> Watch<'_> {
+        Watch { task: "bake", progress: &self.progress, stats: &self.report.stats }
     }
 
     /// Pixels on a side where `most` are enough.

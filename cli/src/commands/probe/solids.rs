@@ -2,9 +2,9 @@
 
 use crate::error::CliError;
 use crate::options::Inside;
-use crate::pipeline::Prepared;
 use crate::scene::Scene;
 use glam::{DVec3, dvec3};
+use pointillist_render::Prepared;
 use pointillist_shade::Source;
 
 /// Distances that are tried to get out of a solid, as shares of the scene's diagonal.

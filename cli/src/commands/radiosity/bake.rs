@@ -1,19 +1,21 @@
 //! `radiosity SCENE`.
 
+use crate::baked_file::BakedFile;
 use crate::commands::Report;
 use crate::commands::report::{name_of_output, write_text};
 use crate::error::CliError;
 use crate::input::{is_standard, name_of};
+use crate::input_error::InputError;
 use crate::job::Progress;
 use crate::memory;
 use crate::options::{FormFactorKind, LinkKind, RadiosityBakeOptions, SolveMethod};
-use crate::radiosity::{BakedFile, Lamps, SceneSurfaces, scene_surfaces, with_lamps};
 use crate::scene::{self, Overrides, Scene};
 use glam::DVec3;
 use pointillist_radiosity as radiosity;
 use pointillist_radiosity::{
     Baked, HemicubeKind, RadiosityError, Rgb, SceneOptions, Solution, SolveOptions, Transport,
 };
+use pointillist_render::{Lamps, SceneError, SceneSurfaces, fingerprint, scene_surfaces, with_lamps};
 use std::path::Path;
 
 /// Patches along the scene's longest side, unless said otherwise.
@@ -35,9 +37,10 @@ pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     };
     let assignments = options.set.iter().map(|a| ("--set".to_owned(), a.clone())).collect();
     let overrides = Overrides { assignments };
-    let scene = report.stats.stage("load", || scene::load_to_bake(path, &overrides))?;
-    scene.warnings.iter().for_each(|warning| report.warn(warning));
-    let surfaces = report.stats.stage("load", || scene_surfaces(&scene, &name_of(path)))?;
+    let loaded = report.stats.stage("load", || scene::load_to_bake(path, &overrides))?;
+    loaded.warnings.iter().for_each(|warning| report.warn(warning));
+    let scene = loaded.scene;
+    let surfaces = report.stats.stage("load", || scene_surfaces(&scene).map_err(|e| unusable(path, &e)))?;
     if surfaces.translucent > 0 {
         let count = surfaces.translucent;
         report.warn(&format!("{count} triangles let most light through and are left out"));
@@ -52,6 +55,17 @@ pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     bake.tell(&transport, &solution);
     bake.write(&transport, &baked, &solution)?;
     report.finish()
+}
+
+/// What light cannot be baked for, with the way out.
+fn unusable(path: &Path, error: &SceneError) -> InputError {
+    let refused = InputError::of_file(name_of(path), error.to_string());
+    match error {
+        SceneError::Albedo { material, .. } => refused.with_help(format!(
+            "light would grow at every reflection: set [material.{material}] diffuse below 1"
+        )),
+        _ => refused,
+    }
 }
 
 fn check(options: &RadiosityBakeOptions) -> Result<(), CliError> {
@@ -177,7 +191,7 @@ impl Bake<'_> {
         let material = &self.scene.materials[mesh.material_of[face] as usize].name;
         let name = self.options.scene.as_deref().map(name_of).unwrap_or_default();
         let message = format!("triangle {face} (of `{object}`, material `{material}`): {error}");
-        CliError::Input(crate::input_error::InputError::of_file(name, message))
+        CliError::Input(InputError::of_file(name, message))
     }
 
     /// The patches are more than asked for, or than there is memory for.
@@ -249,9 +263,9 @@ impl Bake<'_> {
             report.stats.stage("write", || write_factors(path, transport))?;
         }
         let mut file = BakedFile::new(baked, &self.surfaces.faces);
-        file.geometry = format!("{:016x}", scene::geometry_fingerprint(&self.scene.mesh));
+        file.geometry = format!("{:016x}", fingerprint::of_geometry(&self.scene.mesh));
         let Scene { materials, textures, lights, .. } = self.scene;
-        file.light = format!("{:016x}", scene::source_fingerprint(materials, textures, lights));
+        file.light = format!("{:016x}", fingerprint::of_sources(materials, textures, lights));
         file.patches = transport.patch_count();
         file.bound = solution.bound;
         let path = &options.output;

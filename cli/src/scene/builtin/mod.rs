@@ -6,7 +6,7 @@ mod textures;
 use super::load::{Overrides, apply};
 use super::text::{Document, Format};
 use super::textures::Purpose;
-use super::{Description, Scene, Texture, resolve};
+use super::{Description, LoadedScene, Texture, resolve};
 use crate::input_error::InputError;
 use crate::mesh_io::FileMesh;
 use std::path::Path;
@@ -24,7 +24,7 @@ pub(super) struct Generated {
 /// # Errors
 ///
 /// Overrides that make no sense.
-pub fn builtin(overrides: &Overrides) -> Result<Scene, InputError> {
+pub fn builtin(overrides: &Overrides) -> Result<LoadedScene, InputError> {
     let mut document = Document::parse("built-in scene", include_str!("scene.toml"), Format::Toml)?;
     apply(&mut document, overrides)?;
     let description = Description::new(document)?;

@@ -2,7 +2,6 @@
 
 use crate::scene::textures::Purpose;
 use crate::scene::{Texels, Texture, srgb_from_linear};
-use std::path::PathBuf;
 
 /// All of them, by the names that the scene file uses.
 pub(super) fn all() -> Vec<(&'static str, Purpose, Texture)> {
@@ -18,7 +17,7 @@ fn texture(name: &str, width: u32, height: u32, color: impl Fn(u32, u32) -> [f32
     };
     let texels =
         (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
-    Texture { width, height, texels: Texels::Srgb8(texels), path: PathBuf::from(name) }
+    Texture::new(name, [width, height], Texels::Srgb8(texels))
 }
 
 /// A chequered floor, no two tiles quite alike.

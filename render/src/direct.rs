@@ -1,0 +1,186 @@
+//! Light that comes straight from the lights, asked for only where it can matter.
+
+use crate::lights::LightSample;
+use crate::monitor::Monitor;
+use crate::shader::{Economy, Point, Shader};
+use glam::{DVec2, Vec3};
+use pointillist_micropoint::{Face, Fragment, Micropoint, Tile};
+use pointillist_shade::{Incident, Interpolation, interpolate_color, sees_light, turn_to};
+use pointillist_shadow::{Receivers, ShadowScratch, Viewer};
+use std::ops::Range;
+
+/// Light that would reach a micropoint if nothing stood in its way, and the part of it that does.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arrival {
+    point: u32,
+    radiance: Vec3,
+    fraction: f64,
+}
+
+/// Memory for shadows.
+#[derive(Default)]
+pub(crate) struct DirectScratch {
+    pub(crate) shadow: ShadowScratch,
+    receivers: Receivers,
+    lit: Vec<f64>,
+    arrivals: Vec<Arrival>,
+    /// Arrivals of a pixel that share the mean fraction of some receivers.
+    shared: Vec<(Range<usize>, Range<usize>)>,
+    /// Fragments of one pixel: its micropoint and what it counts.
+    candidates: Vec<(u32, Fragment, f64)>,
+}
+
+impl Shader<'_> {
+    /// Adds one light: what would arrive, times the fraction of it that does.
+    pub(crate) fn add_light(
+        &self,
+        tile: &Tile,
+        light: &LightSample<'_>,
+        points: &mut [Point],
+        direct: &mut DirectScratch,
+        mut lit_layer: Option<&mut Vec<f64>>,
+        monitor: &dyn Monitor,
+    ) {
+        direct.arrivals.clear();
+        for (i, p) in points.iter().enumerate() {
+            let radiance = self.arriving(light, p, &tile.faces()[tile.points()[i].face as usize]);
+            if radiance != Vec3::ZERO || lit_layer.is_some() {
+                direct.arrivals.push(Arrival { point: i as u32, radiance, fraction: 1.0 });
+            }
+        }
+        monitor.lap("shade");
+        if let Some(screens) = &light.shadow {
+            direct.receivers.clear();
+            match self.economy {
+                None => ask_for_all(tile, &direct.arrivals, &mut direct.receivers),
+                Some(economy) => ask_for_some(tile, self.shadows_per_pixel(economy, light), direct),
+            }
+            let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
+            screens.lit(viewer, &direct.receivers, &mut direct.shadow, &mut direct.lit);
+            match self.economy {
+                None => all_fractions(tile, &mut direct.arrivals, &direct.lit),
+                Some(_) => shared_fractions(direct),
+            }
+            monitor.lap("shadow");
+        }
+        let samples = f64::from(self.scene.lights[light.light].light.samples());
+        for a in &direct.arrivals {
+            let p = &mut points[a.point as usize];
+            p.direct += a.radiance * a.fraction as f32;
+            if let Some(layer) = lit_layer.as_deref_mut() {
+                let to_light =
+                    self.scene.lights[light.light].light.illuminate(light.sample, p.position).to_light;
+                layer[a.point as usize] +=
+                    if sees_light(p.face_normal, to_light) { a.fraction / samples } else { 0.0 };
+            }
+        }
+    }
+
+    /// Samples of an area light are summed up as fragments are: together they get as many shadows as a light of one point, but each one.
+    fn shadows_per_pixel(&self, economy: Economy, light: &LightSample<'_>) -> usize {
+        let samples = self.scene.lights[light.light].light.samples().max(1) as usize;
+        economy.shadows_per_pixel.div_ceil(samples)
+    }
+
+    /// Radiance that a micropoint sends to the eye because of a light, without shadow.
+    fn arriving(&self, light: &LightSample<'_>, p: &Point, face: &Face) -> Vec3 {
+        let source = &self.scene.lights[light.light].light;
+        if p.material.diffuse == Vec3::ZERO && p.material.specular == Vec3::ZERO {
+            return Vec3::ZERO;
+        }
+        let incident = source.illuminate(light.sample, p.position);
+        if incident.is_dark() || !sees_light(p.face_normal, incident.to_light) {
+            return Vec3::ZERO;
+        }
+        if self.scene.render.shading == Interpolation::Gouraud
+            && let Some(normals) = self.corner_normals(face.id)
+        {
+            let corners = self.scene.corners(face.id);
+            let at = |k: usize| {
+                let to_eye = (self.eye - corners[k]).normalize_or_zero().as_vec3();
+                let incident = source.illuminate(light.sample, corners[k]);
+                self.reflect(p, face.id, &incident, turn_to(normals[k], p.face_normal), to_eye)
+            };
+            return interpolate_color([at(0), at(1), at(2)], p.barycentric);
+        }
+        self.reflect(p, face.id, &incident, p.normal, p.to_eye)
+    }
+
+    /// By the material's formula, or as measured.
+    fn reflect(&self, p: &Point, triangle: u32, incident: &Incident, normal: Vec3, to_eye: Vec3) -> Vec3 {
+        let material = self.scene.mesh.material_of[triangle as usize] as usize;
+        match &self.scene.materials[material].details.measured {
+            Some(measured) => measured.table.reflect(incident, normal, to_eye),
+            None => p.material.reflect(incident, normal, to_eye),
+        }
+    }
+}
+
+/// Every fragment of every arrival.
+fn ask_for_all(tile: &Tile, arrivals: &[Arrival], receivers: &mut Receivers) {
+    for a in arrivals {
+        let m = &tile.points()[a.point as usize];
+        tile.fragments(m).iter().for_each(|f| receive(tile, m, f, receivers));
+    }
+}
+
+fn receive(tile: &Tile, m: &Micropoint, fragment: &Fragment, receivers: &mut Receivers) {
+    let face = &tile.faces()[m.face as usize];
+    let corner = |&v: &DVec2| tile.position(v, face.nearness_at(v));
+    receivers.push(m.face, tile.outline(fragment).iter().map(corner));
+}
+
+/// What [`ask_for_all`] asked for, as the mean over each micropoint.
+fn all_fractions(tile: &Tile, arrivals: &mut [Arrival], lit: &[f64]) {
+    let mut next = 0;
+    for a in arrivals {
+        let fragments = tile.fragments(&tile.points()[a.point as usize]);
+        let reached: f64 = fragments.iter().zip(&lit[next..]).map(|(f, l)| f.weight * l).sum();
+        next += fragments.len();
+        // Without a division where it would cost the last bit of a plain 0 or 1.
+        let single = fragments.len() == 1;
+        a.fraction =
+            if single { lit[next - 1] } else { reached / fragments.iter().map(|f| f.weight).sum::<f64>() };
+    }
+}
+
+/// At most `count` fragments of each pixel, taken at even steps of what they would send to the eye: their mean
+/// fraction stands for all.
+fn ask_for_some(tile: &Tile, count: usize, scratch: &mut DirectScratch) {
+    let DirectScratch { receivers, arrivals, shared, candidates, .. } = scratch;
+    shared.clear();
+    let pixel = |a: &Arrival| {
+        let m = &tile.points()[a.point as usize];
+        (m.x, m.y)
+    };
+    let (mut first, mut asked) = (0, 0);
+    for group in arrivals.chunk_by(|a, b| pixel(a) == pixel(b)) {
+        candidates.clear();
+        for a in group {
+            let m = &tile.points()[a.point as usize];
+            let bright = f64::from(a.radiance.element_sum());
+            candidates.extend(tile.fragments(m).iter().map(|f| (a.point, *f, f.weight * bright)));
+        }
+        let total: f64 = candidates.iter().map(|c| c.2).sum();
+        let (mut sum, mut taken) = (0.0, 0);
+        for (point, fragment, weight) in candidates.iter() {
+            sum += weight;
+            while taken < count && sum * count as f64 > (taken as f64 + 0.5) * total {
+                receive(tile, &tile.points()[*point as usize], fragment, receivers);
+                taken += 1;
+            }
+        }
+        shared.push((first..first + group.len(), asked..asked + taken));
+        first += group.len();
+        asked += taken;
+    }
+}
+
+/// What [`ask_for_some`] asked for.
+fn shared_fractions(scratch: &mut DirectScratch) {
+    let DirectScratch { arrivals, shared, lit, .. } = scratch;
+    for (group, asked) in shared.iter() {
+        let mean = lit[asked.clone()].iter().sum::<f64>() / asked.len().max(1) as f64;
+        arrivals[group.clone()].iter_mut().for_each(|a| a.fraction = mean);
+    }
+}

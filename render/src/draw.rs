@@ -1,0 +1,166 @@
+//! From a prepared scene to a frame: micropoints, shadows and shading, tile by tile.
+//!
+//! Each tile goes through three stages on one thread: its visible micropoints are found; for each light the lit fractions of those
+//! that can use its light; then each is shaded once. Memory is that of a tile per thread, plus the frame.
+
+use crate::background::Background;
+use crate::canvas::Canvas;
+use crate::error::RenderError;
+use crate::frame::{Frame, LayerKind};
+use crate::lights::light_samples;
+use crate::monitor::Monitor;
+use crate::prepared::Prepared;
+use crate::shader::{Shader, Style};
+use crate::shading::ShaderScratch;
+use pointillist_micropoint::{Renderer, TileCounts};
+use pointillist_shadow::ShadowCounts;
+use pointillist_view::{PixelRect, View};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Pixels on a side of a tile: about a thousand cells, whose state stays in the second-level cache.
+const TILE_SIZE: u32 = 16;
+
+/// What of a picture is drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct DrawOptions {
+    /// The part of the picture; `None`, the default, is all of it. Parts outside of the picture do not exist.
+    pub window: Option<PixelRect>,
+    /// What to deliver beside colour and depth, in this order. Default: nothing.
+    pub layers: Vec<LayerKind>,
+}
+
+impl DrawOptions {
+    /// The whole picture, colour and depth.
+    pub const DEFAULT: Self = Self { window: None, layers: Vec::new() };
+
+    /// Draws a part of the picture.
+    #[must_use]
+    pub fn with_window(mut self, window: PixelRect) -> Self {
+        self.window = Some(window);
+        self
+    }
+
+    /// Delivers these layers beside colour and depth.
+    #[must_use]
+    pub fn with_layers(mut self, layers: Vec<LayerKind>) -> Self {
+        self.layers = layers;
+        self
+    }
+}
+
+impl Prepared<'_> {
+    /// Draws what the scene's camera sees.
+    ///
+    /// The frame has the layers that are asked for, in their order. A pixel's value depends on the scene only: not on the window,
+    /// on tiles or on the number of threads.
+    ///
+    /// # Errors
+    /// [`RenderError`] if the camera, the size of the picture, a light or a layer is refused, or the monitor cancels.
+    pub fn draw(&self, options: &DrawOptions, monitor: &dyn Monitor) -> Result<Frame, RenderError> {
+        self.draw_view(self.scene.view()?, options, monitor)
+    }
+
+    /// Draws what another camera sees; the scene's own camera and size are not used.
+    ///
+    /// # Errors
+    /// As [`Prepared::draw`].
+    pub fn draw_view(
+        &self,
+        view: View,
+        options: &DrawOptions,
+        monitor: &dyn Monitor,
+    ) -> Result<Frame, RenderError> {
+        let style = Style { ambient: self.ambient(), emission: true, lights: true, economy: None };
+        self.draw_styled(view, &style, options, monitor)
+    }
+
+    /// Draws a view as `style` says.
+    pub(crate) fn draw_styled(
+        &self,
+        view: View,
+        style: &Style<'_>,
+        options: &DrawOptions,
+        monitor: &dyn Monitor,
+    ) -> Result<Frame, RenderError> {
+        let layers = &options.layers;
+        self.check_layers(layers)?;
+        let window = options.window.unwrap_or(view.picture()).intersection(&view.picture());
+        monitor.begin(window.tiles(TILE_SIZE).count() as u64);
+        let renderer = Renderer::new(&self.geometry, &*self.surfaces, view, self.scene.render.micropoints())?;
+        monitor.start_lap();
+        let lights = if style.lights {
+            light_samples(self.scene, &self.geometry, &self.surfaces, renderer.lens())?
+        } else {
+            vec![]
+        };
+        monitor.lap("lights");
+        let background = Background::new(self.scene, (*self.environment).as_ref(), &view);
+        let shader = Shader::new(self, &lights, &view, style);
+        let canvas = Mutex::new(Canvas::new(self.scene, [view.width(), view.height()], window, layers));
+        let totals = Mutex::new((TileCounts::default(), ShadowCounts::default()));
+        let start = || {
+            monitor.start_lap();
+            ShaderScratch::default()
+        };
+        renderer.for_each_tile(window, TILE_SIZE, start, |scratch, tile| {
+            monitor.lap("visibility");
+            let pixels = shader.shade(tile, &background, layers, scratch, monitor);
+            lock(&canvas).put(tile.rect(), pixels);
+            let mut totals = lock(&totals);
+            totals.0 += tile.counts();
+            totals.1 += scratch.take_counts();
+            monitor.advance(1);
+            if monitor.is_cancelled() { Err(RenderError::Cancelled) } else { Ok(()) }
+        })?;
+        let (tile_counts, shadow_counts) = *lock(&totals);
+        record(monitor, &tile_counts, &shadow_counts);
+        Ok(canvas.into_inner().unwrap_or_else(PoisonError::into_inner).into_frame())
+    }
+
+    fn check_layers(&self, layers: &[LayerKind]) -> Result<(), RenderError> {
+        let count = self.scene.lights.len();
+        layers.iter().try_for_each(|layer| match layer {
+            LayerKind::Lit(index) if *index >= count => Err(RenderError::Layer { index: *index, count }),
+            _ => Ok(()),
+        })
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    // What is inside is a sum or a set of finished tiles: whole after every statement.
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn record(monitor: &dyn Monitor, t: &TileCounts, s: &ShadowCounts) {
+    let counts = [
+        ("clusters", t.clusters),
+        ("triangles_diced", t.triangles - t.triangles_hidden),
+        ("pieces", t.pieces),
+        ("micropoints", t.micropoints),
+        ("cells_one_part", t.cells_single),
+        ("cells_tiled", t.cells_tiled),
+        ("cells_parts_apart", t.cells_apart),
+        ("cells_cut", t.cells_compared),
+        ("shadow_receivers", s.receivers),
+        ("shadow_screens", s.screens),
+        ("shadow_clusters", s.clusters),
+        ("shadow_casters", s.casters),
+        ("shadow_receivers_cut", s.partial),
+    ];
+    let skipped = [
+        ("clusters", t.clusters_skipped),
+        ("triangles_culled", t.triangles_culled),
+        ("triangles_hidden", t.triangles_hidden),
+        ("parts_hidden", t.parts_hidden),
+        ("cells_inside_spans_not_cut", t.span_cells),
+        ("cells_empty", t.cells_empty),
+        ("shadow_receivers_facing_away", s.facing_away),
+        ("shadow_receivers_lit_by_group", s.lit_by_group),
+        ("shadow_receivers_dark_by_group", s.dark_by_group),
+        ("shadow_clusters", s.clusters_skipped),
+        ("shadow_casters_culled", s.casters_culled),
+    ];
+    counts.iter().for_each(|(name, n)| monitor.count(name, *n));
+    skipped.iter().for_each(|(name, n)| monitor.skip(name, *n));
+}

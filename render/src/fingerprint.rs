@@ -1,0 +1,196 @@
+//! Hashes of scenes, the same on every machine: equal scenes have equal numbers and draw equal pictures, so that a picture that is
+//! there already need not be drawn again.
+
+use crate::scene::{AmbientLight, Details, LightSource, Material, Mesh, Scene, SkyLight, Texels, Texture};
+use glam::{DVec2, DVec3, Vec3};
+use pointillist_shade::{Falloff, Light, Material as Surface};
+use pointillist_shadow::Resolution;
+use pointillist_view::Projection;
+use std::hash::Hasher as _;
+use twox_hash::XxHash3_64;
+
+/// Hashes numbers as little-endian bytes, so that the value is the same on every machine.
+#[derive(Default)]
+struct Fingerprint(XxHash3_64);
+
+/// The hash of everything that a picture of the scene depends on.
+#[must_use]
+pub fn of_scene(scene: &Scene) -> u64 {
+    let mut hash = Fingerprint::default();
+    hash.camera_and_image(scene);
+    hash.int(of_light(scene));
+    hash.0.finish()
+}
+
+/// The hash of what light depends on: everything but the camera and the picture's size.
+#[must_use]
+pub fn of_light(scene: &Scene) -> u64 {
+    let mut hash = Fingerprint::default();
+    hash.color(scene.image.background);
+    hash.option(scene.image.environment);
+    hash.text(&format!("{:?}", scene.render));
+    hash.mesh(&scene.mesh);
+    scene.materials.iter().for_each(|material| hash.material(material));
+    scene.textures.iter().for_each(|texture| hash.texture(texture));
+    for light in &scene.lights {
+        hash.text(&light.name);
+        hash.light(&light.light);
+        hash.int(u64::from(light.shadow));
+        hash.int(match light.resolution {
+            Resolution::Auto => 0,
+            Resolution::Cells(n) => u64::from(n),
+        });
+    }
+    match &scene.ambient {
+        AmbientLight::Color(color) => hash.color(*color),
+        AmbientLight::Sky(SkyLight { sky, ground, up }) => {
+            [sky, ground, up].into_iter().for_each(|v| hash.color(*v))
+        }
+        AmbientLight::Environment => hash.text("environment"),
+        AmbientLight::Probes { fingerprint, .. } | AmbientLight::Radiosity { fingerprint, .. } => {
+            hash.int(*fingerprint);
+        }
+    }
+    hash.0.finish()
+}
+
+/// The hash of the triangles alone: what must be the same for light that was baked triangle by triangle.
+#[must_use]
+pub fn of_geometry(mesh: &Mesh) -> u64 {
+    let mut hash = Fingerprint::default();
+    hash.int(mesh.positions.len() as u64);
+    mesh.positions.iter().for_each(|&p| hash.vector(p));
+    hash.triples(&mesh.triangles);
+    mesh.object_of.iter().for_each(|n| hash.0.write(&n.to_le_bytes()));
+    mesh.objects.iter().for_each(|object| hash.int(u64::from(object.two_sided)));
+    hash.0.finish()
+}
+
+/// The hash of what baked light depends on besides the triangles: materials, textures and lights.
+#[must_use]
+pub fn of_sources<'a>(
+    materials: &[Material],
+    textures: &[Texture],
+    lights: impl IntoIterator<Item = &'a LightSource>,
+) -> u64 {
+    let mut hash = Fingerprint::default();
+    materials.iter().for_each(|material| hash.material(material));
+    textures.iter().for_each(|texture| hash.texture(texture));
+    for light in lights {
+        hash.light(&light.light);
+        hash.int(u64::from(light.shadow));
+    }
+    hash.0.finish()
+}
+
+impl Fingerprint {
+    fn int(&mut self, n: u64) {
+        self.0.write(&n.to_le_bytes());
+    }
+
+    fn float(&mut self, n: f64) {
+        self.int(n.to_bits());
+    }
+
+    fn vector(&mut self, v: DVec3) {
+        v.to_array().into_iter().for_each(|n| self.float(n));
+    }
+
+    fn color(&mut self, c: Vec3) {
+        c.to_array().into_iter().for_each(|n| self.0.write(&n.to_le_bytes()));
+    }
+
+    fn text(&mut self, text: &str) {
+        self.int(text.len() as u64);
+        self.0.write(text.as_bytes());
+    }
+
+    fn option(&mut self, index: Option<usize>) {
+        self.int(index.map_or(0, |index| index as u64 + 1));
+    }
+
+    fn triples(&mut self, list: &[[u32; 3]]) {
+        self.int(list.len() as u64);
+        list.iter().flatten().for_each(|n| self.0.write(&n.to_le_bytes()));
+    }
+
+    fn camera_and_image(&mut self, scene: &Scene) {
+        let camera = &scene.camera;
+        [camera.eye, camera.target, camera.up].into_iter().for_each(|v| self.vector(v));
+        match camera.projection {
+            Projection::Perspective { fov_y_rad } => {
+                self.int(0);
+                self.float(fov_y_rad);
+            }
+            Projection::Orthographic { height } => {
+                self.int(1);
+                self.float(height);
+            }
+        }
+        self.int(u64::from(scene.image.width));
+        self.int(u64::from(scene.image.height));
+    }
+
+    fn mesh(&mut self, mesh: &Mesh) {
+        self.int(mesh.positions.len() as u64);
+        mesh.positions.iter().for_each(|&p| self.vector(p));
+        mesh.normals.iter().chain(&mesh.colors).for_each(|&n| self.color(n));
+        mesh.uvs.iter().for_each(|&DVec2 { x, y }| [x, y].into_iter().for_each(|n| self.float(n)));
+        [&mesh.triangles, &mesh.normal_of, &mesh.uv_of].into_iter().for_each(|list| self.triples(list));
+        mesh.material_of.iter().chain(&mesh.object_of).for_each(|n| self.0.write(&n.to_le_bytes()));
+        mesh.objects.iter().for_each(|object| self.int(u64::from(object.two_sided)));
+    }
+
+    fn material(&mut self, material: &Material) {
+        let Surface { model, diffuse, specular, shininess, roughness, emission, opacity } = material.surface;
+        self.text(&format!("{model:?} {:?}", material.wrap));
+        [diffuse, specular, emission, Vec3::new(shininess, opacity, roughness)]
+            .into_iter()
+            .for_each(|c| self.color(c));
+        self.option(material.diffuse_map);
+        self.option(material.opacity_map);
+        if material.details != Details::default() {
+            self.text(&format!("{:?}", material.details));
+        }
+    }
+
+    fn texture(&mut self, texture: &Texture) {
+        self.int(u64::from(texture.width));
+        self.int(u64::from(texture.height));
+        match &texture.texels {
+            Texels::Srgb8(texels) => texels.iter().for_each(|t| self.0.write(t)),
+            Texels::Linear8(texels) => {
+                self.int(1);
+                texels.iter().for_each(|t| self.0.write(t));
+            }
+            Texels::Opacity8(texels) => self.0.write(texels),
+            Texels::Float(texels) => texels.iter().flatten().for_each(|c| self.0.write(&c.to_le_bytes())),
+        }
+    }
+
+    fn light(&mut self, light: &Light) {
+        self.color(light.color());
+        let mut falloff = Falloff::InverseSquare;
+        match *light {
+            Light::Directional { direction, .. } => self.vector(direction),
+            Light::Point { position, falloff: f, .. } => {
+                self.vector(position);
+                falloff = f;
+            }
+            Light::Spot { position, direction, beam_rad, cutoff_rad, falloff: f, .. } => {
+                [position, direction, DVec3::new(beam_rad, cutoff_rad, 0.0)]
+                    .into_iter()
+                    .for_each(|v| self.vector(v));
+                falloff = f;
+            }
+            Light::Rect { corner, edge_u, edge_v, samples, falloff: f, .. } => {
+                [corner, edge_u, edge_v].into_iter().for_each(|v| self.vector(v));
+                self.int(u64::from(samples));
+                falloff = f;
+            }
+            // A light that this version cannot read from a file.
+            _ => self.text(&format!("{light:?}")),
+        }
+        self.text(&format!("{falloff:?}"));
+    }
+}

@@ -1,0 +1,67 @@
+//! A rendered picture, or a part of one, in memory.
+
+use pointillist_view::PixelRect;
+
+/// What can be asked for beside colour and depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum LayerKind {
+    /// `N.X N.Y N.Z`: shading normal in the world, as lit.
+    Normal,
+    /// `P.X P.Y P.Z`: position in the world.
+    Position,
+    /// `albedo.R G B`: diffuse albedo.
+    Albedo,
+    /// `direct.R G B`: light that comes straight from the lights.
+    Direct,
+    /// `indirect.R G B`: ambient light.
+    Indirect,
+    /// `lit.<light>`: how much of light number n arrives, 0 to 1.
+    Lit(usize),
+    /// `id`: object number from 1; 0 where nothing is.
+    Id,
+    /// `back`: the share that shows backs of surfaces.
+    Back,
+}
+
+/// One layer's planes, each row-major over the frame's window.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// Names as in the EXR: `N.X`, `albedo.R`, `lit.sun`, `id`.
+    pub channels: Vec<String>,
+    /// A plane for each channel.
+    pub planes: Vec<Vec<f32>>,
+}
+
+/// A rendered picture, or the part of it that `window` says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Width and height of the whole picture.
+    pub size: [u32; 2],
+    /// What of it is here.
+    pub window: PixelRect,
+    /// Linear, premultiplied R G B A, row-major over the window.
+    pub color: Vec<[f32; 4]>,
+    /// Depth along the view axis; +∞ where nothing is. Empty if it was not computed.
+    pub depth: Vec<f32>,
+    /// The further layers that were asked for, in that order.
+    pub layers: Vec<Layer>,
+}
+
+impl LayerKind {
+    /// The EXR channels of this layer; `lights` are the names of the scene's lights.
+    #[must_use]
+    pub fn channels(self, lights: &[&str]) -> Vec<String> {
+        let named = |name: &str, axes: [&str; 3]| axes.map(|axis| format!("{name}.{axis}")).to_vec();
+        match self {
+            Self::Normal => named("N", ["X", "Y", "Z"]),
+            Self::Position => named("P", ["X", "Y", "Z"]),
+            Self::Albedo => named("albedo", ["R", "G", "B"]),
+            Self::Direct => named("direct", ["R", "G", "B"]),
+            Self::Indirect => named("indirect", ["R", "G", "B"]),
+            Self::Lit(light) => vec![format!("lit.{}", lights.get(light).copied().unwrap_or("light"))],
+            Self::Id => vec!["id".to_owned()],
+            Self::Back => vec!["back".to_owned()],
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Sums shaded micropoints up into the pixels of a tile.
+
+use crate::background::Background;
+use crate::canvas::Pixels;
+use crate::frame::LayerKind;
+use crate::shader::{Point, Shader};
+use glam::Vec3;
+use pointillist_micropoint::{Micropoint, Tile};
+use pointillist_view::PixelRect;
+
+impl Shader<'_> {
+    /// Sums up micropoints into the colour and depth of pixels. Depth is that of the micropoint with the largest weight.
+    pub(crate) fn gather(
+        &self,
+        tile: &Tile,
+        background: &Background<'_>,
+        points: &[Point],
+        pixels: &mut Pixels,
+    ) {
+        let rect = tile.rect();
+        let mut sums = vec![[0.0_f64; 4]; rect.pixels() as usize];
+        for (m, p) in tile.points().iter().zip(points) {
+            let color = p.material.emission + p.indirect + p.direct;
+            let s = &mut sums[index(&rect, m)];
+            for (c, v) in color.to_array().into_iter().enumerate() {
+                s[c] += m.weight * f64::from(v);
+            }
+            s[3] += m.weight;
+        }
+        pixels.color.clear();
+        for (i, s) in sums.iter().enumerate() {
+            let open = (1.0 - s[3]).max(0.0);
+            let (x, y) = (rect.x0 + i as u32 % rect.width(), rect.y0 + i as u32 / rect.width());
+            let behind = if open > 0.0 { background.behind(x, y) } else { Vec3::ZERO }.to_array();
+            let color = std::array::from_fn(|c| {
+                if c < 3 { (s[c] + open * f64::from(behind[c])) as f32 } else { s[3].min(1.0) as f32 }
+            });
+            pixels.color.push(color);
+        }
+        let depth = |i: usize| (points[i].position - self.eye).dot(self.forward) as f32;
+        pixels.depth.clear();
+        pixels.depth.extend(heaviest(tile).into_iter().map(|i| i.map_or(f32::INFINITY, depth)));
+    }
+
+    /// The further layers: colours are means over the micropoints of a pixel, geometry is that of the
+    /// one with the largest weight.
+    pub(crate) fn gather_layers(
+        &self,
+        tile: &Tile,
+        layers: &[LayerKind],
+        lit: &[Vec<f64>],
+        points: &[Point],
+        pixels: &mut Pixels,
+    ) {
+        let rect = tile.rect();
+        pixels.planes.clear();
+        let mut lit = lit.iter();
+        let mean = |value: &dyn Fn(usize, &Point) -> Vec3, channels: usize| {
+            let mut planes = vec![vec![0.0; rect.pixels() as usize]; channels];
+            for (i, (m, p)) in tile.points().iter().zip(points).enumerate() {
+                let value = value(i, p).to_array();
+                let pixel = index(&rect, m);
+                planes.iter_mut().zip(value).for_each(|(plane, v)| plane[pixel] += m.weight as f32 * v);
+            }
+            planes
+        };
+        for layer in layers {
+            let planes = match layer {
+                LayerKind::Albedo => mean(&|_, p| p.material.diffuse, 3),
+                LayerKind::Direct => mean(&|_, p| p.direct, 3),
+                LayerKind::Indirect => mean(&|_, p| p.indirect, 3),
+                LayerKind::Back => {
+                    let back = |i: usize| !tile.faces()[tile.points()[i].face as usize].front;
+                    mean(&|i, _| Vec3::splat(f32::from(u8::from(back(i)))), 1)
+                }
+                LayerKind::Lit(_) => {
+                    let values = lit.next().map_or(&[][..], Vec::as_slice);
+                    mean(&|i, _| Vec3::splat(values.get(i).map_or(0.0, |&v| v as f32)), 1)
+                }
+                LayerKind::Normal | LayerKind::Position | LayerKind::Id => {
+                    let value = |i: usize| self.geometry_value(*layer, tile, &points[i], &tile.points()[i]);
+                    let values = heaviest(tile).into_iter().map(|i| i.map_or(Vec3::ZERO, value));
+                    let values: Vec<Vec3> = values.collect();
+                    let channels = if *layer == LayerKind::Id { 1 } else { 3 };
+                    (0..channels).map(|c| values.iter().map(|v| v[c]).collect()).collect()
+                }
+            };
+            pixels.planes.extend(planes);
+        }
+    }
+
+    fn geometry_value(&self, layer: LayerKind, tile: &Tile, p: &Point, m: &Micropoint) -> Vec3 {
+        match layer {
+            LayerKind::Normal => p.normal,
+            LayerKind::Position => p.position.as_vec3(),
+            _ => {
+                let triangle = tile.faces()[m.face as usize].id as usize;
+                Vec3::splat(self.scene.mesh.object_of[triangle] as f32 + 1.0)
+            }
+        }
+    }
+}
+
+/// The pixel of a micropoint within its tile.
+fn index(rect: &PixelRect, m: &Micropoint) -> usize {
+    ((m.y - rect.y0) * rect.width() + (m.x - rect.x0)) as usize
+}
+
+/// For each pixel of a tile, the micropoint with the largest weight; of equal ones the first.
+fn heaviest(tile: &Tile) -> Vec<Option<usize>> {
+    let rect = tile.rect();
+    let mut best = vec![(0.0, None); rect.pixels() as usize];
+    for (i, m) in tile.points().iter().enumerate() {
+        let best = &mut best[index(&rect, m)];
+        if m.weight > best.0 {
+            *best = (m.weight, Some(i));
+        }
+    }
+    best.into_iter().map(|(_, i)| i).collect()
+}

@@ -1,0 +1,125 @@
+//! Pictures of scenes by micropoints: geometry, textures, lights and a camera in, a lit picture with layers out; no files.
+//!
+//! ```
+//! use glam::{DVec3, Vec3, dvec3};
+//! use pointillist_render::shade::{self, Light};
+//! use pointillist_render::{Camera, DrawOptions, LightSource, Material, Part, RenderError, Scene, render};
+//!
+//! // A white square of 2 by 2 in the plane z = 0, seen from 4 units in front of it.
+//! let camera = Camera::perspective(DVec3::Z * 4.0, DVec3::ZERO, std::f64::consts::FRAC_PI_2);
+//! let mut scene = Scene::new(camera, [32, 32]);
+//! scene.add_material(Material::new("white", shade::Material::lambert(Vec3::ONE)));
+//! let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| dvec3(x, y, 0.0));
+//! scene.mesh.add(&Part::new("square", &corners, &[[0, 1, 2], [0, 2, 3]]))?;
+//!
+//! // Light along −Z: an irradiance of π on the square, of which it reflects a radiance of 1.
+//! let irradiance = Vec3::splat(std::f32::consts::PI);
+//! let sun = Light::Directional { direction: DVec3::NEG_Z, irradiance };
+//! scene.lights.push(LightSource::new("sun", sun));
+//!
+//! let frame = render(&scene, &DrawOptions::DEFAULT, &())?;
+//! let pixel = |x: usize, y: usize| frame.color[y * 32 + x];
+//! assert!((pixel(16, 16)[0] - 1.0).abs() < 1e-6);
+//! assert_eq!(pixel(0, 0), [0.0; 4]);
+//!
+//! // It is 8 of the picture's 32 pixels wide: what all pixels hold is its area.
+//! let covered: f32 = frame.color.iter().map(|c| c[3]).sum();
+//! assert!((covered - 64.0).abs() < 1e-4);
+//! # Ok::<(), RenderError>(())
+//! ```
+//!
+//! * [`Scene`]: plain data, put together by hand ([`Mesh::add`]) or by a reader of files; [`Scene::check`] says what is wrong with it.
+//! * [`render`]: one picture. [`Prepared`]: many pictures of one scene, from other cameras ([`Prepared::draw_view`]), or what a light
+//!   probe sees ([`Prepared::capture`], [`look_all`]).
+//! * [`Frame`]: colour and depth, and the layers that [`DrawOptions`] asks for (normals, albedo, direct light, …).
+//! * [`Monitor`]: progress, cancelling, times and counts; `()` watches nothing, [`Watch`] takes a function and a flag.
+//! * [`scene_surfaces`], [`Lamps`]: the scene as `pointillist-radiosity` takes it; [`Lightmap`]: baked light as ambient light.
+//! * [`fingerprint`]: hashes by which unchanged pictures need not be drawn again.
+//!
+//! # Conventions
+//! Right-handed, +Y up, the camera looks along its −Z. Colours are linear and premultiplied; radiance, irradiance and intensity are in
+//! any one unit. Positions are `DVec3`; colours and unit normals are `Vec3`. Pixels are row by row from the top left corner.
+//!
+//! # Accuracy and cost
+//! Coverage, texture means and shadows are computed over the exact regions of pixels, not at samples; `pointillist-micropoint` and
+//! `pointillist-shadow` say how exactly. Each visible micropoint is shaded once, with the means of its maps, so what varies nonlinearly
+//! within one cell (a highlight sharper than that, a normal map under a lamp) is approximated. Memory is that of the scene, its
+//! textures as sums (8 bytes per channel and texel), the frame, and one tile per thread.
+//!
+//! Figures are of programs built with `lto = "thin"` and `codegen-units = 1`, which inline the kernels of the crates below; the
+//! profile of your own workspace decides.
+//!
+//! # Features
+//! `rayon` (default) uses all cores; it never changes a result. `invariants`: facts that hold for every scene, for property tests and
+//! fuzzing.
+#![forbid(unsafe_code)]
+
+mod ambient;
+mod background;
+mod canvas;
+mod capture;
+mod detail;
+mod detail_maps;
+mod direct;
+mod draw;
+mod error;
+pub mod fingerprint;
+mod frame;
+mod gather;
+#[cfg(feature = "invariants")]
+pub mod invariants;
+mod lamps;
+mod lightmap;
+mod lights;
+mod look;
+mod mirrors;
+mod monitor;
+mod prepared;
+mod radiosity_surfaces;
+mod reflections;
+mod scene;
+mod set_up;
+mod shader;
+mod shading;
+mod surfaces;
+mod uvs;
+
+pub use ambient::Ambient;
+pub use capture::{Capture, CaptureOptions};
+pub use draw::DrawOptions;
+pub use error::RenderError;
+pub use frame::{Frame, Layer, LayerKind};
+pub use lamps::{Lamps, with_lamps};
+pub use lightmap::{BakedLight, BakedSide, Lightmap, LightmapError, baked_sides};
+pub use look::{LookOptions, Seen, buried, fingerprints, look_again, look_all};
+pub use monitor::{Monitor, Watch};
+pub use prepared::Prepared;
+pub use radiosity_surfaces::{SceneSurfaces, scene_surfaces};
+pub use scene::{
+    AmbientLight, Bump, BumpHeight, Camera, Channel, Details, ImageSettings, LightSource, Map, Material,
+    MeasuredBrdf, Mesh, NONE, Object, Part, RenderSettings, Scene, SceneError, SkyLight, Surroundings,
+    Texels, Texture, Transmission, linear_from_srgb, srgb_from_linear,
+};
+
+pub use glam;
+/// Spherical harmonics: what probes hold.
+pub use pointillist_sh as sh;
+/// Lights, materials, environment maps.
+pub use pointillist_shade as shade;
+/// Fields of light probes.
+pub use pointillist_shprobe as shprobe;
+
+pub use pointillist_micropoint::{Geometry, MicropointError, Occlusion};
+pub use pointillist_shadow::{Resolution, ShadowError};
+pub use pointillist_view::{PixelRect, Projection, View, ViewError};
+
+/// Draws a scene: colour, depth and the layers that are asked for.
+///
+/// A pixel's value depends on the scene only: not on the window, on tiles or on the number of threads. For several pictures of one
+/// scene, [`Prepared`] does what does not depend on the view only once.
+///
+/// # Errors
+/// [`RenderError`] if the scene cannot be drawn, or the monitor cancels.
+pub fn render(scene: &Scene, options: &DrawOptions, monitor: &dyn Monitor) -> Result<Frame, RenderError> {
+    Prepared::new(scene, monitor)?.draw(options, monitor)
+}

@@ -1,0 +1,145 @@
+//! What probes see, as spherical harmonics.
+
+use crate::ambient::Ambient;
+use crate::capture::{Capture, CaptureOptions};
+use crate::error::RenderError;
+use crate::monitor::Monitor;
+use crate::prepared::Prepared;
+use glam::DVec3;
+use pointillist_parallel as parallel;
+use pointillist_sh::{CubeMap, CubeProjector, Sh, Weights};
+use pointillist_shprobe::{DistanceMap, ProbeError};
+use std::hash::Hasher as _;
+use twox_hash::XxHash3_64;
+
+/// How probes look.
+#[derive(Clone, Copy, Debug)]
+pub struct LookOptions {
+    /// The six pictures.
+    pub capture: CaptureOptions,
+    /// Highest band.
+    pub order: usize,
+    /// Texels on a side of maps of distances; 0 for none.
+    pub distances: usize,
+}
+
+/// Probes that see backs of surfaces in more than this share of all directions lie inside of walls.
+const BURIED: f64 = 0.5;
+
+/// Which probes lie inside of walls, by what they see; none if that is said of most of them, since then it says more about how the
+/// surfaces are turned.
+pub fn buried(seen: &[Seen]) -> Vec<bool> {
+    let buried: Vec<bool> = seen.iter().map(|s| s.back_share > BURIED).collect();
+    let count = buried.iter().filter(|&&b| b).count();
+    if 2 * count > seen.len() { vec![false; seen.len()] } else { buried }
+}
+
+/// What a probe saw.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    /// What arrives.
+    pub radiance: Sh,
+    /// What of it surfaces reflect straight from the lights: the same whatever other light there is.
+    pub direct: Sh,
+    /// The share of sky.
+    pub sky: Sh<f64>,
+    /// The share of all directions in which the back of a surface is seen.
+    pub back_share: f64,
+    /// How far it sees.
+    pub distances: Option<DistanceMap>,
+}
+
+/// Looks around from every position, on all cores.
+///
+/// # Errors
+/// [`RenderError`] if a position cannot be looked from, or what it sees is not finite.
+pub fn look_all(
+    prepared: &Prepared<'_>,
+    positions: &[DVec3],
+    options: LookOptions,
+    ambient: Ambient<'_>,
+    monitor: &dyn Monitor,
+) -> Result<Vec<Seen>, RenderError> {
+    let size = options.capture.resolution as usize;
+    let projector = CubeProjector::new(size, options.order, Weights::Gregory)?;
+    let bounds = prepared.geometry().bounds();
+    let far = ((bounds.high - bounds.low).length() * 2.0).max(f64::MIN_POSITIVE) as f32;
+    let one = |&position: &DVec3| {
+        let capture = prepared.capture(position, options.capture, ambient, monitor)?;
+        monitor.count("faces", u64::from(6 - capture.empty_faces));
+        monitor.skip("faces_empty", u64::from(capture.empty_faces));
+        monitor.advance(1);
+        Ok(seen(&capture, &projector, options.distances, far)?)
+    };
+    parallel::map_heavy(positions.len(), |i| one(&positions[i])).into_iter().collect()
+}
+
+/// Looks around again in other ambient light. Shadows are most of the time of a look, and are as they were `before`: only what does not come
+/// straight from the lights is looked at.
+///
+/// # Errors
+/// As [`look_all`].
+pub fn look_again(
+    prepared: &Prepared<'_>,
+    positions: &[DVec3],
+    options: LookOptions,
+    ambient: Ambient<'_>,
+    before: &[Seen],
+    monitor: &dyn Monitor,
+) -> Result<Vec<Seen>, RenderError> {
+    let capture = CaptureOptions { lights: false, ..options.capture };
+    let options = LookOptions { capture, distances: 0, ..options };
+    let rest = look_all(prepared, positions, options, ambient, monitor)?;
+    let sum = |(rest, before): (Seen, &Seen)| {
+        let both =
+            rest.radiance.coefficients().iter().zip(before.direct.coefficients()).map(|(a, b)| *a + *b);
+        Ok(Seen { radiance: Sh::new(both.collect())?, ..before.clone() })
+    };
+    rest.into_iter().zip(before).map(sum).collect()
+}
+
+fn seen(
+    capture: &Capture,
+    projector: &CubeProjector,
+    distances: usize,
+    far: f32,
+) -> Result<Seen, ProbeError> {
+    let cube = CubeMap::from_planes(capture.size, capture.radiance.clone())?;
+    let map = match distances {
+        0 => None,
+        size => Some(DistanceMap::from_cube(size, capture.size, &capture.distance, far)?),
+    };
+    Ok(Seen {
+        radiance: projector.project(&cube)?,
+        direct: projector.project(&CubeMap::from_planes(capture.size, capture.direct.clone())?)?,
+        back_share: capture.back_share(),
+        sky: projector.project_plane(&capture.sky)?,
+        distances: map,
+    })
+}
+
+/// Pixels on a side of the pictures that tell whether anything changed. Coverage is exact: whatever is seen leaves its mark in some
+/// pixel, however small it is.
+const WATCHED: u32 = 16;
+
+/// A number for everything that is seen from each position: surfaces, their light and their shadows.
+///
+/// # Errors
+/// As [`look_all`].
+pub fn fingerprints(
+    prepared: &Prepared<'_>,
+    positions: &[DVec3],
+    emission: bool,
+    ambient: Ambient<'_>,
+    monitor: &dyn Monitor,
+) -> Result<Vec<u64>, RenderError> {
+    let options = CaptureOptions { resolution: WATCHED, emission, lights: true, thorough: false };
+    let one = |&position: &DVec3| {
+        let capture = prepared.capture(position, options, ambient, monitor)?;
+        let mut hash = XxHash3_64::default();
+        let planes = capture.radiance.iter().chain([&capture.sky, &capture.distance]);
+        planes.flatten().for_each(|v| hash.write(&v.to_le_bytes()));
+        Ok(hash.finish())
+    };
+    parallel::map_heavy(positions.len(), |i| one(&positions[i])).into_iter().collect()
+}

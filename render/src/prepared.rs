@@ -1,0 +1,73 @@
+//! A scene with everything computed that does not depend on the view.
+
+use crate::ambient::Ambient;
+use crate::background::sum_up_environment;
+use crate::error::RenderError;
+use crate::monitor::{Monitor, stage};
+use crate::reflections::Reflections;
+use crate::scene::{AmbientLight, Scene};
+use crate::surfaces::Surfaces;
+use pointillist_micropoint::{Geometry, TexelSums};
+use std::sync::Arc;
+
+/// What all views of a scene share: textures summed up, geometry sorted into clusters.
+pub struct Prepared<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) surfaces: Arc<Surfaces>,
+    pub(crate) geometry: Geometry,
+    pub(crate) environment: Arc<Option<TexelSums<3>>>,
+    pub(crate) reflections: Arc<Reflections>,
+}
+
+impl<'a> Prepared<'a> {
+    /// Prepares all but the surroundings that are captured for mirrors: those are drawn with what is prepared here.
+    pub(crate) fn without_captures(scene: &'a Scene, monitor: &dyn Monitor) -> Result<Self, RenderError> {
+        scene.check()?;
+        let surfaces = stage(monitor, "textures", || Surfaces::new(scene))?;
+        let geometry = stage(monitor, "build", || surfaces.geometry(scene))?;
+        let environment = stage(monitor, "textures", || sum_up_environment(scene))?;
+        monitor.count("triangles", geometry.triangle_count() as u64);
+        monitor.count("triangles_of_solids", geometry.solid_triangle_count() as u64);
+        Ok(Self {
+            scene,
+            surfaces: Arc::new(surfaces),
+            geometry,
+            environment: Arc::new(environment),
+            reflections: Arc::new(Reflections::new(scene, monitor)),
+        })
+    }
+
+    /// The same scene with other triangles in view.
+    pub(crate) fn with_geometry(&self, geometry: Geometry) -> Self {
+        Self {
+            scene: self.scene,
+            surfaces: self.surfaces.clone(),
+            geometry,
+            environment: self.environment.clone(),
+            reflections: self.reflections.clone(),
+        }
+    }
+
+    /// The triangles.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// The scene's own ambient light.
+    pub fn ambient(&self) -> Ambient<'_> {
+        match &self.scene.ambient {
+            AmbientLight::Color(color) => Ambient::Color(*color),
+            AmbientLight::Sky(light) => Ambient::Sky(*light),
+            AmbientLight::Probes { field, .. } => Ambient::Probes(field),
+            AmbientLight::Environment => match self.reflections.of_scene() {
+                Some(map) => Ambient::Environment(map),
+                None => Ambient::Color(self.scene.image.background),
+            },
+            AmbientLight::Radiosity { light, .. } => Ambient::Radiosity(light),
+        }
+    }
+
+    pub(crate) fn has_constant_background(&self) -> bool {
+        self.environment.is_none()
+    }
+}

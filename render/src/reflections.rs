@@ -1,0 +1,94 @@
+//! What surfaces mirror: maps of the surroundings, made only where a material asks for them.
+
+use crate::monitor::{Monitor, stage};
+use crate::scene::{AmbientLight, Details, Material, Scene, Surroundings};
+use glam::Vec3;
+use pointillist_shade::{CubeMap, Environment, Equirectangular, Model, SMALLEST_ROUGHNESS};
+use std::collections::HashMap;
+
+/// Texels on a side of a cube's face at most: a degree has 11 of them.
+const LARGEST_FACE: u32 = 1024;
+
+/// The maps of a scene.
+#[derive(Default)]
+pub(crate) struct Reflections {
+    scene: Option<Environment>,
+    textures: HashMap<usize, Environment>,
+    /// By object and material.
+    captured: HashMap<(u32, u32), Environment>,
+}
+
+/// Whether a material mirrors anything or shows what is behind it.
+pub(crate) fn mirrors(material: &Material) -> bool {
+    let details = &material.details;
+    material.surface.model == Model::Ggx || details.reflection.is_some() || details.transmission.is_some()
+}
+
+/// Whether what it mirrors is blurred.
+fn is_rough(material: &Material) -> bool {
+    mirrors(material) && material.surface.roughness > SMALLEST_ROUGHNESS
+}
+
+impl Reflections {
+    /// The maps that come from files.
+    pub(crate) fn new(scene: &Scene, monitor: &dyn Monitor) -> Self {
+        let mut maps = Self::default();
+        let ambient = matches!(scene.ambient, AmbientLight::Environment);
+        let mirrors_scene = |m: &&Material| mirrors(m) && m.details.surroundings == Surroundings::Scene;
+        if let Some(texture) = scene.image.environment
+            && (ambient || scene.materials.iter().any(|m| mirrors_scene(&m)))
+        {
+            let rough = scene.materials.iter().filter(mirrors_scene).any(is_rough);
+            maps.scene = Some(stage(monitor, "environment", || {
+                let map = environment(scene, texture, rough);
+                if ambient { map.with_irradiance() } else { map }
+            }));
+        }
+        for material in &scene.materials {
+            if let Surroundings::Texture(texture) = material.details.surroundings
+                && mirrors(material)
+                && !maps.textures.contains_key(&texture)
+            {
+                let map = stage(monitor, "environment", || environment(scene, texture, true));
+                maps.textures.insert(texture, map);
+            }
+        }
+        maps
+    }
+
+    /// The scene's own map, if anything needs it.
+    pub(crate) fn of_scene(&self) -> Option<&Environment> {
+        self.scene.as_ref()
+    }
+
+    /// Adds what an object mirrors with a material that has its surroundings captured.
+    pub(crate) fn add_captured(&mut self, object: u32, material: u32, cube: CubeMap, scene: &Scene) {
+        let map = Environment::sharp(cube);
+        let rough = is_rough(&scene.materials[material as usize]);
+        self.captured.insert((object, material), if rough { map.with_rough_levels() } else { map });
+    }
+
+    /// What a triangle mirrors. Captured surroundings that are not there (yet) are those of the scene.
+    pub(crate) fn of(&self, scene: &Scene, details: &Details, triangle: u32) -> Option<&Environment> {
+        match details.surroundings {
+            Surroundings::Scene => self.scene.as_ref(),
+            Surroundings::Texture(texture) => self.textures.get(&texture),
+            Surroundings::Capture => {
+                let mesh = &scene.mesh;
+                let key = (mesh.object_of[triangle as usize], mesh.material_of[triangle as usize]);
+                self.captured.get(&key).or(self.scene.as_ref())
+            }
+        }
+    }
+}
+
+/// An equirectangular texture as a cube with about as many texels to a degree.
+fn environment(scene: &Scene, texture: usize, rough: bool) -> Environment {
+    let t = &scene.textures[texture];
+    let texels: Vec<Vec3> =
+        (0..t.height).flat_map(|y| (0..t.width).map(move |x| t.texel(x, y).truncate())).collect();
+    let map = Equirectangular::new(&texels, t.width, t.height).expect("a texture has all its texels");
+    let size = (t.width / 4).clamp(16, LARGEST_FACE).next_power_of_two();
+    let map = Environment::sharp(CubeMap::from_function(size, |d| map.sample(d)));
+    if rough { map.with_rough_levels() } else { map }
+}

@@ -1,0 +1,237 @@
+//! Whether the lists of a scene fit one another.
+
+use super::{Details, Map, Material, Mesh, NONE, Scene, Surroundings, Texels};
+use glam::Vec3;
+use pointillist_shade::Light;
+
+/// What can be wrong with a scene as data. Positions and opacities are checked where geometry is built from them, cameras and
+/// emitters where they are used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// A list is longer or shorter than the list that it belongs to.
+    #[error("`{list}` has {length} entries, {expected} are needed")]
+    Length {
+        /// The list, a field of [`Mesh`] or of [`super::Part`].
+        list: &'static str,
+        /// Its entries.
+        length: usize,
+        /// What it should have.
+        expected: usize,
+    },
+    /// A corner of a triangle refers to an entry that does not exist.
+    #[error("`{list}[{triangle}]` refers beyond the {count} entries there are")]
+    Corner {
+        /// The list of corner indices: `triangles`, `normal_of` or `uv_of`.
+        list: &'static str,
+        /// Which triangle.
+        triangle: usize,
+        /// Entries there are.
+        count: usize,
+    },
+    /// A triangle refers to a material or an object that does not exist.
+    #[error("`{list}[{triangle}]` is {index}, but there are {count}")]
+    Index {
+        /// The list of indices: `material_of` or `object_of`.
+        list: &'static str,
+        /// Which triangle.
+        triangle: usize,
+        /// What it refers to.
+        index: u32,
+        /// Entries there are.
+        count: usize,
+    },
+    /// A material, or the environment, refers to a texture that does not exist.
+    #[error("{user}: texture {texture} is asked for, but there are {count}")]
+    TextureIndex {
+        /// Who refers to it: ``material `name` `` or `image.environment`.
+        user: String,
+        /// What it refers to.
+        texture: usize,
+        /// Textures there are.
+        count: usize,
+    },
+    /// A texture has no texels, or not `width · height` of them.
+    #[error("texture `{name}` of {width}×{height} texels has {found}")]
+    Texels {
+        /// The texture's name.
+        name: String,
+        /// Texels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Texels there are.
+        found: usize,
+    },
+    /// A diffuse albedo, its map included, is not in 0 to 1: light would grow at every reflection.
+    #[error("material `{material}`: a diffuse albedo of {value} is not from 0 to 1")]
+    Albedo {
+        /// The material's name.
+        material: String,
+        /// The albedo of one of its colours.
+        value: f32,
+    },
+    /// A number is infinite or NaN.
+    #[error("{what} is not finite")]
+    NotFinite {
+        /// Which number: `normals[3]`, ``material `name`: emission``, ``light `name` ``…
+        what: String,
+    },
+    /// More entries than 32 bits can number.
+    #[error("`{list}` would have {count} entries, more than 32 bits can number")]
+    TooMany {
+        /// The list.
+        list: &'static str,
+        /// Entries it would have.
+        count: usize,
+    },
+}
+
+impl Scene {
+    /// Whether lists fit one another, indices refer to something, and numbers are finite. Linear in the size of the scene
+    /// without its texels.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the first element that is wrong.
+    pub fn check(&self) -> Result<(), SceneError> {
+        self.mesh.check(self.materials.len())?;
+        self.textures.iter().try_for_each(|texture| {
+            let found = match &texture.texels {
+                Texels::Srgb8(texels) | Texels::Linear8(texels) => texels.len(),
+                Texels::Opacity8(texels) => texels.len(),
+                Texels::Float(texels) => texels.len(),
+            };
+            super::texture::check_size(&texture.name, texture.width, texture.height, found)
+        })?;
+        let textures = self.textures.len();
+        self.materials.iter().try_for_each(|material| material.check(textures))?;
+        let environment = self.image.environment.into_iter();
+        check_textures("image.environment", environment, textures)?;
+        let background = self.image.background.is_finite();
+        finite(background, || "image.background".to_owned())?;
+        self.lights.iter().try_for_each(|l| finite(is_finite(&l.light), || format!("light `{}`", l.name)))
+    }
+}
+
+impl Mesh {
+    fn check(&self, materials: usize) -> Result<(), SceneError> {
+        let count = self.triangles.len();
+        let needed = |list, length, expected| {
+            if length == expected { Ok(()) } else { Err(SceneError::Length { list, length, expected }) }
+        };
+        needed("material_of", self.material_of.len(), count)?;
+        needed("object_of", self.object_of.len(), count)?;
+        if !self.normal_of.is_empty() {
+            needed("normal_of", self.normal_of.len(), count)?;
+        }
+        if !self.uv_of.is_empty() {
+            needed("uv_of", self.uv_of.len(), count)?;
+        }
+        if !self.colors.is_empty() {
+            needed("colors", self.colors.len(), self.positions.len())?;
+        }
+        check_corners("triangles", &self.triangles, self.positions.len(), false)?;
+        check_corners("normal_of", &self.normal_of, self.normals.len(), true)?;
+        check_corners("uv_of", &self.uv_of, self.uvs.len(), true)?;
+        check_indices("material_of", &self.material_of, materials)?;
+        check_indices("object_of", &self.object_of, self.objects.len())?;
+        let all_finite = |list: &'static str, wrong: Option<usize>| match wrong {
+            Some(i) => Err(SceneError::NotFinite { what: format!("`{list}[{i}]`") }),
+            None => Ok(()),
+        };
+        all_finite("normals", self.normals.iter().position(|n| !n.is_finite()))?;
+        all_finite("uvs", self.uvs.iter().position(|uv| !uv.is_finite()))?;
+        all_finite("colors", self.colors.iter().position(|c| !c.is_finite()))
+    }
+}
+
+impl Material {
+    fn check(&self, textures: usize) -> Result<(), SceneError> {
+        let user = format!("material `{}`", self.name);
+        check_textures(&user, self.textures(), textures)?;
+        let s = &self.surface;
+        let numbers = Vec3::new(s.shininess, s.roughness, s.opacity);
+        for (name, value) in [
+            ("diffuse", s.diffuse),
+            ("specular", s.specular),
+            ("emission", s.emission),
+            ("a constant", numbers),
+        ] {
+            finite(value.is_finite(), || format!("{user}: {name}"))?;
+        }
+        Ok(())
+    }
+
+    /// All textures that it refers to.
+    fn textures(&self) -> impl Iterator<Item = usize> {
+        let Details { occlusion, bump, normal, surroundings, .. } = &self.details;
+        let d = &self.details;
+        let maps = [
+            d.specular_map,
+            d.shininess_map,
+            d.roughness_map,
+            d.metallic_map,
+            d.emission_map,
+            occlusion.map(|(map, _)| map),
+            bump.map(|bump| bump.map),
+            normal.map(|(map, _)| map),
+        ];
+        let own = match surroundings {
+            Surroundings::Texture(texture) => Some(*texture),
+            Surroundings::Scene | Surroundings::Capture => None,
+        };
+        let texture = |map: Map| map.texture;
+        maps.into_iter().flatten().map(texture).chain(own).chain(self.diffuse_map).chain(self.opacity_map)
+    }
+}
+
+fn check_textures(user: &str, used: impl Iterator<Item = usize>, count: usize) -> Result<(), SceneError> {
+    let mut used = used;
+    match used.find(|&texture| texture >= count) {
+        Some(texture) => Err(SceneError::TextureIndex { user: user.to_owned(), texture, count }),
+        None => Ok(()),
+    }
+}
+
+fn check_corners(
+    list: &'static str,
+    corners: &[[u32; 3]],
+    count: usize,
+    may_be_absent: bool,
+) -> Result<(), SceneError> {
+    let beyond = |&v: &u32| v as usize >= count && !(may_be_absent && v == NONE);
+    match corners.iter().position(|t| t.iter().any(beyond)) {
+        Some(triangle) => Err(SceneError::Corner { list, triangle, count }),
+        None => Ok(()),
+    }
+}
+
+fn check_indices(list: &'static str, indices: &[u32], count: usize) -> Result<(), SceneError> {
+    match indices.iter().position(|&i| i as usize >= count) {
+        Some(triangle) => Err(SceneError::Index { list, triangle, index: indices[triangle], count }),
+        None => Ok(()),
+    }
+}
+
+fn finite(is_finite: bool, what: impl FnOnce() -> String) -> Result<(), SceneError> {
+    if is_finite { Ok(()) } else { Err(SceneError::NotFinite { what: what() }) }
+}
+
+fn is_finite(light: &Light) -> bool {
+    let color = light.color().is_finite();
+    color
+        && match *light {
+            Light::Directional { direction, .. } => direction.is_finite(),
+            Light::Point { position, .. } => position.is_finite(),
+            Light::Spot { position, direction, beam_rad, cutoff_rad, .. } => {
+                position.is_finite()
+                    && direction.is_finite()
+                    && beam_rad.is_finite()
+                    && cutoff_rad.is_finite()
+            }
+            Light::Rect { corner, edge_u, edge_v, .. } => {
+                corner.is_finite() && edge_u.is_finite() && edge_v.is_finite()
+            }
+            _ => true,
+        }
+}

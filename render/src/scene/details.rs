@@ -1,0 +1,148 @@
+//! What a material has beyond its constants: further maps, mirrored surroundings, measured reflection.
+
+use glam::Vec3;
+use pointillist_shade::{AutoUv, MerlTable, Wrap};
+use std::fmt;
+use std::sync::Arc;
+
+/// What a material has beyond its constants; the default is nothing, and then nothing is computed for it.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Details {
+    /// Multiplies the specular albedo.
+    pub specular_map: Option<Map>,
+    /// Multiplies the exponent.
+    pub shininess_map: Option<Map>,
+    /// Multiplies the roughness.
+    pub roughness_map: Option<Map>,
+    /// Multiplies `metallic`.
+    pub metallic_map: Option<Map>,
+    /// Multiplies the emission.
+    pub emission_map: Option<Map>,
+    /// The share of ambient and mirrored light that arrives, and how much of the map counts.
+    pub occlusion: Option<(Map, f32)>,
+    /// Heights.
+    pub bump: Option<Bump>,
+    /// Normals in the texture's own frame, and the factor on their x and y.
+    pub normal: Option<(Map, f32)>,
+    /// How metallic a GGX surface is, 0 to 1: what of the diffuse albedo becomes reflectance instead.
+    pub metallic: Option<f32>,
+    /// Measured reflection, in the place of a formula.
+    pub measured: Option<MeasuredBrdf>,
+    /// The share of its surroundings that it mirrors; for GGX a factor on what its roughness and reflectance say.
+    pub reflection: Option<Vec3>,
+    /// What passes of the light from behind, by refraction.
+    pub transmission: Option<Transmission>,
+    /// What is mirrored and seen through the surface.
+    pub surroundings: Surroundings,
+    /// Texture coordinates made from positions instead of those of the mesh.
+    pub uv: Option<AutoUv>,
+    /// Whether the back is not drawn.
+    pub one_sided: bool,
+}
+
+/// One number or colour per texel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Map {
+    /// Index into [`super::Scene::textures`].
+    pub texture: usize,
+    /// Outside the unit square.
+    pub wrap: Wrap,
+    /// What of the texel counts where a number is wanted.
+    pub channel: Channel,
+}
+
+/// What of a texel is taken as a number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Channel {
+    /// The mean of red, green and blue.
+    #[default]
+    Mean,
+    /// Red.
+    Red,
+    /// Green.
+    Green,
+    /// Blue.
+    Blue,
+}
+
+/// A height map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bump {
+    /// Heights from 0 to 1.
+    pub map: Map,
+    /// What 1 stands for.
+    pub height: BumpHeight,
+}
+
+/// How high a bump is whose texel is 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BumpHeight {
+    /// In world units.
+    World(f32),
+    /// As a share of the length in the world that the texture spans on the triangle.
+    OfTexture(f32),
+}
+
+/// Light from behind a clear surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transmission {
+    /// The share of each colour that passes.
+    pub color: Vec3,
+    /// Refraction index of what is behind the front; 1 for a thin sheet that does not bend light.
+    pub index: f32,
+}
+
+/// Where mirrored light comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Surroundings {
+    /// The scene's environment map.
+    #[default]
+    Scene,
+    /// An equirectangular map of its own: index into [`super::Scene::textures`].
+    Texture(usize),
+    /// Six pictures of the scene from the middle of the object, without the object.
+    Capture,
+}
+
+/// A measured BRDF, shared by the materials that have it.
+#[derive(Clone)]
+pub struct MeasuredBrdf {
+    /// The table.
+    pub table: Arc<MerlTable>,
+    /// Stands for the table in comparisons and in [`crate::fingerprint`]: a hash of its file, for instance.
+    pub fingerprint: u64,
+}
+
+impl PartialEq for MeasuredBrdf {
+    fn eq(&self, other: &Self) -> bool {
+        self.fingerprint == other.fingerprint
+    }
+}
+
+impl fmt::Debug for MeasuredBrdf {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Not the table, which has a million entries.
+        write!(f, "MeasuredBrdf({:016x})", self.fingerprint)
+    }
+}
+
+impl Details {
+    /// Whether any map needs texture coordinates.
+    #[must_use]
+    pub fn has_maps(&self) -> bool {
+        self.maps().any(|map| map.is_some()) || self.bump.is_some() || self.normal.is_some()
+    }
+
+    fn maps(&self) -> impl Iterator<Item = Option<Map>> {
+        [
+            self.specular_map,
+            self.shininess_map,
+            self.roughness_map,
+            self.metallic_map,
+            self.emission_map,
+            self.occlusion.map(|(map, _)| map),
+        ]
+        .into_iter()
+    }
+}

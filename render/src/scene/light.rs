@@ -1,0 +1,40 @@
+//! The lights of a scene.
+
+use pointillist_shade::Light;
+use pointillist_shadow::Resolution;
+
+/// A light and how its shadow is made.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LightSource {
+    /// Names the layer `lit.<name>` and is part of error messages.
+    pub name: String,
+    /// What it sends out.
+    pub light: Light,
+    /// Whether it casts shadows. Default: it does.
+    pub shadow: bool,
+    /// Cells of its shadow grid; only the paper's rule ([`crate::Occlusion::Paper`]) has one. Default: as fine as its receivers.
+    pub resolution: Resolution,
+}
+
+impl LightSource {
+    /// A light that casts shadows.
+    #[must_use]
+    pub fn new(name: impl Into<String>, light: Light) -> Self {
+        Self { name: name.into(), light, shadow: true, resolution: Resolution::Auto }
+    }
+
+    /// The same light with or without shadows.
+    #[must_use]
+    pub fn with_shadow(mut self, shadow: bool) -> Self {
+        self.shadow = shadow;
+        self
+    }
+
+    /// The same light with so many cells in its shadow grid.
+    #[must_use]
+    pub fn with_resolution(mut self, resolution: Resolution) -> Self {
+        self.resolution = resolution;
+        self
+    }
+}

@@ -1,0 +1,133 @@
+//! Everything about a micropoint that does not depend on lights: place, normals, material, ambient light.
+
+use crate::ambient::Spot;
+use crate::shader::{Point, Shader, Surface};
+use glam::{Vec3, Vec4};
+use pointillist_delaunay::Hint;
+use pointillist_micropoint::{Face, Fragment, LensKind, Micropoint, SurfacePoint, Tile};
+use pointillist_shade::{Interpolation, Material, face_normal, interpolate_color, interpolate_normal};
+
+impl Shader<'_> {
+    pub(crate) fn set_up(
+        &self,
+        tile: &Tile,
+        m: &Micropoint,
+        polygon: &mut Vec<SurfacePoint>,
+        hint: &mut Hint,
+    ) -> Point {
+        let face = &tile.faces()[m.face as usize];
+        let at = face.point(tile.lens(), m.grid);
+        let relative = tile.position(m.grid, at.nearness);
+        let to_eye = match tile.lens().kind {
+            LensKind::Perspective => -relative.normalize_or_zero(),
+            LensKind::Orthographic => -self.forward,
+        };
+        let corners = self.scene.corners(face.id);
+        let normal = face_normal(corners[0], corners[1], corners[2]);
+        let face_normal = if face.front { normal } else { -normal }.as_vec3();
+        let (barycentric, to_eye) = (at.barycentric.as_vec3(), to_eye.as_vec3());
+        let described = &self.scene.materials[self.scene.mesh.material_of[face.id as usize] as usize];
+        let mut material = self.textured(tile, m, face, described.surface, polygon);
+        if !self.scene.mesh.colors.is_empty() {
+            material.diffuse *= self.vertex_color(face.id, barycentric);
+        }
+        if !self.emission {
+            material.emission = Vec3::ZERO;
+        }
+        let position = self.eye + relative;
+        let normal = self.shading_normal(face, barycentric, face_normal, to_eye);
+        if let Some(maps) = self.surfaces.details(face.id) {
+            let (triangle, front) = (face.id, face.front);
+            let mut s = Surface { triangle, front, position, to_eye, face_normal, normal, material };
+            let occlusion = self.apply_maps(&described.details, maps, &mut s, |each| {
+                self.for_outlines(tile, m, face, polygon, each);
+            });
+            let indirect = self.surrounding_light(&described.details, &s, occlusion, hint);
+            let Surface { normal, material, .. } = s;
+            return Point {
+                position,
+                barycentric,
+                to_eye,
+                face_normal,
+                normal,
+                material,
+                direct: Vec3::ZERO,
+                indirect,
+            };
+        }
+        // What reflects nothing needs no light.
+        let indirect = if material.diffuse == Vec3::ZERO {
+            Vec3::ZERO
+        } else {
+            let spot = Spot { position, triangle: face.id, front: face.front, face_normal, normal };
+            self.ambient.at(&spot, hint) * material.diffuse
+        };
+        Point { position, barycentric, to_eye, face_normal, normal, material, direct: Vec3::ZERO, indirect }
+    }
+
+    fn shading_normal(&self, face: &Face, barycentric: Vec3, face_normal: Vec3, to_eye: Vec3) -> Vec3 {
+        match self.corner_normals(face.id) {
+            Some(normals) if self.scene.render.shading == Interpolation::Phong => {
+                interpolate_normal(normals, barycentric, face_normal, to_eye)
+            }
+            _ => face_normal,
+        }
+    }
+
+    /// The material with its albedo averaged over what is seen of the micropoint.
+    fn textured(
+        &self,
+        tile: &Tile,
+        m: &Micropoint,
+        face: &Face,
+        material: Material,
+        polygon: &mut Vec<SurfacePoint>,
+    ) -> Material {
+        if !self.surfaces.has_color(face.id) {
+            return material;
+        }
+        let (mut sum, mut total) = (Vec4::ZERO, 0.0);
+        self.for_outlines(tile, m, face, polygon, &mut |polygon, weight| {
+            sum += self.surfaces.premultiplied_color(face.id, polygon) * weight;
+            total += weight;
+        });
+        if total <= 0.0 {
+            return material;
+        }
+        material.with_diffuse(material.diffuse * self.surfaces.straight_color(face.id, sum / total))
+    }
+
+    /// What is seen of a micropoint, piece by piece, with the weight of each.
+    fn for_outlines(
+        &self,
+        tile: &Tile,
+        m: &Micropoint,
+        face: &Face,
+        polygon: &mut Vec<SurfacePoint>,
+        each: &mut dyn FnMut(&[SurfacePoint], f32),
+    ) {
+        let fragments = tile.fragments(m);
+        let limit = self.economy.map_or(usize::MAX, |e| e.textures_per_micropoint);
+        let lightest = heaviest_weights(fragments, limit);
+        for fragment in fragments.iter().filter(|f| f.weight >= lightest).take(limit) {
+            polygon.clear();
+            polygon.extend(tile.outline(fragment).iter().map(|&v| face.point(tile.lens(), v)));
+            each(polygon, fragment.weight as f32);
+        }
+    }
+
+    fn vertex_color(&self, triangle: u32, barycentric: Vec3) -> Vec3 {
+        let mesh = &self.scene.mesh;
+        interpolate_color(mesh.triangles[triangle as usize].map(|v| mesh.colors[v as usize]), barycentric)
+    }
+}
+
+/// The smallest weight among the `count` heaviest fragments; 0 if there are no more than that.
+fn heaviest_weights(fragments: &[Fragment], count: usize) -> f64 {
+    if fragments.len() <= count {
+        return 0.0;
+    }
+    let mut weights: Vec<f64> = fragments.iter().map(|f| f.weight).collect();
+    let (_, nth, _) = weights.select_nth_unstable_by(count - 1, |a, b| b.total_cmp(a));
+    *nth
+}

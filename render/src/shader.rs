@@ -1,0 +1,113 @@
+//! What shading knows of a scene, and the state of one micropoint while it is shaded.
+
+use crate::ambient::{Ambient, Spot};
+use crate::lights::LightSample;
+use crate::prepared::Prepared;
+use crate::reflections::Reflections;
+use crate::scene::{NONE, Scene};
+use crate::surfaces::Surfaces;
+use glam::{DVec3, Vec3};
+use pointillist_shade::Material;
+use pointillist_view::View;
+
+/// What a frame shows of the scene's light.
+#[derive(Clone, Copy)]
+pub(crate) struct Style<'a> {
+    /// Light that does not come straight from lights.
+    pub(crate) ambient: Ambient<'a>,
+    /// Surfaces that glow are seen to glow.
+    pub(crate) emission: bool,
+    /// What comes straight from the lights is seen.
+    pub(crate) lights: bool,
+    /// For pictures that are only summed up: fewer questions about details within a pixel.
+    pub(crate) economy: Option<Economy>,
+}
+
+/// How much is asked about details smaller than a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Economy {
+    /// Fragments of a pixel whose shadow is computed, for each light.
+    pub(crate) shadows_per_pixel: usize,
+    /// Fragments of a micropoint, the heaviest, whose texels are averaged.
+    pub(crate) textures_per_micropoint: usize,
+}
+
+/// What all tiles share.
+pub(crate) struct Shader<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) surfaces: &'a Surfaces,
+    pub(crate) reflections: &'a Reflections,
+    pub(crate) lights: &'a [LightSample<'a>],
+    pub(crate) economy: Option<Economy>,
+    pub(crate) ambient: Ambient<'a>,
+    pub(crate) emission: bool,
+    pub(crate) eye: DVec3,
+    pub(crate) forward: DVec3,
+}
+
+/// A micropoint while it is shaded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point {
+    /// World position.
+    pub(crate) position: DVec3,
+    pub(crate) barycentric: Vec3,
+    pub(crate) to_eye: Vec3,
+    /// Unit face normal, on the eye's side.
+    pub(crate) face_normal: Vec3,
+    /// Unit normal to shade with.
+    pub(crate) normal: Vec3,
+    pub(crate) material: Material,
+    pub(crate) direct: Vec3,
+    /// Reflected ambient light.
+    pub(crate) indirect: Vec3,
+}
+
+/// A point of a surface before light is added.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface {
+    pub(crate) triangle: u32,
+    /// Whether its front is seen.
+    pub(crate) front: bool,
+    pub(crate) position: DVec3,
+    pub(crate) to_eye: Vec3,
+    pub(crate) face_normal: Vec3,
+    pub(crate) normal: Vec3,
+    pub(crate) material: Material,
+}
+
+impl Surface {
+    /// Where ambient light is asked for, from around a direction.
+    pub(crate) fn spot(&self, normal: Vec3) -> Spot {
+        let Self { position, triangle, front, face_normal, .. } = *self;
+        Spot { position, triangle, front, face_normal, normal }
+    }
+}
+
+impl<'a> Shader<'a> {
+    pub(crate) fn new(
+        prepared: &'a Prepared<'_>,
+        lights: &'a [LightSample<'a>],
+        view: &View,
+        style: &Style<'a>,
+    ) -> Self {
+        let Style { ambient, emission, economy, .. } = *style;
+        Self {
+            scene: prepared.scene,
+            surfaces: &prepared.surfaces,
+            reflections: &prepared.reflections,
+            lights,
+            economy,
+            ambient,
+            emission,
+            eye: view.eye(),
+            forward: view.forward(),
+        }
+    }
+
+    /// Unit normals of a triangle's corners, if it has them.
+    pub(crate) fn corner_normals(&self, triangle: u32) -> Option<[Vec3; 3]> {
+        let mesh = &self.scene.mesh;
+        let of = mesh.normal_of.get(triangle as usize)?;
+        (!of.contains(&NONE)).then(|| of.map(|i| mesh.normals[i as usize]))
+    }
+}

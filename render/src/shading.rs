@@ -1,0 +1,55 @@
+//! Shades the micropoints of a tile: each once, and asks for light only where it can matter.
+
+use crate::background::Background;
+use crate::canvas::Pixels;
+use crate::direct::DirectScratch;
+use crate::frame::LayerKind;
+use crate::monitor::Monitor;
+use crate::shader::{Point, Shader};
+use pointillist_delaunay::Hint;
+use pointillist_micropoint::{SurfacePoint, Tile};
+use pointillist_shadow::ShadowCounts;
+
+/// Per-thread memory.
+#[derive(Default)]
+pub(crate) struct ShaderScratch {
+    points: Vec<Point>,
+    direct: DirectScratch,
+    polygon: Vec<SurfacePoint>,
+    pixels: Pixels,
+    hint: Hint,
+}
+
+impl ShaderScratch {
+    pub(crate) fn take_counts(&mut self) -> ShadowCounts {
+        self.direct.shadow.take_counts()
+    }
+}
+
+impl Shader<'_> {
+    /// Shades a tile.
+    pub(crate) fn shade<'s>(
+        &self,
+        tile: &Tile,
+        background: &Background<'_>,
+        layers: &[LayerKind],
+        scratch: &'s mut ShaderScratch,
+        monitor: &dyn Monitor,
+    ) -> &'s Pixels {
+        let ShaderScratch { points, direct, polygon, pixels, hint } = scratch;
+        points.clear();
+        points.extend(tile.points().iter().map(|m| self.set_up(tile, m, polygon, hint)));
+        let lit_layers: Vec<usize> =
+            layers.iter().filter_map(|l| if let LayerKind::Lit(i) = l { Some(*i) } else { None }).collect();
+        let mut lit =
+            vec![vec![0.0; if lit_layers.is_empty() { 0 } else { tile.points().len() }]; lit_layers.len()];
+        for light in self.lights {
+            let lit = lit_layers.iter().position(|&l| l == light.light).map(|i| &mut lit[i]);
+            self.add_light(tile, light, points, direct, lit, monitor);
+        }
+        self.gather(tile, background, points, pixels);
+        self.gather_layers(tile, layers, &lit, points, pixels);
+        monitor.lap("shade");
+        pixels
+    }
+}

@@ -1,0 +1,222 @@
+//! A scene's materials as the renderer sees them: opacity, and textures summed up for exact means.
+
+use crate::detail_maps::{DetailMaps, DetailTable};
+use crate::scene::{Details, Material, Scene, Texture};
+use crate::uvs::{Uvs, texel_wrap};
+use glam::{Vec3, Vec4};
+use pointillist_micropoint::{
+    Geometry, MicropointError, Surface, SurfacePoint, TexelSums, TexelWrap, TexturedOpacity,
+};
+use pointillist_parallel as parallel;
+use pointillist_shade::Model;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::sync::Arc;
+
+/// What a material looks up in textures. Colour is summed up as colour × opacity, so that the empty
+/// part of a leaf's texture does not bleed into its rim.
+enum Textured {
+    Nothing,
+    Color(TexelSums<3>),
+    Opacity(TexelSums<1>),
+    Masked(MaskedColor),
+}
+
+/// Colour under a mask of opacity.
+struct MaskedColor {
+    /// Colour × opacity, and opacity.
+    premultiplied: TexelSums<4>,
+    /// Opacity once more by itself: shadows ask for it often, and for nothing else.
+    opacity: TexelSums<1>,
+    /// Smallest and largest colour of a texel that is not empty.
+    range: (Vec3, Vec3),
+    /// Mean colour of the whole map by its mask.
+    mean: Vec3,
+}
+
+/// Opacity up to which a region sees nothing but holes: what its sums say of colour is rounding.
+const EMPTY: f32 = 1e-6;
+
+impl MaskedColor {
+    fn new(color: &Texture, mask: &Texture, wrap: TexelWrap) -> Result<Self, MicropointError> {
+        let (width, height) = (color.width.max(mask.width), color.height.max(mask.height));
+        let at = |t: &Texture, x: u32, y: u32| {
+            let scale = |v: u32, from: u32, to: u32| (u64::from(v) * u64::from(to) / u64::from(from)) as u32;
+            t.texel(scale(x, width, t.width), scale(y, height, t.height))
+        };
+        let mut range = (Vec3::INFINITY, Vec3::ZERO);
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            if at(mask, x, y).w > 0.0 {
+                let color = at(color, x, y).truncate();
+                range = (range.0.min(color), range.1.max(color));
+            }
+        }
+        let premultiplied = TexelSums::new(width, height, wrap, |x, y| {
+            let alpha = at(mask, x, y).w;
+            (at(color, x, y).truncate() * alpha).extend(alpha).to_array()
+        })?;
+        let whole = Vec4::from_array(premultiplied.whole_mean().map(|v| v as f32));
+        let mean = if whole.w > 0.0 { whole.truncate() / whole.w } else { Vec3::ZERO };
+        let opacity = TexelSums::new(mask.width, mask.height, wrap, |x, y| [mask.texel(x, y).w])?;
+        Ok(Self { premultiplied, opacity, range, mean })
+    }
+
+    /// The colour of a region from its sum of colour × opacity and of opacity.
+    fn straight(&self, sum: Vec4) -> Vec3 {
+        if sum.w <= EMPTY {
+            // Seen by the mean opacity of its part, whose other places are hidden: it has no colour of its own.
+            return self.mean;
+        }
+        (sum.truncate() / sum.w).max(self.range.0).min(self.range.1)
+    }
+}
+
+/// Materials ready to be looked up, and where their textures lie on the triangles.
+pub(crate) struct Surfaces {
+    textures: Vec<Arc<Textured>>,
+    uvs: Uvs,
+    surface_of: Vec<u32>,
+    surfaces: Vec<Surface>,
+    material_of: Vec<u32>,
+    /// For each material; `None` for one of colour and opacity alone.
+    details: Vec<Option<DetailMaps>>,
+}
+
+impl Surfaces {
+    pub(crate) fn new(scene: &Scene) -> Result<Self, MicropointError> {
+        let (textures, details) =
+            parallel::join(|| textured_by_material(scene), || details_by_material(scene));
+        let (textures, details) = (textures?, details?);
+        let (surfaces, surface_of) = surfaces_by_material(scene, &textures);
+        let any_detail = details.iter().flatten().any(DetailMaps::any);
+        let any_texture = any_detail || textures.iter().any(|t| !matches!(**t, Textured::Nothing));
+        let uvs = if any_texture { Uvs::new(&scene.mesh) } else { Uvs::default() };
+        let material_of = scene.mesh.material_of.clone();
+        Ok(Self { textures, uvs, surface_of, surfaces, material_of, details })
+    }
+
+    pub(crate) fn geometry(&self, scene: &Scene) -> Result<Geometry, MicropointError> {
+        Geometry::new(&scene.mesh.positions, &scene.mesh.triangles, &self.surface_of, &self.surfaces)
+    }
+
+    /// Everything but one object. Triangles keep their numbers.
+    pub(crate) fn geometry_without(&self, scene: &Scene, object: u32) -> Result<Geometry, MicropointError> {
+        let mesh = &scene.mesh;
+        // A triangle without area is never seen.
+        let hidden = |(t, &[a, b, c]): (usize, &[u32; 3])| {
+            if mesh.object_of[t] == object { [a; 3] } else { [a, b, c] }
+        };
+        let triangles: Vec<[u32; 3]> = mesh.triangles.iter().enumerate().map(hidden).collect();
+        Geometry::new(&mesh.positions, &triangles, &self.surface_of, &self.surfaces)
+    }
+
+    /// The maps of a triangle's material beyond colour and opacity; `None` if it has nothing beyond them.
+    pub(crate) fn details(&self, triangle: u32) -> Option<&DetailMaps> {
+        self.details[self.material_of[triangle as usize] as usize].as_ref()
+    }
+
+    /// Where textures lie on the triangles.
+    pub(crate) fn uvs(&self) -> &Uvs {
+        &self.uvs
+    }
+
+    fn textured(&self, triangle: u32) -> &Textured {
+        &self.textures[self.material_of[triangle as usize] as usize]
+    }
+
+    /// Whether the colour of a triangle varies.
+    pub(crate) fn has_color(&self, triangle: u32) -> bool {
+        matches!(self.textured(triangle), Textured::Color(_) | Textured::Masked(_))
+    }
+
+    /// Mean of colour × opacity and of opacity over a polygon of a triangle, to be added up over polygons; see
+    /// [`Surfaces::straight_color`].
+    pub(crate) fn premultiplied_color(&self, triangle: u32, polygon: &[SurfacePoint]) -> Vec4 {
+        match self.textured(triangle) {
+            Textured::Nothing | Textured::Opacity(_) => Vec4::ONE,
+            Textured::Color(sums) => {
+                let [r, g, b] = self.uvs.mean(triangle, polygon, sums).map(|v| v as f32);
+                Vec4::new(r, g, b, 1.0)
+            }
+            Textured::Masked(masked) => {
+                Vec4::from_array(self.uvs.mean(triangle, polygon, &masked.premultiplied).map(|v| v as f32))
+            }
+        }
+    }
+
+    /// The factor on a triangle's diffuse albedo, from a mean of [`Surfaces::premultiplied_color`].
+    pub(crate) fn straight_color(&self, triangle: u32, mean: Vec4) -> Vec3 {
+        match self.textured(triangle) {
+            Textured::Masked(masked) => masked.straight(mean),
+            _ => mean.truncate(),
+        }
+    }
+}
+
+impl TexturedOpacity for Surfaces {
+    fn mean_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
+        match self.textured(triangle) {
+            Textured::Nothing | Textured::Color(_) => 1.0,
+            Textured::Opacity(sums) | Textured::Masked(MaskedColor { opacity: sums, .. }) => {
+                self.uvs.mean(triangle, polygon, sums)[0] as f32
+            }
+        }
+    }
+}
+
+/// A surface for each material and each kind of object.
+fn surfaces_by_material(scene: &Scene, textures: &[Arc<Textured>]) -> (Vec<Surface>, Vec<u32>) {
+    let mut surfaces = Vec::with_capacity(2 * scene.materials.len());
+    for (m, t) in scene.materials.iter().zip(textures) {
+        let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::Masked(_));
+        let opacity = m.surface.opacity;
+        surfaces.push(Surface { opacity, textured_opacity, two_sided: true });
+        surfaces.push(Surface { opacity, textured_opacity, two_sided: false });
+    }
+    let mesh = &scene.mesh;
+    let two_sided = |t: usize, m: u32| {
+        let object = mesh.objects.get(mesh.object_of[t] as usize);
+        object.is_none_or(|o| o.two_sided) && !scene.materials[m as usize].details.one_sided
+    };
+    let surface = |(t, &m): (usize, &u32)| 2 * m + u32::from(!two_sided(t, m));
+    (surfaces, mesh.material_of.iter().enumerate().map(surface).collect())
+}
+
+fn textured_by_material(scene: &Scene) -> Result<Vec<Arc<Textured>>, MicropointError> {
+    let mut known = HashMap::new();
+    let mut textures = Vec::with_capacity(scene.materials.len());
+    for m in &scene.materials {
+        let key = (m.diffuse_map, m.opacity_map, m.wrap);
+        let texture: &Arc<Textured> = match known.entry(key) {
+            Entry::Occupied(e) => e.into_mut(),
+            Entry::Vacant(e) => e.insert(Arc::new(sum_up(m, &scene.textures)?)),
+        };
+        textures.push(texture.clone());
+    }
+    Ok(textures)
+}
+
+fn details_by_material(scene: &Scene) -> Result<Vec<Option<DetailMaps>>, MicropointError> {
+    let table = DetailTable::new(scene)?;
+    let maps = |m: &Material| {
+        let beyond = m.details != Details::default() || m.surface.model == Model::Ggx;
+        beyond.then(|| table.maps(&m.details))
+    };
+    Ok(scene.materials.iter().map(maps).collect())
+}
+
+fn sum_up(material: &Material, textures: &[Texture]) -> Result<Textured, MicropointError> {
+    let wrap = texel_wrap(material.wrap);
+    let color = material.diffuse_map.map(|i| &textures[i]);
+    let opacity = material.opacity_map.map(|i| &textures[i]);
+    Ok(match (color, opacity) {
+        (None, None) => Textured::Nothing,
+        (Some(c), None) => Textured::Color(TexelSums::new(c.width, c.height, wrap, |x, y| {
+            c.texel(x, y).truncate().to_array()
+        })?),
+        (None, Some(o)) => {
+            Textured::Opacity(TexelSums::new(o.width, o.height, wrap, |x, y| [o.texel(x, y).w])?)
+        }
+        (Some(c), Some(o)) => Textured::Masked(MaskedColor::new(c, o, wrap)?),
+    })
+}

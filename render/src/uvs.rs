@@ -1,0 +1,85 @@
+//! Where textures lie on triangles, and means of texels over what is seen of them.
+
+use crate::scene::{Mesh, NONE};
+use glam::{DVec2, DVec3};
+use pointillist_micropoint::{SurfacePoint, TexelCorner, TexelSums, TexelWrap};
+use pointillist_shade::Wrap;
+
+/// Texture coordinates of the corners of all triangles; nothing for a scene without textures.
+#[derive(Default)]
+pub(crate) struct Uvs(Vec<[DVec2; 3]>);
+
+impl Uvs {
+    /// Those of a mesh; zero where it has none.
+    pub(crate) fn new(mesh: &Mesh) -> Self {
+        let uv = |i: u32| if i == NONE { DVec2::ZERO } else { mesh.uvs[i as usize] };
+        if mesh.uv_of.is_empty() {
+            return Self(vec![[DVec2::ZERO; 3]; mesh.triangles.len()]);
+        }
+        Self(mesh.uv_of.iter().map(|t| t.map(uv)).collect())
+    }
+
+    /// Coordinates of a triangle's corners.
+    pub(crate) fn of(&self, triangle: u32) -> [DVec2; 3] {
+        self.0.get(triangle as usize).copied().unwrap_or_default()
+    }
+
+    /// Mean of a map over a polygon of a triangle.
+    pub(crate) fn mean<const N: usize>(
+        &self,
+        triangle: u32,
+        polygon: &[SurfacePoint],
+        map: &TexelSums<N>,
+    ) -> [f64; N] {
+        map.mean(self.corners(triangle, polygon, map).as_slice())
+    }
+
+    fn corners<const N: usize>(
+        &self,
+        triangle: u32,
+        polygon: &[SurfacePoint],
+        sums: &TexelSums<N>,
+    ) -> Corners {
+        let uv = &self.0[triangle as usize];
+        let size = DVec2::new(f64::from(sums.width()), f64::from(sums.height()));
+        let mut corners = Corners::default();
+        for p in polygon.iter().take(corners.list.len()) {
+            let at = weighted(uv, p.barycentric);
+            let texel = DVec2::new(at.x, 1.0 - at.y) * size;
+            corners.list[corners.len] = TexelCorner { grid: p.grid, rational: p.rational, texel };
+            corners.len += 1;
+        }
+        corners
+    }
+}
+
+/// Corners of a polygon in a texture, on the stack.
+struct Corners {
+    list: [TexelCorner; 16],
+    len: usize,
+}
+
+impl Default for Corners {
+    fn default() -> Self {
+        let zero = TexelCorner { grid: DVec2::ZERO, rational: 1.0, texel: DVec2::ZERO };
+        Self { list: [zero; 16], len: 0 }
+    }
+}
+
+impl Corners {
+    fn as_slice(&self) -> &[TexelCorner] {
+        &self.list[..self.len]
+    }
+}
+
+fn weighted(corners: &[DVec2; 3], b: DVec3) -> DVec2 {
+    corners[0] * b.x + corners[1] * b.y + corners[2] * b.z
+}
+
+pub(crate) fn texel_wrap(wrap: Wrap) -> TexelWrap {
+    match wrap {
+        Wrap::Clamp => TexelWrap::Clamp,
+        Wrap::Mirror => TexelWrap::Mirror,
+        Wrap::Repeat => TexelWrap::Repeat,
+    }
+}
