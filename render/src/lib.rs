@@ -34,6 +34,7 @@
 //! * [`Frame`]: colour and depth, and the layers that [`DrawOptions`] asks for (normals, albedo, direct light, …).
 //! * [`Monitor`]: progress, cancelling, times and counts; `()` watches nothing, [`Watch`] takes a function and a flag.
 //! * [`scene_surfaces`], [`Lamps`]: the scene as `pointillist-radiosity` takes it; [`Lightmap`]: baked light as ambient light.
+//! * [`emitter`]: a light as `pointillist-shadow` takes it.
 //! * [`fingerprint`]: hashes by which unchanged pictures need not be drawn again.
 //!
 //! # Conventions
@@ -91,6 +92,7 @@ pub use error::RenderError;
 pub use frame::{Frame, Layer, LayerKind};
 pub use lamps::{Lamps, with_lamps};
 pub use lightmap::{BakedLight, BakedSide, Lightmap, LightmapError, baked_sides};
+pub use lights::emitter;
 pub use look::{LookOptions, Seen, buried, fingerprints, look_again, look_all};
 pub use monitor::{Monitor, Watch};
 pub use prepared::Prepared;
@@ -110,7 +112,7 @@ pub use pointillist_shade as shade;
 pub use pointillist_shprobe as shprobe;
 
 pub use pointillist_micropoint::{Geometry, MicropointError, Occlusion};
-pub use pointillist_shadow::{Resolution, ShadowError};
+pub use pointillist_shadow::{Emitter, Resolution, ShadowError};
 pub use pointillist_view::{PixelRect, Projection, View, ViewError};
 
 /// Draws a scene: colour, depth and the layers that are asked for.

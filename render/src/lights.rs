@@ -42,7 +42,10 @@ pub(crate) fn light_samples<'a>(
     Ok(samples)
 }
 
-fn emitter(light: &Light, sample: u32) -> Emitter {
+/// One sample of a light as `pointillist-shadow` takes it. Lights of one point or direction have the single sample 0
+/// ([`Light::samples`]).
+#[must_use]
+pub fn emitter(light: &Light, sample: u32) -> Emitter {
     // The axis decides how the six screens lie: along a spot light's beam, or an area light's normal.
     let axis = match light {
         Light::Spot { direction, .. } => *direction,

@@ -60,6 +60,9 @@ pub enum ProbeError {
         /// Which, from 0.
         index: usize,
     },
+    /// A probe is told what it sees in a field that has no distances.
+    #[error("the field has no distances: it was made without `with_distances`")]
+    NoDistances,
     /// What a probe holds, or an image of it, is wrong.
     #[error(transparent)]
     Harmonics(#[from] ShError),

@@ -12,18 +12,21 @@ use glam::{DVec3, Vec3};
 /// the probes' distances are known, from those among them that see it.
 #[derive(Clone, Debug)]
 pub struct Field {
-    positions: Vec<DVec3>,
+    pub(crate) positions: Vec<DVec3>,
     locator: Locator,
     partition: Partition,
-    order: usize,
+    pub(crate) order: usize,
     /// Coefficients of irradiance, probe after probe.
-    irradiance: Vec<Vec3>,
+    pub(crate) irradiance: Vec<Vec3>,
     /// The same up to band 2, for objects.
-    lights: Vec<Irradiance>,
-    distances: Option<Vec<DistanceMap>>,
+    pub(crate) lights: Vec<Irradiance>,
+    pub(crate) distances: Option<Vec<DistanceMap>>,
     /// Where probes are that help out, once it is known what they see.
     near: Near,
-    bias: f64,
+    /// Mean distance between neighbouring probes.
+    spacing: f64,
+    /// What the caller set in the place of [`BIAS`].
+    bias: Option<f64>,
 }
 
 /// Something that moves between probes.
@@ -56,27 +59,48 @@ impl Field {
     /// # Errors
     /// No probes, as many coefficients as positions, positions that are not finite, coefficients of mixed orders.
     pub fn new(positions: &[DVec3], radiance: &[Sh]) -> Result<Self, ProbeError> {
-        if positions.len() != radiance.len() {
-            return Err(ProbeError::CountMismatch { probes: positions.len(), given: radiance.len() });
-        }
-        let partition = Delaunay::new(positions)?.partition();
+        expect_count(positions.len(), radiance.len())?;
+        Self::from_parts(positions, Delaunay::new(positions)?.partition(), radiance)
+    }
+
+    /// The same with cells that are known already, from [`Field::partition`] of an equal field: nothing is divided anew.
+    ///
+    /// Cells must be between these positions and know their neighbours, and that is checked. Whether they fill the hull once and are
+    /// Delaunay's is not: [`Partition::verify`] says that of cells from elsewhere.
+    ///
+    /// # Errors
+    /// As [`Field::new`], and [`ProbeError::Cells`] for the first cell that is wrong.
+    pub fn from_parts(
+        positions: &[DVec3],
+        partition: Partition,
+        radiance: &[Sh],
+    ) -> Result<Self, ProbeError> {
+        expect_count(positions.len(), radiance.len())?;
         let order = common_order(radiance)?;
-        let scaled = |sh: &Sh| sh.convolved(&Lobe::COSINE).into_coefficients();
-        let irradiance = radiance.iter().flat_map(scaled).map(|c| c.as_vec3()).collect();
-        let lights = radiance.iter().map(Irradiance::new).collect();
-        let bias = BIAS * spacing(positions, &partition);
         let locator = Locator::new(positions, &partition)?;
         Ok(Self {
+            spacing: spacing(positions, &partition),
             positions: positions.to_vec(),
             locator,
             partition,
             order,
-            irradiance,
-            lights,
+            irradiance: radiance.iter().flat_map(irradiance_of).collect(),
+            lights: radiance.iter().map(Irradiance::new).collect(),
             distances: None,
             near: Near::default(),
-            bias,
+            bias: None,
         })
+    }
+
+    /// Divides space anew, after positions have changed.
+    pub(crate) fn divide(&mut self) -> Result<(), ProbeError> {
+        self.partition = Delaunay::new(&self.positions)?.partition();
+        self.locator = Locator::new(&self.positions, &self.partition)?;
+        self.spacing = spacing(&self.positions, &self.partition);
+        if self.distances.is_some() {
+            self.near = Near::new(&self.positions, HELP * self.spacing);
+        }
+        Ok(())
     }
 
     /// Lets a position take only from probes that see it.
@@ -84,11 +108,8 @@ impl Field {
     /// # Errors
     /// [`ProbeError::CountMismatch`] if there is not one map for each probe.
     pub fn with_distances(mut self, distances: Vec<DistanceMap>) -> Result<Self, ProbeError> {
-        let probes = self.probe_count();
-        if distances.len() != probes {
-            return Err(ProbeError::CountMismatch { probes, given: distances.len() });
-        }
-        self.near = Near::new(&self.positions, help(&self.positions, &self.partition));
+        expect_count(self.probe_count(), distances.len())?;
+        self.near = Near::new(&self.positions, HELP * self.spacing);
         self.distances = Some(distances);
         Ok(self)
     }
@@ -97,13 +118,14 @@ impl Field {
     /// distance between neighbouring probes.
     #[must_use]
     pub const fn with_bias(mut self, bias: f64) -> Self {
-        self.bias = bias;
+        self.bias = Some(bias);
         self
     }
 
     /// How far positions on a surface are lifted off it.
-    pub const fn bias(&self) -> f64 {
-        self.bias
+    #[must_use]
+    pub fn bias(&self) -> f64 {
+        self.bias.unwrap_or(BIAS * self.spacing)
     }
 
     /// The cells.
@@ -154,7 +176,7 @@ impl Field {
         normal: Vec3,
         hint: &mut Hint,
     ) -> Result<Vec3, ProbeError> {
-        let shares = self.weigh(position + face_normal.as_dvec3() * self.bias, hint)?;
+        let shares = self.weigh(position + face_normal.as_dvec3() * self.bias(), hint)?;
         let basis: [f64; MAX_COUNT] = basis(self.order, normal.as_dvec3());
         let count = coefficient_count(self.order);
         let mut sum = Vec3::ZERO;
@@ -210,6 +232,15 @@ impl Field {
         };
         parallel::map(queries.len(), one).into_iter().collect()
     }
+}
+
+/// What a probe sends to surfaces, from what it receives.
+pub(crate) fn irradiance_of(radiance: &Sh) -> Vec<Vec3> {
+    radiance.convolved(&Lobe::COSINE).into_coefficients().into_iter().map(|c| c.as_vec3()).collect()
+}
+
+pub(crate) fn expect_count(probes: usize, given: usize) -> Result<(), ProbeError> {
+    if probes == given { Ok(()) } else { Err(ProbeError::CountMismatch { probes, given }) }
 }
 
 /// The order of all; 0 of none.

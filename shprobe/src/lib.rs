@@ -45,6 +45,7 @@
 #![forbid(unsafe_code)]
 
 mod distance;
+mod edit;
 mod error;
 mod field;
 mod octahedron;

@@ -258,3 +258,79 @@ fn fitting_keeps_what_is_right_already() {
         assert!(change.length() < 1e-12, "probe {i}: {change}");
     }
 }
+
+/// Fields that are equal light all places alike, bit for bit.
+fn assert_same_light(a: &Field, b: &Field) {
+    assert_eq!(a.partition(), b.partition());
+    assert_eq!((a.positions(), a.irradiance_coefficients()), (b.positions(), b.irradiance_coefficients()));
+    for i in 0..200 {
+        let t = f64::from(i);
+        let p = dvec3((t * 0.7).sin(), (t * 1.3).cos(), (t * 2.1).sin()) * 1.2;
+        let [a, b] = [a, b].map(|f| f.irradiance(p, Vec3::Y, Vec3::Y, &mut Hint::default()).unwrap());
+        assert_eq!(a.to_array().map(f32::to_bits), b.to_array().map(f32::to_bits), "{p}");
+    }
+}
+
+/// Probes of a small room, with distances.
+fn probes() -> (Vec<DVec3>, Vec<Sh>, Vec<DistanceMap>) {
+    let positions = place::random(DVec3::splat(-1.0), DVec3::ONE, 24, 5);
+    let values: Vec<f64> = positions.iter().map(|p| 2.0 + p.x).collect();
+    let map = |i: usize| DistanceMap::from_cube(8, 16, &room(16, 0.5 + 0.1 * i as f32), 100.0).unwrap();
+    (positions, constant(&values), (0..24).map(map).collect())
+}
+
+#[test]
+fn a_field_that_is_changed_is_the_one_made_of_the_result() {
+    let (positions, radiance, maps) = probes();
+    let whole = Field::new(&positions, &radiance).unwrap().with_distances(maps.clone()).unwrap();
+    let first = Field::new(&positions[..20], &radiance[..20]).unwrap();
+    let mut grown = first.with_distances(maps[..20].to_vec()).unwrap();
+    assert_eq!(grown.insert(&positions[20..], &radiance[20..], maps[20..].to_vec()), Ok(20..24));
+    assert_same_light(&grown, &whole);
+
+    let left = grown.remove(&[3, 7, 7]).unwrap();
+    assert_eq!(left, (0..24).filter(|i| ![3, 7].contains(i)).collect::<Vec<u32>>());
+    let pick = |i: &u32| *i as usize;
+    let rest = Field::new(
+        &left.iter().map(|i| positions[pick(i)]).collect::<Vec<_>>(),
+        &left.iter().map(|i| radiance[pick(i)].clone()).collect::<Vec<_>>(),
+    );
+    let rest = rest.unwrap().with_distances(left.iter().map(|i| maps[pick(i)].clone()).collect()).unwrap();
+    assert_same_light(&grown, &rest);
+
+    let mut other = Field::new(&positions, &radiance.iter().rev().cloned().collect::<Vec<_>>()).unwrap();
+    let swapped: Vec<DistanceMap> = maps.iter().rev().cloned().collect();
+    other = other.with_distances(swapped).unwrap();
+    for (i, (sh, map)) in radiance.iter().zip(&maps).enumerate() {
+        other.set_radiance(i as u32, sh).unwrap();
+        other.set_distances(i as u32, map.clone()).unwrap();
+    }
+    assert_same_light(&other, &whole);
+    let known = Field::from_parts(&positions, whole.partition().clone(), &radiance).unwrap();
+    assert_same_light(&known.with_distances(maps).unwrap(), &whole);
+}
+
+#[test]
+fn changes_that_do_not_fit_are_refused_and_change_nothing() {
+    let (positions, radiance, maps) = probes();
+    let plain = Field::new(&positions, &radiance).unwrap();
+    let mut field = plain.clone();
+    assert_eq!(field.set_radiance(24, &radiance[0]), Err(ProbeError::NoSuchProbe { index: 24 }));
+    let coarse = Sh::constant(DVec3::ONE, 1).unwrap();
+    let mixed = |index| Err(ProbeError::MixedOrders { index, order: 1, expected: 2 });
+    assert_eq!(field.set_radiance(3, &coarse), mixed(3));
+    assert_eq!(field.set_distances(0, maps[0].clone()), Err(ProbeError::NoDistances));
+    let at = [DVec3::ONE];
+    assert_eq!(field.insert(&at, &[coarse], vec![]), mixed(24).map(|()| 0..0));
+    let counts = Err(ProbeError::CountMismatch { probes: 0, given: 1 });
+    assert_eq!(field.insert(&at, &radiance[..1], maps[..1].to_vec()), counts);
+    let infinite = [DVec3::INFINITY];
+    let refused = field.insert(&infinite, &radiance[..1], vec![]);
+    assert_eq!(refused, Err(ProbeError::PositionNotFinite { index: 24 }));
+    assert_eq!(field.remove(&[1, 99]), Err(ProbeError::NoSuchProbe { index: 99 }));
+    assert_eq!(field.remove(&(0..24).collect::<Vec<_>>()), Err(ProbeError::NoProbes));
+    assert_same_light(&field, &plain);
+
+    let beyond = Partition::Point(24);
+    assert!(matches!(Field::from_parts(&positions, beyond, &radiance), Err(ProbeError::Cells(_))));
+}

@@ -1,0 +1,121 @@
+//! Changing a field: what probes hold, and which probes there are; and its arrays, for shaders.
+
+use crate::field::{expect_count, irradiance_of};
+use crate::sh::{Irradiance, Sh, coefficient_count};
+use crate::{DistanceMap, Field, ProbeError};
+use glam::{DVec3, Vec3};
+use std::ops::Range;
+
+impl Field {
+    /// Gives a probe other light, in constant time.
+    ///
+    /// # Errors
+    /// [`ProbeError::NoSuchProbe`], or [`ProbeError::MixedOrders`] if it has another order than those of the field.
+    pub fn set_radiance(&mut self, probe: u32, radiance: &Sh) -> Result<(), ProbeError> {
+        let index = self.index(probe)?;
+        self.expect_order(index, radiance)?;
+        let count = coefficient_count(self.order);
+        self.irradiance[index * count..][..count].copy_from_slice(&irradiance_of(radiance));
+        self.lights[index] = Irradiance::new(radiance);
+        Ok(())
+    }
+
+    /// Tells a probe that it sees other distances, in constant time.
+    ///
+    /// # Errors
+    /// [`ProbeError::NoSuchProbe`], or [`ProbeError::NoDistances`] if the field was made without distances.
+    pub fn set_distances(&mut self, probe: u32, map: DistanceMap) -> Result<(), ProbeError> {
+        let index = self.index(probe)?;
+        let maps = self.distances.as_mut().ok_or(ProbeError::NoDistances)?;
+        maps[index] = map;
+        Ok(())
+    }
+
+    /// Adds probes behind those there are and divides space anew, in the time of [`Field::new`]: several at once cost no more than one.
+    /// Their indices come back. `distances` holds a map for each if the field has distances, and nothing otherwise.
+    ///
+    /// # Errors
+    /// As [`Field::new`] and [`Field::with_distances`]; the field is then as it was.
+    pub fn insert(
+        &mut self,
+        positions: &[DVec3],
+        radiance: &[Sh],
+        distances: Vec<DistanceMap>,
+    ) -> Result<Range<u32>, ProbeError> {
+        expect_count(positions.len(), radiance.len())?;
+        expect_count(if self.distances.is_some() { positions.len() } else { 0 }, distances.len())?;
+        let before = self.probe_count();
+        for (i, sh) in radiance.iter().enumerate() {
+            self.expect_order(before + i, sh)?;
+        }
+        self.positions.extend_from_slice(positions);
+        if let Err(error) = self.divide() {
+            self.positions.truncate(before);
+            return Err(error);
+        }
+        self.irradiance.extend(radiance.iter().flat_map(irradiance_of));
+        self.lights.extend(radiance.iter().map(Irradiance::new));
+        if let Some(maps) = &mut self.distances {
+            maps.extend(distances);
+        }
+        Ok(before as u32..self.probe_count() as u32)
+    }
+
+    /// Removes probes and divides space anew, in the time of [`Field::new`]. Those that are left keep their order; the index before of each
+    /// comes back. Hints from before are still valid, if slow for a moment.
+    ///
+    /// # Errors
+    /// [`ProbeError::NoSuchProbe`], or [`ProbeError::NoProbes`] if none would be left; the field is then as it was.
+    pub fn remove(&mut self, probes: &[u32]) -> Result<Vec<u32>, ProbeError> {
+        let mut gone = vec![false; self.probe_count()];
+        for &probe in probes {
+            gone[self.index(probe)?] = true;
+        }
+        let left: Vec<u32> = (0..self.probe_count() as u32).filter(|&i| !gone[i as usize]).collect();
+        if left.is_empty() {
+            return Err(ProbeError::NoProbes);
+        }
+        let count = coefficient_count(self.order);
+        let of = |i: &u32| *i as usize;
+        self.positions = left.iter().map(|i| self.positions[of(i)]).collect();
+        self.irradiance =
+            left.iter().flat_map(|i| &self.irradiance[of(i) * count..][..count]).copied().collect();
+        self.lights = left.iter().map(|i| self.lights[of(i)]).collect();
+        if let Some(maps) = &mut self.distances {
+            let mut kept = gone.iter().map(|gone| !gone);
+            maps.retain(|_| kept.next().unwrap_or(false));
+        }
+        self.divide()?;
+        Ok(left)
+    }
+
+    /// Where the probes are.
+    #[must_use]
+    pub fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
+    /// Coefficients of irradiance, `(order + 1)²` for each probe, probe after probe, in the order of [`crate::sh`]'s basis: an array
+    /// to upload for shaders, together with the corners and neighbours in [`Field::partition`]. A shader sums coefficient times
+    /// basis function of the normal, times the probe's weight.
+    #[must_use]
+    pub fn irradiance_coefficients(&self) -> &[Vec3] {
+        &self.irradiance
+    }
+
+    /// What the probes see, if that is known.
+    #[must_use]
+    pub fn distances(&self) -> Option<&[DistanceMap]> {
+        self.distances.as_deref()
+    }
+
+    fn index(&self, probe: u32) -> Result<usize, ProbeError> {
+        let index = probe as usize;
+        if index < self.probe_count() { Ok(index) } else { Err(ProbeError::NoSuchProbe { index: probe }) }
+    }
+
+    fn expect_order(&self, index: usize, radiance: &Sh) -> Result<(), ProbeError> {
+        let (order, expected) = (radiance.order(), self.order);
+        if order == expected { Ok(()) } else { Err(ProbeError::MixedOrders { index, order, expected }) }
+    }
+}
