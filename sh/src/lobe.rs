@@ -2,7 +2,7 @@
 
 use crate::ShError;
 use crate::basis::MAX_ORDER;
-use crate::gauss_legendre;
+use crate::gauss_legendre::gauss_legendre;
 use crate::legendre::legendre;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 

@@ -1,6 +1,7 @@
 //! The GGX microfacet model: Trowbridge-Reitz distribution, height-correlated Smith masking, Schlick's Fresnel term,
 //! and a diffuse base that gets what the coat above it does not reflect.
 
+use crate::fresnel::schlick;
 use crate::ggx_table::{coat_albedo, mean_coat_albedo};
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -10,10 +11,6 @@ use std::f32::consts::{FRAC_1_PI, PI};
 /// Chosen: α = 9e-4, a highlight of a twentieth of a degree; narrower ones cannot be told from a mirror by `f32`
 /// directions, and a lamp without size would never be seen in them.
 pub const SMALLEST_ROUGHNESS: f32 = 0.03;
-
-/// Reflectance at normal incidence below which the Fresnel term at grazing angles fades, too \[7\]: no real surface
-/// reflects less than 2 %, so less is meant as occlusion, and none as none.
-const LEAST_REAL_REFLECTANCE: f32 = 0.02;
 
 /// Keeps 1/x finite where both cosines vanish; the cosine in the numerator then takes the product to 0.
 const SMALLEST_DENOMINATOR: f32 = 1e-20;
@@ -41,18 +38,6 @@ pub(crate) fn visibility(cos_l: f32, cos_v: f32, alpha: f32) -> f32 {
     let masked = |cos: f32| (a2 + (1.0 - a2) * cos * cos).sqrt();
     let sum = cos_v * masked(cos_l) + cos_l * masked(cos_v);
     0.5 / sum.max(SMALLEST_DENOMINATOR)
-}
-
-/// The reflectance at grazing angles that goes with one at normal incidence.
-pub(crate) fn f90(f0: Vec3) -> f32 {
-    (f0.max_element() / LEAST_REAL_REFLECTANCE).clamp(0.0, 1.0)
-}
-
-/// Schlick's F = f0 + (f90 − f0)(1 − cos)⁵ \[9\].
-pub(crate) fn schlick(f0: Vec3, cos: f32) -> Vec3 {
-    let x = (1.0 - cos).clamp(0.0, 1.0);
-    let x5 = x * x * (x * x) * x;
-    f0 + (Vec3::splat(f90(f0)) - f0) * x5
 }
 
 /// The whole BRDF for directions above the surface.

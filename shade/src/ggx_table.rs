@@ -3,7 +3,7 @@
 //! With Schlick's Fresnel term the albedo for light from one direction is E = f0·A + f90·B, where A and B depend on
 //! the angle and the roughness only (the second sum of the "split sum" \[7\]).
 
-use crate::ggx::f90;
+use crate::fresnel::f90;
 use glam::{DVec3, Vec2, Vec3, dvec3};
 use std::f64::consts::TAU;
 use std::sync::LazyLock;

@@ -69,6 +69,7 @@ mod bump;
 mod creases;
 mod environment;
 mod error;
+mod fresnel;
 mod ggx;
 mod ggx_table;
 pub mod gl;

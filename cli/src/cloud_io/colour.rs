@@ -1,6 +1,6 @@
 //! Colours of points: sRGB codes to linear values.
 
-use crate::scene::linear_from_srgb;
+use pointillist_render::linear_from_srgb;
 use std::sync::LazyLock;
 
 /// 8-bit codes; a power per channel would cost more than the rest of the reading.

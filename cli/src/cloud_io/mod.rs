@@ -21,6 +21,7 @@ mod ply_write;
 mod source;
 mod xyz;
 mod xyz_header;
+mod xyz_row;
 
 pub use block::{CloudBlock, CloudOptions, CloudSummary, MAX_BLOCK_POINTS, RangeGrid};
 pub use conf::{Conf, ConfScan, Pose, read_conf, read_conf_bytes};
@@ -37,6 +38,10 @@ use source::Source;
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek};
 use std::path::Path;
+
+/// The way out for a cloud where a mesh is wanted.
+pub(crate) const DRAW_CLOUD: &str = "`pointillist scan FILE` draws points as closed surfaces, `pointillist surfel FILE` as discs; \
+     `pointillist info FILE` says what the file holds";
 
 /// Reads a cloud from a file, or standard input for `-`, and hands it out in blocks, in the order of the file.
 ///

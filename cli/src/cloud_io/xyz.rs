@@ -21,9 +21,10 @@
 use super::block::{At, CloudSummary, Gather, MAX_BLOCK_POINTS, Point, Stop};
 use super::colour::ColourCode;
 use super::format::CloudFormat;
-use super::number::{Word, Words, parse_f64};
+use super::number::{Words, parse_f64};
 use super::source::{Line, Source};
 use super::xyz_header::Header;
+use super::xyz_row::{Rest, Row, no_number};
 use crate::input_error::InputError;
 use glam::DVec3;
 
@@ -32,24 +33,6 @@ const MOST: usize = 7;
 
 /// How far the length of a normal may be from 1: programs write as few as two decimals.
 const NORMAL_TOLERANCE: f64 = 0.01;
-
-/// A line: its position, its colour or else its normal, its normal if it has both, its number.
-#[derive(Clone, Copy)]
-pub(super) struct Row {
-    pub(super) position: DVec3,
-    pub(super) rest: DVec3,
-    pub(super) normal: DVec3,
-    pub(super) line: u64,
-}
-
-/// What the numbers beside the position are.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Rest {
-    None,
-    Colour(ColourCode),
-    Normal,
-    Both(ColourCode),
-}
 
 /// Reads a text from its first byte.
 pub(super) fn read(mut source: Source<'_>, gather: &mut Gather<'_>) -> Result<CloudSummary, Stop> {
@@ -234,17 +217,6 @@ fn no_colour(name: &str, line: u64, stored: f64, code: ColourCode) -> InputError
     );
     InputError::of_file(name, message)
         .with_help("a PLY file says what its numbers are; or make all colours run from 0 to 255")
-}
-
-pub(super) fn no_number(name: &str, line: &Line<'_>, word: Word<'_>) -> InputError {
-    let message = match std::str::from_utf8(word.bytes) {
-        Ok(_) => format!("`{}` is no number", word.shown()),
-        Err(_) => "this is not UTF-8 text".to_owned(),
-    };
-    line.error(name, Some(word), message).with_help(
-        "a line is `x y z`, `x y z r g b` or `x y z nx ny nz`; lines of words begin with # or //, \
-             but for a first line with the names of the columns",
-    )
 }
 
 fn wrong_count(name: &str, line: &Line<'_>, count: &str) -> InputError {

@@ -2,7 +2,7 @@
 
 use super::number::{Word, Words, parse_f64};
 use super::source::Line;
-use super::xyz::{Rest, Row, no_number};
+use super::xyz_row::{Rest, Row, no_number};
 use crate::input_error::InputError;
 use glam::DVec3;
 

@@ -4,13 +4,15 @@
 //! more memory than there is or for a division by zero. Both would end the program without a message.
 
 use super::ExrError;
-use super::picture::DECODED_PIXEL_BYTES;
 use crate::memory;
 use exr::block::chunk::CompressedBlock;
 use exr::meta::attribute::Compression;
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use std::io::Cursor;
+
+/// Bytes of a pixel at most while a picture is decoded: as stored, as four floats, and as our own pixels.
+pub(super) const DECODED_PIXEL_BYTES: u128 = 3 * 4 * 4;
 
 /// Least bytes of a block in the file: its place in the table of offsets (8), where it lies (4), its length (4).
 const BLOCK_BYTES: u128 = 16;

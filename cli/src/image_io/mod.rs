@@ -2,13 +2,15 @@
 
 mod atomic;
 mod exr_check;
+mod exr_error;
 mod exr_file;
 mod picture;
 mod png;
 mod stamp;
 
 pub use atomic::{check_writable, remove_temporaries, write_atomically};
-pub use exr_file::{Channel, ExrError, ExrFile, Precision};
+pub use exr_error::ExrError;
+pub use exr_file::{Channel, ExrFile, Precision};
 pub use picture::{Levels, Picture, decode_image, read_exr_picture, read_levels, read_picture};
 pub use png::{PngOptions, encode_png, encode_rgb_png};
 pub use pointillist_render::{Frame, Layer, LayerKind, PixelRect};

@@ -1,16 +1,14 @@
 //! Reading any picture for its colours.
 
+use super::exr_check::DECODED_PIXEL_BYTES;
 use super::{ExrError, ExrFile, PixelRect};
 use crate::input;
 use crate::input_error::InputError;
 use crate::memory;
-use crate::scene::linear_from_srgb;
 use image::{DynamicImage, ImageReader};
+use pointillist_render::linear_from_srgb;
 use std::io::Cursor;
 use std::path::Path;
-
-/// Bytes of a pixel at most while a picture is decoded: as stored, as four floats, and as our own pixels.
-pub(super) const DECODED_PIXEL_BYTES: u128 = 3 * 4 * 4;
 
 /// Linear colours of a picture.
 #[derive(Clone, Debug, PartialEq)]

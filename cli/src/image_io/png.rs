@@ -1,7 +1,7 @@
 //! 8-bit sRGB with straight alpha.
 
-use crate::scene::srgb_from_linear;
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent};
+use pointillist_render::srgb_from_linear;
 use std::io::{self, Write};
 
 /// How linear colours become bytes.

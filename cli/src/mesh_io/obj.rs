@@ -4,8 +4,8 @@ use super::obj_lines::{Kinds, LineFault, ObjLines};
 use super::{FileMesh, triangulate};
 use crate::coordinate::{LARGEST, is_usable};
 use crate::input_error::InputError;
-use crate::scene::NONE;
 use glam::{DVec2, DVec3, Vec3};
+use pointillist_render::NONE;
 use tobj::{LoadError, LoadOptions};
 
 /// Polygons with more corners than this are refused: cutting one that is not convex takes the square of the time.

@@ -3,10 +3,10 @@
 use super::{FileMesh, triangulate};
 use crate::coordinate::{LARGEST, is_usable};
 use crate::input_error::InputError;
-use crate::scene::NONE;
 use glam::{DVec2, DVec3, Vec3};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult};
+use pointillist_render::NONE;
 use std::io::Cursor;
 
 #[derive(Debug, Default)]

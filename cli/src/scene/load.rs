@@ -2,6 +2,7 @@
 
 use super::text::{Document, Format, Value};
 use super::{Description, LoadedScene, resolve};
+use crate::cloud_io::DRAW_CLOUD;
 use crate::input;
 use crate::input_error::InputError;
 use crate::json_kind::JsonKind;
@@ -145,7 +146,3 @@ fn no_scene(ending: &str) -> (&'static str, &'static str) {
         ),
     }
 }
-
-/// The way out for a cloud where a mesh is wanted.
-pub(super) const DRAW_CLOUD: &str = "`pointillist scan FILE` draws points as closed surfaces, `pointillist surfel FILE` as discs; \
-     `pointillist info FILE` says what the file holds";

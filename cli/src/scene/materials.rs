@@ -5,19 +5,19 @@ use super::description::{
     TextureReference,
 };
 use super::measured::MeasuredTable;
-use super::resolve::load_texture;
+use super::mtl_library::{Library, read_libraries};
 use super::text::nearest;
+use super::texture_files::load_texture;
 use super::textures::{Purpose, TextureTable};
 use super::{
     Bump, BumpHeight, Channel, Details, Map, Material, MeasuredBrdf, NONE, Surroundings, gltf_materials,
     mtl_materials,
 };
-use crate::input;
 use crate::input_error::InputError;
+use crate::mesh_io::FileMesh;
 use crate::mesh_io::gltf::GltfModel;
-use crate::mesh_io::{FileMesh, MtlMaterial, names_of, read_mtl};
 use pointillist_shade as shade;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
 /// The materials of a scene, made when they are first needed.
@@ -31,13 +31,6 @@ pub(super) struct MaterialTable<'a> {
     measured: MeasuredTable,
     /// Names that faces of meshes have, where the scene does not replace them.
     of_meshes: BTreeSet<String>,
-}
-
-/// An MTL, read.
-pub(super) struct Library {
-    pub(super) path: PathBuf,
-    pub(super) bytes: Vec<u8>,
-    pub(super) materials: Vec<MtlMaterial>,
 }
 
 impl<'a> MaterialTable<'a> {
@@ -275,40 +268,4 @@ impl<'a> MaterialTable<'a> {
         self.of_mtl.insert(key, number);
         Ok(Some(number))
     }
-}
-
-/// The MTL files of a mesh; one that is not there is a warning.
-fn read_libraries(
-    file: &FileMesh,
-    mesh: &Path,
-    warnings: &mut Vec<String>,
-) -> Result<Vec<Library>, InputError> {
-    let folder = mesh.parent().unwrap_or(Path::new(""));
-    // By path, so that a library that is named in front of every group is read once.
-    let mut libraries: BTreeMap<PathBuf, Library> = BTreeMap::new();
-    for names in &file.material_files {
-        // `mtllib a b` may be two files or one with a space in its name; quotes settle it.
-        let whole = folder.join(names);
-        let paths = if whole.exists() {
-            vec![whole]
-        } else {
-            names_of(names).into_iter().map(|name| folder.join(name.replace('\\', "/"))).collect()
-        };
-        for path in paths {
-            if libraries.contains_key(&path) {
-                continue;
-            }
-            if !path.exists() {
-                let message = format!("{}: `{}` is not there", mesh.display(), path.display());
-                if !warnings.contains(&message) {
-                    warnings.push(message);
-                }
-                continue;
-            }
-            let bytes = input::read(&path)?;
-            let materials = read_mtl(&path.display().to_string(), &bytes)?;
-            libraries.insert(path.clone(), Library { path, bytes, materials });
-        }
-    }
-    Ok(libraries.into_values().collect())
 }

@@ -7,16 +7,19 @@ mod auto_uv;
 mod builtin;
 pub mod description;
 mod framing;
+mod generated;
 mod gltf_materials;
 mod gltf_scene;
 mod load;
 mod materials;
 mod measured;
+mod mtl_library;
 mod mtl_materials;
 mod plain_model;
 mod resolve;
 mod smooth;
 pub mod text;
+mod texture_files;
 mod textures;
 
 pub use pointillist_render::{

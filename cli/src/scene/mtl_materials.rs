@@ -4,7 +4,7 @@
 //! mirror their surroundings by `Ks`, too, and 4, 6, 7 and 9 let light through by `Tf` and `Ni` if `Tf` is given. `Pr` or `Pm` make
 //! the surface GGX whatever `illum` says.
 
-use super::materials::Library;
+use super::mtl_library::Library;
 use super::textures::{Purpose, TextureTable};
 use super::{Bump, BumpHeight, Channel, Details, Map, Material, Surroundings, Transmission};
 use crate::input_error::InputError;

@@ -1,16 +1,16 @@
 //! A description to a [`Scene`]: opens what it names and puts everything together.
 
-use super::builtin::Generated;
 use super::description::{
     AmbientDescription, Description, FileReference, ObjectDescription, RenderDescription, TextureReference,
 };
-use super::load::DRAW_CLOUD;
+use super::generated::Generated;
 use super::materials::MaterialTable;
+use super::texture_files::load_texture;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, LightSource, LoadedScene, Mesh, NONE, Object, Scene, SkyLight};
 use super::{auto_uv, framing, gltf_scene, plain_model, smooth};
 use crate::baked_file::read_baked;
-use crate::cloud_io;
+use crate::cloud_io::{self, DRAW_CLOUD};
 use crate::coordinate::{LARGEST, is_usable};
 use crate::input;
 use crate::input_error::InputError;
@@ -331,20 +331,4 @@ fn normal_matrix(linear: DMat3) -> DMat3 {
 
 fn turned(matrix: DMat3, normal: Vec3) -> Vec3 {
     (matrix * normal.as_dvec3()).normalize_or_zero().as_vec3()
-}
-
-/// Loads a texture that the scene file names.
-pub(super) fn load_texture(
-    textures: &mut TextureTable,
-    description: &Description,
-    folder: &Path,
-    reference: &TextureReference,
-    purpose: Purpose,
-) -> Result<usize, InputError> {
-    let path = reference.file.path_from(folder);
-    textures.load(&path, purpose).map_err(|fault| {
-        let message = format!("texture `{}` {fault}", path.display());
-        let error = description.document.error(reference.file.span, message);
-        error.with_help(format!("{}; PNG, JPEG, HDR and EXR can be read", reference.file.relative_to()))
-    })
 }

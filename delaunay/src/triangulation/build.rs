@@ -1,11 +1,8 @@
 //! From points to what they span.
 
-use super::cavity::Cavity;
 use super::cell::Vertex;
-use super::divide::{self, Same};
+use super::divide;
 use super::hilbert;
-use super::insert::Inserted;
-use super::mesh::Mesh;
 use super::simplex::Simplex;
 use super::sites::Sites;
 use super::solid::Solid;
@@ -48,23 +45,6 @@ pub(super) fn shape(
     let mut solid = Solid::new(sites, mesh, &order, apex, points.len());
     solid.merge(&same, representative);
     Ok(Shape::Solid(Box::new(solid)))
-}
-
-/// The mesh of these vertices, built from the first, and those that are not in it, each with the one in its place that is.
-pub(super) fn mesh(
-    sites: &Sites,
-    vertices: &[Vertex],
-    first: [Vertex; 4],
-) -> Result<(Mesh, Same), DelaunayError> {
-    let (mut mesh, mut same) = (Mesh::with_capacity(vertices.len()), vec![]);
-    let mut cavity = Cavity::new(sites.len());
-    mesh.reset(sites, first);
-    for &v in vertices.iter().filter(|v| !first.contains(v)) {
-        if let Inserted::Same(kept) = mesh.insert(sites, &mut cavity, v)? {
-            same.push((v, kept));
-        }
-    }
-    Ok((mesh, same))
 }
 
 /// Points of a line, in lexicographic order, which is that along the line.

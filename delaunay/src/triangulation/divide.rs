@@ -7,12 +7,13 @@
 //! triangulation only, also of points on a common sphere. The border takes an eighth more work at a million points and a third more
 //! at a hundred thousand.
 
+use super::border;
 use super::cell::{CellId, Vertex};
+use super::incremental::{self, Same};
 use super::mesh::Mesh;
 use super::seam::Seam;
 use super::simplex::Simplex;
 use super::sites::Sites;
-use super::{border, build};
 use crate::{DelaunayError, parallel};
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -28,9 +29,6 @@ pub(super) fn depth(vertices: usize) -> u32 {
 
 /// Vertices of which the median divides all.
 const SAMPLES: usize = 1023;
-
-/// Vertices in one place: one that is not in the mesh, and the one that is.
-pub(super) type Same = Vec<(Vertex, Vertex)>;
 
 /// Half of the vertices, its mesh, and the box that holds it.
 struct Half {
@@ -52,7 +50,7 @@ pub(super) fn mesh(
             Simplex::Space(first) => Some(first),
             _ => None,
         });
-        found.map(|first| build::mesh(sites, vertices, first)).transpose()
+        found.map(|first| incremental::mesh(sites, vertices, first)).transpose()
     };
     // Fewer than four points span no space.
     if depth == 0 || vertices.len() < 4 || !sites.are_positions_exact() {
@@ -107,7 +105,7 @@ fn join(sites: &Sites, below: Half, above: Half) -> Result<Option<(Mesh, Same)>,
     let vertices: Vec<Vertex> =
         (0..).map(Vertex).zip(&sides).filter(|(_, side)| **side != 0).map(|(v, _)| v).collect();
     let Simplex::Space(first) = Simplex::new(sites, &vertices) else { return Ok(None) };
-    let (patch, _) = build::mesh(sites, &vertices, first)?;
+    let (patch, _) = incremental::mesh(sites, &vertices, first)?;
 
     let offset = mesh.append(above.mesh)?;
     border.extend(above_border.into_iter().map(|id| CellId(id.0 + offset)));

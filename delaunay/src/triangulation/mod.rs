@@ -23,6 +23,7 @@ mod cell;
 mod divide;
 mod exact;
 mod hilbert;
+mod incremental;
 mod insert;
 mod limbs;
 mod locate;

@@ -1,91 +1,9 @@
 //! Whether the lists of a scene fit one another.
 
+use super::error::SceneError;
 use super::{Details, Map, Material, Mesh, NONE, Scene, Surroundings, Texels};
 use glam::Vec3;
 use pointillist_shade::Light;
-
-/// What can be wrong with a scene as data. Positions and opacities are checked where geometry is built from them, cameras and
-/// emitters where they are used.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SceneError {
-    /// A list is longer or shorter than the list that it belongs to.
-    #[error("`{list}` has {length} entries, {expected} are needed")]
-    Length {
-        /// The list, a field of [`Mesh`] or of [`super::Part`].
-        list: &'static str,
-        /// Its entries.
-        length: usize,
-        /// What it should have.
-        expected: usize,
-    },
-    /// A corner of a triangle refers to an entry that does not exist.
-    #[error("`{list}[{triangle}]` refers beyond the {count} entries there are")]
-    Corner {
-        /// The list of corner indices: `triangles`, `normal_of` or `uv_of`.
-        list: &'static str,
-        /// Which triangle.
-        triangle: usize,
-        /// Entries there are.
-        count: usize,
-    },
-    /// A triangle refers to a material or an object that does not exist.
-    #[error("`{list}[{triangle}]` is {index}, but there are {count}")]
-    Index {
-        /// The list of indices: `material_of` or `object_of`.
-        list: &'static str,
-        /// Which triangle.
-        triangle: usize,
-        /// What it refers to.
-        index: u32,
-        /// Entries there are.
-        count: usize,
-    },
-    /// A material, or the environment, refers to a texture that does not exist.
-    #[error("{user}: texture {texture} is asked for, but there are {count}")]
-    TextureIndex {
-        /// Who refers to it: ``material `name` `` or `image.environment`.
-        user: String,
-        /// What it refers to.
-        texture: usize,
-        /// Textures there are.
-        count: usize,
-    },
-    /// A texture has no texels, or not `width · height` of them.
-    #[error("texture `{name}` of {width}×{height} texels has {found}")]
-    Texels {
-        /// The texture's name.
-        name: String,
-        /// Texels in a row.
-        width: u32,
-        /// Rows.
-        height: u32,
-        /// Texels there are.
-        found: usize,
-    },
-    /// A diffuse albedo, its map included, is not in 0 to 1: light would grow at every reflection.
-    #[error("material `{material}`: a diffuse albedo of {value} is not from 0 to 1")]
-    Albedo {
-        /// The material's name.
-        material: String,
-        /// The albedo of one of its colours.
-        value: f32,
-    },
-    /// A number is infinite or NaN.
-    #[error("{what} is not finite")]
-    NotFinite {
-        /// Which number: `normals[3]`, ``material `name`: emission``, ``light `name` ``…
-        what: String,
-    },
-    /// More entries than 32 bits can number.
-    #[error("`{list}` would have {count} entries, more than 32 bits can number")]
-    TooMany {
-        /// The list.
-        list: &'static str,
-        /// Entries it would have.
-        count: usize,
-    },
-}
 
 impl Scene {
     /// Whether lists fit one another, indices refer to something, and numbers are finite. Linear in the size of the scene

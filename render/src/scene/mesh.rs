@@ -1,6 +1,6 @@
 //! The triangles of a scene.
 
-use super::check::SceneError;
+use super::error::SceneError;
 use glam::{DVec2, DVec3, Vec3};
 
 /// No normal, no texture coordinate: the value of an index that refers to nothing.

@@ -4,6 +4,7 @@ mod ambient;
 mod camera;
 mod check;
 mod details;
+mod error;
 mod light;
 mod material;
 mod mesh;
@@ -11,8 +12,8 @@ mod texture;
 
 pub use ambient::{AmbientLight, SkyLight};
 pub use camera::Camera;
-pub use check::SceneError;
 pub use details::{Bump, BumpHeight, Channel, Details, Map, MeasuredBrdf, Surroundings, Transmission};
+pub use error::SceneError;
 pub use light::LightSource;
 pub use material::Material;
 pub use mesh::{Mesh, NONE, Object, Part};

@@ -1,6 +1,6 @@
 //! Decoded pictures, and how they are looked up.
 
-use super::check::SceneError;
+use super::error::SceneError;
 use glam::{DVec2, Vec4};
 use pointillist_shade::Wrap;
 use std::sync::LazyLock;

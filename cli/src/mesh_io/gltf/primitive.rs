@@ -4,10 +4,10 @@ use super::accessor::{indices, numbers};
 use super::bytes::Buffers;
 use crate::coordinate::{LARGEST, is_usable};
 use crate::mesh_io::FileMesh;
-use crate::scene::NONE;
 use ::gltf::Semantic;
 use ::gltf::mesh::{Mode, Primitive};
 use glam::{DAffine3, DMat3, DVec2, DVec3, Vec3};
+use pointillist_render::NONE;
 
 /// Adds a primitive; `Ok(false)` for points and lines, which have no surface.
 pub(super) fn append(

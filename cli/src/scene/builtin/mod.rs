@@ -3,21 +3,12 @@
 mod shapes;
 mod textures;
 
+use super::generated::Generated;
 use super::load::{Overrides, apply};
 use super::text::{Document, Format};
-use super::textures::Purpose;
-use super::{Description, LoadedScene, Texture, resolve};
+use super::{Description, LoadedScene, resolve};
 use crate::input_error::InputError;
-use crate::mesh_io::FileMesh;
 use std::path::Path;
-
-/// Meshes and textures that are made instead of read.
-pub(super) struct Generated {
-    /// The mesh of that name.
-    pub(super) mesh: fn(&str) -> Option<FileMesh>,
-    /// Textures by name.
-    pub(super) textures: Vec<(&'static str, Purpose, Texture)>,
-}
 
 /// The scene that is drawn when none is given.
 ///
