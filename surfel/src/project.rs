@@ -34,7 +34,7 @@ impl Projector {
             self.discs.take(scene.cloud, node, &run);
             let count = run.discs();
             Arch::new().dispatch(Project { lanes: self, scene, shape, map: &map, count });
-            splats.append(&self.out, count);
+            splats.append(&self.out, count, selected.place);
         }
     }
 }

@@ -150,9 +150,10 @@ impl Tile {
         self.projector.project(scene, selected, &Shape::BLENDED, place, &mut self.splats);
     }
 
-    /// Leaves those of the discs behind that may be seen through `open` pixels, and adds those of hidden nodes; all that they
-    /// may touch.
+    /// Leaves those of the discs behind that may be seen through `open` pixels, and adds those of hidden nodes, in the order
+    /// of nodes. Returns all that they may touch.
     fn add_hidden(&mut self, scene: &Scene<'_>, place: &Place, open: &Open) -> Touched {
+        let drawn = self.splats.as_slice().len();
         let mut hidden = std::mem::take(&mut self.hidden);
         hidden.retain(|selected| {
             let mut touched = Touched::NOTHING;
@@ -176,6 +177,10 @@ impl Tile {
             }
             is_seen
         });
+        if self.splats.as_slice().len() > drawn {
+            // Sums are rounded: they have to be taken in the order in which they are without culling.
+            self.splats.sort_by_node(&mut self.behind);
+        }
         touched
     }
 
