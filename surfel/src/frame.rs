@@ -1,6 +1,6 @@
 //! The picture.
 
-use crate::tile::{self, Place};
+use crate::grid::{HEIGHT, Place, WIDTH};
 
 /// A drawn frame: row-major layers of `width · height` entries.
 ///
@@ -81,22 +81,22 @@ impl Frame {
             colour: vec![[0.0; 4]; n],
             depth: vec![f32::INFINITY; n],
             normal: vec![[0.0; 3]; normal_count],
-            drawn: vec![false; width.div_ceil(tile::WIDTH) * height.div_ceil(tile::HEIGHT)],
+            drawn: vec![false; width.div_ceil(WIDTH) * height.div_ceil(HEIGHT)],
             counts: FrameCounts::default(),
         };
     }
 
     /// The frame in rows of tiles.
     pub(crate) fn bands(&mut self) -> Vec<Band<'_>> {
-        let n = self.width * tile::HEIGHT;
+        let n = self.width * HEIGHT;
         let mut normals = self.normal.chunks_mut(n);
         let layers = self.colour.chunks_mut(n).zip(self.depth.chunks_mut(n));
-        let drawn = self.drawn.chunks_mut(self.width.div_ceil(tile::WIDTH));
+        let drawn = self.drawn.chunks_mut(self.width.div_ceil(WIDTH));
         layers
             .zip(drawn)
             .enumerate()
             .map(|(i, ((colour, depth), drawn))| Band {
-                first_row: i * tile::HEIGHT,
+                first_row: i * HEIGHT,
                 width: self.width,
                 colour,
                 depth,
@@ -125,7 +125,7 @@ impl Band<'_> {
 
     /// Columns of a tile.
     fn columns(&self, tile: usize) -> std::ops::Range<usize> {
-        tile * tile::WIDTH..((tile + 1) * tile::WIDTH).min(self.width)
+        tile * WIDTH..((tile + 1) * WIDTH).min(self.width)
     }
 
     /// All tiles as one.

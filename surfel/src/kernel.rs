@@ -1,8 +1,8 @@
 //! Discs into a tile: nearest depths, then weighted sums.
 
+use crate::grid::SQUARE;
 use crate::layer::{Depths, LANES, Layer, Normals, Open, PITCH, RAMP, Sums};
 use crate::splat::Splat;
-use crate::tile::SQUARE;
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
 //! Working memory of a tile, in blocks of pixels that are computed together.
 
-use crate::tile::{HEIGHT, SQUARE, WIDTH};
+use crate::grid::{HEIGHT, SQUARE, WIDTH};
 use std::ops::Range;
 
 /// Pixels of a block, next to one another in a row: a whole number of vectors of any processor.

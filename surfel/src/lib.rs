@@ -61,14 +61,18 @@
 #![forbid(unsafe_code)]
 
 mod areas;
+mod attributes;
+mod batch;
 mod blue_noise;
 mod camera;
 mod cloud;
 mod cover;
 mod eliminate;
+mod ellipse;
 mod error;
 mod focus;
 mod frame;
+mod grid;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod items;
@@ -79,12 +83,15 @@ mod ldi;
 mod links;
 mod mesh;
 mod neighbours;
+mod node;
 mod normals;
 mod octree;
 mod options;
 mod packed;
+mod packed_links;
 mod pairs;
 mod paper;
+mod placed;
 mod point;
 mod points;
 mod project;
@@ -93,6 +100,7 @@ mod render;
 mod resolve;
 mod rows;
 mod sample;
+mod scene;
 mod select;
 mod shade;
 mod spacing;

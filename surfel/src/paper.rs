@@ -11,13 +11,14 @@
 
 use crate::camera::Camera;
 use crate::frame::Band;
+use crate::grid::{HEIGHT, Place};
 use crate::kernel;
 use crate::layer::{LANES, Layer, PITCH, Touched};
 use crate::project::Projector;
+use crate::scene::Scene;
 use crate::select::Selected;
 use crate::splat::{Shape, Splat};
 use crate::splats::Splats;
-use crate::tile::{self, Place, Scene};
 use glam::Vec3;
 
 /// The filter's radius is this many of its standard deviations.
@@ -259,5 +260,5 @@ pub(crate) fn reshape(cells: &mut Vec<Cell>, width: usize, height: usize) {
 
 /// Rows of cells for each band of tiles.
 pub(crate) fn rows(cells: &mut [Cell], width: usize) -> impl Iterator<Item = &mut [Cell]> {
-    cells.chunks_mut(width * tile::HEIGHT)
+    cells.chunks_mut(width * HEIGHT)
 }

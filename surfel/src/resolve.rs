@@ -1,9 +1,9 @@
 //! From the sums of a layer to the colours of its pixels, a block at a time.
 
 use crate::frame::Band;
+use crate::grid::{Place, WIDTH};
 use crate::layer::{LANES, Lanes, Layer, Open, PITCH, Pixels, Touched};
 use crate::shade::{INDEPENDENT, LEAST_LIGHT, Shader, opacity};
-use crate::tile::{Place, WIDTH};
 use crate::vector::Vector;
 use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
 

@@ -1,6 +1,7 @@
 //! The discs of a tile.
 
-use crate::splat::{Projected, Splat};
+use crate::batch::Projected;
+use crate::splat::Splat;
 
 /// A list that keeps its memory, filled, when it is emptied: new entries are written in place. To push what was made
 /// elsewhere would copy it once more.

@@ -4,39 +4,24 @@
 //! nearest disc, and all discs that lie within their thickness behind that are averaged. Neither depends on the order of
 //! discs, up to the rounding of sums, and that is fixed by the order of nodes.
 
-use crate::camera::Camera;
-use crate::cloud::Cloud;
 use crate::frame::Band;
+use crate::grid::{HEIGHT, Place, SQUARE, WIDTH};
 use crate::kernel;
 use crate::layer::{Layer, Open, PITCH, Pixels, Touched};
 use crate::project::Projector;
 use crate::resolve::{resolve, write};
+use crate::scene::Scene;
 use crate::select::Selected;
-use crate::shade::Shader;
 use crate::splat::Shape;
 use crate::splats::Splats;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Pixels of a tile: sums and depths fit into the second-level cache.
-pub(crate) const WIDTH: usize = 128;
-pub(crate) const HEIGHT: usize = 64;
+use std::sync::atomic::Ordering;
 
 /// Surfaces behind one another in a pixel. All that lies behind the last but one is taken for the last.
 const MOST_LAYERS: usize = 4;
 
-/// Side of the squares for which the farthest depth is kept, to skip what is hidden.
-pub(crate) const SQUARE: usize = 16;
+/// Squares of a tile: columns, rows.
 const SQUARES: [usize; 2] = [WIDTH / SQUARE, HEIGHT / SQUARE];
-
-/// Where a tile lies in the picture, in pixels.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
-    pub(crate) x: usize,
-    pub(crate) y: usize,
-    pub(crate) width: usize,
-    pub(crate) height: usize,
-}
 
 /// Working memory for tiles.
 pub(crate) struct Tile {
@@ -64,18 +49,6 @@ impl Default for Tile {
             hidden: vec![],
         }
     }
-}
-
-/// What all tiles of a frame share.
-pub(crate) struct Scene<'a> {
-    pub(crate) cloud: &'a Cloud,
-    pub(crate) camera: Camera,
-    pub(crate) shader: Shader,
-    pub(crate) culling: bool,
-    /// Whether normals are asked for.
-    pub(crate) normals: bool,
-    /// Which of the selected nodes any tile has drawn.
-    pub(crate) shown: &'a [AtomicBool],
 }
 
 impl Tile {

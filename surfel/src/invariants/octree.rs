@@ -1,8 +1,9 @@
 //! The tree of a cloud, as it is kept.
 
 use super::{OwnedPoints, check, cloud};
-use crate::cloud::{Cloud, Node};
+use crate::cloud::Cloud;
 use crate::lattice::between;
+use crate::node::Node;
 use crate::packed::unpack_way;
 use glam::Vec3;
 use std::ops::Range;
