@@ -6,7 +6,6 @@ use crate::error::CliError;
 use crate::options::{ScanOptions, layer_list};
 use crate::points::{Drawn, PointLayer, window_of};
 use crate::scan::{LoadOptions, ScanSet};
-use crate::scene::Camera;
 use pointillist_ibpr as ibpr;
 
 /// Layers of a scan's picture.
@@ -38,10 +37,11 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     if target.is_done(&stamp, window, &report) {
         return report.finish();
     }
+    let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
     let mut frame = ibpr::Frame::default();
-    report.stats.stage("draw", || draw(options, &cloud, &camera, &mut frame, &report))?;
+    report.stats.stage("draw", || draw(options, &cloud, &view, &mut frame, &report))?;
     tell_counts(&report, &cloud, &frame);
-    let picture = window_of(&as_drawn(&frame), window, &layers, &camera);
+    let picture = window_of(&as_drawn(&frame), window, &layers, &view);
     report.stats.stage("write", || target.write(&picture, stamp))?;
     let seconds = report.stats.elapsed().as_secs_f64();
     report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));
@@ -62,18 +62,16 @@ fn as_drawn(frame: &ibpr::Frame) -> Drawn<'_> {
 fn draw(
     options: &ScanOptions,
     cloud: &ibpr::Cloud,
-    camera: &Camera,
+    view: &ibpr::View,
     frame: &mut ibpr::Frame,
     report: &Report<'_>,
 ) -> Result<(), CliError> {
     // All that the renderer can refuse now is a value of an option.
     let usage = |error: ibpr::IbprError| CliError::Usage(error.to_string());
-    let size = points::size(&options.camera);
-    let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
     let frame_options = options.frame_options();
     let mut renderer = ibpr::Renderer::new();
     points::repeat(report, options.repeat, || {
-        renderer.draw(cloud, &view, &frame_options, frame).map_err(usage)
+        renderer.draw(cloud, view, &frame_options, frame).map_err(usage)
     })
 }
 
