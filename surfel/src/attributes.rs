@@ -21,7 +21,7 @@ pub(crate) struct Attributes {
     pub(crate) radii: Vec<f32>,
     /// Share of the surface, square units.
     pub(crate) areas: Vec<f32>,
-    pub(crate) colours: Option<Vec<[f32; 3]>>,
+    pub(crate) colors: Option<Vec<[f32; 3]>>,
 }
 
 impl Attributes {
@@ -42,7 +42,7 @@ impl Attributes {
         self.normals.iter_mut().for_each(|list| reordered(list, places));
         reordered(&mut self.radii, places);
         reordered(&mut self.areas, places);
-        self.colours.iter_mut().for_each(|list| reordered(list, places));
+        self.colors.iter_mut().for_each(|list| reordered(list, places));
     }
 }
 
@@ -77,7 +77,7 @@ pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, V
         normals: [0, 1, 2].map(|axis| normals.iter().map(|n| n[axis]).collect()),
         radii,
         areas: areas.into_iter().map(|a| a.clamp(SMALLEST * SMALLEST, 1e12)).collect(),
-        colours: points.colours.map(|given| keys.iter().map(|&(_, i)| given[i as usize]).collect()),
+        colors: points.colors.map(|given| keys.iter().map(|&(_, i)| given[i as usize]).collect()),
     };
     (attributes, keys.into_iter().map(|key| key.0).collect())
 }
@@ -86,7 +86,7 @@ pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, V
 fn compare(points: &Points<'_>, cells: &[[u32; 3]], a: usize, b: usize) -> Ordering {
     let exact = |i: usize| points.positions[i].to_array();
     let normal = |i: usize| points.normals.map_or([0.0; 3], |all| all[i].to_array());
-    let colour = |i: usize| points.colours.map_or([0.0; 3], |all| all[i]);
+    let color = |i: usize| points.colors.map_or([0.0; 3], |all| all[i]);
     let radius = |i: usize| points.radii.map_or(0.0, |all| all[i]);
     let by = |p: [f32; 3], q: [f32; 3]| {
         p.iter().zip(&q).map(|(p, q)| p.total_cmp(q)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
@@ -103,6 +103,6 @@ fn compare(points: &Points<'_>, cells: &[[u32; 3]], a: usize, b: usize) -> Order
         .cmp(&cells[b])
         .then_with(by_position)
         .then_with(|| by(normal(a), normal(b)))
-        .then_with(|| by(colour(a), colour(b)))
+        .then_with(|| by(color(a), color(b)))
         .then_with(|| radius(a).total_cmp(&radius(b)))
 }

@@ -82,7 +82,7 @@ impl Projected {
             columns: [whole(get(Value::Left)), whole(get(Value::Right))],
             rows: [whole(get(Value::Top)), whole(get(Value::Bottom))],
             sharpness: get(Value::Sharpness),
-            colour: [get(Value::Red), get(Value::Green), get(Value::Blue)],
+            color: [get(Value::Red), get(Value::Green), get(Value::Blue)],
             normal: [get(Value::NormalX), get(Value::NormalY), get(Value::NormalZ)],
         }
     }

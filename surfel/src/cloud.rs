@@ -27,7 +27,7 @@ impl Cloud {
     ///
     /// # Errors
     /// [`SurfelError::NoPoints`], [`SurfelError::TooMany`], [`SurfelError::LengthMismatch`], [`SurfelError::NotFinite`],
-    /// [`SurfelError::BadNormal`], [`SurfelError::BadColour`], [`SurfelError::BadRadius`].
+    /// [`SurfelError::BadNormal`], [`SurfelError::BadColor`], [`SurfelError::BadRadius`].
     pub fn new(points: &Points<'_>) -> Result<Self, SurfelError> {
         points.check()?;
         let lattice = Lattice::around(points.positions);
@@ -38,7 +38,7 @@ impl Cloud {
         let two_sided = points.normals.is_none();
         let mut nodes = nodes(&cubes, &generations, &links, &attributes, two_sided);
         nodes.iter_mut().zip(pairs).for_each(|(node, pairs)| node.pairs = pairs);
-        let links = PackedLinks::new(&links, &nodes, points.colours.is_some());
+        let links = PackedLinks::new(&links, &nodes, points.colors.is_some());
         Ok(Self { lattice, points: attributes, nodes, links, two_sided })
     }
 
@@ -49,10 +49,10 @@ impl Cloud {
         self.points.radii.len()
     }
 
-    /// Whether points have colours of their own.
+    /// Whether points have colors of their own.
     #[must_use]
-    pub fn has_colours(&self) -> bool {
-        self.points.colours.is_some()
+    pub fn has_colors(&self) -> bool {
+        self.points.colors.is_some()
     }
 
     /// Whether normals were estimated; such a cloud is seen from both sides.
@@ -73,7 +73,7 @@ impl Cloud {
         (area / self.len() as f64).sqrt() * self.lattice.side
     }
 
-    /// Bytes per point besides position, normal, colour and radius: octree, links and areas.
+    /// Bytes per point besides position, normal, color and radius: octree, links and areas.
     #[must_use]
     pub fn overhead_per_point(&self) -> f64 {
         let bytes = self.links.bytes()

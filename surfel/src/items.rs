@@ -22,7 +22,7 @@ pub(crate) struct Items {
     pub(crate) areas: Values,
     /// The way between the places of a pair, times their standard deviation in shares of it; 0 for one item.
     pub(crate) spreads: [Values; 3],
-    /// Colours without light, if points have any.
+    /// Colors without light, if points have any.
     pub(crate) paint: [Values; 3],
 }
 
@@ -108,8 +108,8 @@ impl Items {
         }
         self.radii[..count].copy_from_slice(&points.radii[items.clone()]);
         self.areas[..count].copy_from_slice(&points.areas[items.clone()]);
-        if let Some(colours) = &points.colours {
-            self.take_colours(colours[items].iter().copied());
+        if let Some(colors) = &points.colors {
+            self.take_colors(colors[items].iter().copied());
         }
     }
 
@@ -130,16 +130,16 @@ impl Items {
         for ((radius, to), &area) in self.radii.iter_mut().zip(&mut self.areas).zip(areas) {
             (*radius, *to) = (radius_of_area(area), area);
         }
-        if let Some(colours) = &links.colours {
-            self.take_colours(colours[items].iter().map(|&c| packed::unpack_colour(c)));
+        if let Some(colors) = &links.colors {
+            self.take_colors(colors[items].iter().map(|&c| packed::unpack_color(c)));
         }
     }
 
     #[inline(always)]
-    fn take_colours(&mut self, colours: impl Iterator<Item = [f32; 3]>) {
+    fn take_colors(&mut self, colors: impl Iterator<Item = [f32; 3]>) {
         let [red, green, blue] = &mut self.paint;
-        for (((red, green), blue), colour) in red.iter_mut().zip(green).zip(blue).zip(colours) {
-            [*red, *green, *blue] = colour;
+        for (((red, green), blue), color) in red.iter_mut().zip(green).zip(blue).zip(colors) {
+            [*red, *green, *blue] = color;
         }
     }
 

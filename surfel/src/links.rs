@@ -1,6 +1,6 @@
 //! Coarser levels: links to a few of a cube's points, each of which stands for its surroundings.
 //!
-//! A link names the point that is nearest to the middle of what it stands for; place, normal and colour are the means of that, and the
+//! A link names the point that is nearest to the middle of what it stands for; place, normal and color are the means of that, and the
 //! area is the sum, as the prefiltered textures of \[1\] are, so that a coarse level is not a noisy one.
 
 use crate::attributes::Attributes;
@@ -22,19 +22,19 @@ pub(crate) struct Link {
     /// Area of all that it stands for, square units.
     pub(crate) area: f32,
     pub(crate) normal: Vec3,
-    pub(crate) colour: Vec3,
+    pub(crate) color: Vec3,
 }
 
 impl Link {
     /// A point that stands for itself.
     fn of_point(points: &Attributes, point: usize) -> Self {
-        let colour = points.colours.as_ref().map_or(Vec3::ZERO, |all| Vec3::from_array(all[point]));
+        let color = points.colors.as_ref().map_or(Vec3::ZERO, |all| Vec3::from_array(all[point]));
         Self {
             point: point as u32,
             cell: points.cell(point),
             area: points.areas[point],
             normal: points.normal(point),
-            colour,
+            color,
         }
     }
 }
@@ -137,7 +137,7 @@ fn merged(links: &[Link]) -> Link {
     let area: f32 = links.iter().map(|l| l.area).sum();
     let mean = links.iter().map(|l| place(l) * (l.area / area)).sum::<Vec3>();
     let normal = links.iter().map(|l| l.normal * (l.area / area)).sum::<Vec3>();
-    let colour = links.iter().map(|l| l.colour * (l.area / area)).sum::<Vec3>();
+    let color = links.iter().map(|l| l.color * (l.area / area)).sum::<Vec3>();
     let distance2 = |l: &Link| place(l).distance_squared(mean);
     let nearest = links
         .iter()
@@ -148,6 +148,6 @@ fn merged(links: &[Link]) -> Link {
         cell: moved(origin, mean),
         area,
         normal: normal.try_normalize().unwrap_or(nearest.normal),
-        colour,
+        color,
     }
 }

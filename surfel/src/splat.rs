@@ -56,7 +56,7 @@ pub(crate) struct Splat {
     /// How much steeper than the kernel's an edge has to be to look sharp.
     pub(crate) sharpness: f32,
     /// In its light.
-    pub(crate) colour: [f32; 3],
+    pub(crate) color: [f32; 3],
     /// In the picture's axes.
     pub(crate) normal: [f32; 3],
 }
@@ -79,7 +79,7 @@ impl Splat {
         columns: [0; 2],
         rows: [0; 2],
         sharpness: 0.0,
-        colour: [0.0; 3],
+        color: [0.0; 3],
         normal: [0.0; 3],
     };
 

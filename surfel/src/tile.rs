@@ -88,7 +88,7 @@ impl Tile {
         write(&self.pixels, &scene.shader, place, band);
     }
 
-    /// From the splats of the first layer, which touch these pixels, to the colours of all, with normals if they are `WANTED`.
+    /// From the splats of the first layer, which touch these pixels, to the colors of all, with normals if they are `WANTED`.
     fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, place: &Place, mut touched: Touched) {
         for blocks in touched.others(place.height) {
             self.pixels[blocks.clone()].fill(Pixels::EMPTY);

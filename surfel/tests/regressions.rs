@@ -107,7 +107,7 @@ fn nodes_behind_a_wall_are_counted_as_hidden() {
     let hidden = |culling| {
         let mut options = Options::default();
         options.culling = culling;
-        frame(&points, &view, &options).unwrap().counts.nodes_hidden
+        frame(&points, &view, &options).unwrap().counts().nodes_hidden
     };
     assert!(hidden(true) > 10, "{}", hidden(true));
     assert_eq!(hidden(false), 0);
@@ -121,7 +121,7 @@ fn the_ends_of_a_small_cloud_are_where_they_are() {
     let view =
         look_at(DVec3::Z * 2.0, DVec3::ZERO, Projection::Orthographic { height: 4.0 }, 40, 40).unwrap();
     let drawn = frame(&points, &view, &Options::default()).unwrap();
-    let [red, green] = [drawn.colour()[40 * 20 + 10], drawn.colour()[40 * 20 + 30]];
+    let [red, green] = [drawn.color()[40 * 20 + 10], drawn.color()[40 * 20 + 30]];
     assert!(red[0] > 0.5 && red[1] == 0.0 && green[1] > 0.5 && green[0] == 0.0, "{red:?} and {green:?}");
 }
 

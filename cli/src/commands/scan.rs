@@ -50,12 +50,12 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
 
 fn as_drawn(frame: &ibpr::Frame) -> Drawn<'_> {
     Drawn {
-        width: frame.width,
-        height: frame.height,
-        colour: &frame.colour,
-        depth: &frame.depth,
-        normal: &frame.normal,
-        count: &frame.count,
+        width: frame.width(),
+        height: frame.height(),
+        colour: frame.color(),
+        depth: frame.depth(),
+        normal: frame.normal(),
+        count: frame.count(),
     }
 }
 
@@ -76,7 +76,7 @@ fn draw(
 }
 
 fn tell_counts(report: &Report<'_>, cloud: &ibpr::Cloud, frame: &ibpr::Frame) {
-    let counts = &frame.counts;
+    let counts = frame.counts();
     let stats = &report.stats;
     stats.count("points", cloud.len() as u64);
     stats.count("points_drawn", counts.points as u64);
@@ -90,7 +90,7 @@ fn tell_counts(report: &Report<'_>, cloud: &ibpr::Cloud, frame: &ibpr::Frame) {
         cloud.density_spacing(),
         counts.scale
     ));
-    if frame.depth.iter().all(|d| d.is_infinite()) {
+    if frame.depth().iter().all(|d| d.is_infinite()) {
         report.warn(if counts.points > 0 {
             "nothing was drawn: too few points are near one another; try a larger --scale or --spacing"
         } else if counts.blocks_facing_away > 0 {

@@ -52,7 +52,7 @@ fn as_drawn(frame: &surfel::Frame) -> Drawn<'_> {
     Drawn {
         width: frame.width(),
         height: frame.height(),
-        colour: frame.colour(),
+        colour: frame.color(),
         depth: frame.depth(),
         normal: frame.normal(),
         count: &[],
@@ -60,7 +60,7 @@ fn as_drawn(frame: &surfel::Frame) -> Drawn<'_> {
 }
 
 fn tell_counts(report: &Report<'_>, cloud: &surfel::Cloud, frame: &surfel::Frame) {
-    let counts = &frame.counts;
+    let counts = frame.counts();
     let stats = &report.stats;
     stats.count("points", cloud.len() as u64);
     stats.count("points_drawn", counts.points as u64);
