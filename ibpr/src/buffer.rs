@@ -2,6 +2,9 @@
 
 use crate::buffer_map::BufferMap;
 
+/// Depths of neighbouring pixels of one surface differ by less than this many units (the paper's 5).
+pub(crate) const STEP: f32 = 5.0;
+
 /// Empty pixels around the buffer, so that windows need no test for its border.
 pub(crate) const PAD: usize = 4;
 

@@ -5,8 +5,8 @@
 //! belong to another surface) the face reaches half a buffer pixel further: the averaged points lie
 //! inside the outline, not on it.
 
+use crate::buffer::STEP;
 use crate::buffer::{Buffer, Corner, DepthScale, SUBPIXEL};
-use crate::normals::STEP;
 use crate::raster::{Paint, Pixels, Strip, Vertex};
 
 /// How faces are made.

@@ -1,7 +1,7 @@
 //! A frame, from the cloud to the picture.
 
 use crate::accumulate::{self, BandScratch, BlockView, Rules};
-use crate::buffer::{Buffer, DepthScale};
+use crate::buffer::{Buffer, DepthScale, STEP};
 use crate::buffer_map::{BufferMap, depth_of};
 use crate::cloud::Cloud;
 use crate::cull;
@@ -184,7 +184,7 @@ impl Drawing<'_> {
             let [first, second] = &mut scratch.stacks;
             self.draw_passes([&mut *first, &mut *second], first_row, n, |s| s.begin(n));
             if let Some(rules) = &self.rules[1] {
-                first.pixels.draw_over(&second.pixels, &rules.scale, normals::STEP);
+                first.pixels.draw_over(&second.pixels, &rules.scale, STEP);
             }
             let scale = self.rules[0].as_ref().map(|r| r.scale);
             let together = |q: f32| scale.map_or(0.0, |s| s.bent_step(q, 1.0));
@@ -197,7 +197,7 @@ impl Drawing<'_> {
             let [first, second] = &mut scratch.nearest;
             self.draw_passes([&mut *first, &mut *second], first_row, n, |s| s.begin(n, painted));
             if let Some(rules) = &self.rules[1] {
-                first.pixels.draw_over(&second.pixels, &rules.scale, normals::STEP);
+                first.pixels.draw_over(&second.pixels, &rules.scale, STEP);
             }
             let pixels = &first.pixels;
             self.finish(first_row, out, |i, place| {
