@@ -22,7 +22,7 @@ enum Shape {
 #[derive(Arbitrary, Debug)]
 struct Part {
     shape: Shape,
-    coloured: bool,
+    colored: bool,
     towards: Option<[i8; 3]>,
     spacing: Option<u8>,
 }
@@ -78,8 +78,8 @@ fn scan(part: &Part) -> OwnedScan {
             OwnedScan::sphere(steps(*centre), radius, radius / 15.0, towards)
         }
     };
-    if part.coloured {
-        scan.colours = Some((0..scan.positions.len()).map(|i| [0.5, (i % 3) as f32, 0.1]).collect());
+    if part.colored {
+        scan.colors = Some((0..scan.positions.len()).map(|i| [0.5, (i % 3) as f32, 0.1]).collect());
     }
     scan.towards_scanner = part.towards.map(steps).or(scan.towards_scanner);
     scan.spacing = part.spacing.map(|s| f64::from(s) / 256.0).or(scan.spacing);
@@ -99,13 +99,13 @@ fn options(rules: &Rules) -> Options {
     o.outline = f32::from(rules.outline) / 255.0;
     o.fill = u32::from(rules.fill % 7);
     o.passes = rules.finer.map_or(Passes::One, |f| Passes::Two { finer: (1.0 + f32::from(f)) / 256.0 });
-    o.translucency = rules.layers.map(|(alpha, layers, threshold)| Translucency {
-        alpha: f32::from(alpha) / 255.0,
-        layers: usize::from(layers % 8) + 1,
-        threshold: 0.1 + f32::from(threshold) / 16.0,
+    o.translucency = rules.layers.map(|(alpha, layers, threshold)| {
+        Translucency::new(f32::from(alpha) / 255.0)
+            .with_layers(usize::from(layers % 8) + 1)
+            .with_threshold(0.1 + f32::from(threshold) / 16.0)
     });
     o.light = rules.light.map_or(Light::Eye, |d| Light::Towards(steps(d)));
-    o.eye_dome = rules.dome.then_some(EyeDome { strength: 1.0, radius: 3 });
+    o.eye_dome = rules.dome.then_some(EyeDome::new(1.0, 3));
     o.surface_layers = rules.surface_layers;
     if let Some([gamma, outline, scale]) = rules.raw {
         (o.gamma, o.outline, o.scale) = (gamma, outline, Scale::Auto(scale));

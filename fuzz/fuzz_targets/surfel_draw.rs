@@ -23,7 +23,7 @@ struct Attributes {
     two_sided: bool,
     radii: Option<Vec<u8>>,
     raw_radius: Option<f32>,
-    coloured: bool,
+    colored: bool,
 }
 
 #[derive(Arbitrary, Debug)]
@@ -91,8 +91,8 @@ fn points(shapes: &[Shape], attributes: &Attributes) -> OwnedPoints {
         let radius = |r: &u8| attributes.raw_radius.unwrap_or(f32::from(*r) / 256.0);
         all.radii = Some(radii.iter().map(radius).cycle().take(n).collect());
     }
-    if attributes.coloured {
-        all.colours = Some((0..n).map(|i| [0.5, (i % 3) as f32, 0.1]).collect());
+    if attributes.colored {
+        all.colors = Some((0..n).map(|i| [0.5, (i % 3) as f32, 0.1]).collect());
     }
     all
 }
@@ -109,7 +109,7 @@ fn options(rules: &Rules, k: f64) -> Options {
         };
     }
     o.procedure = if rules.paper { Procedure::Paper } else { Procedure::Blended };
-    (o.culling, o.normals) = (rules.culling, rules.normals);
+    (o.culling, o.surface_layers) = (rules.culling, rules.normals);
     o.level = f32::from(rules.level) / 32.0;
     o.ambient = f32::from(rules.ambient) / 255.0;
     o.light = rules.light.map_or(Light::Eye, |d| Light::Towards(steps(d)));
@@ -142,7 +142,7 @@ fuzz_target!(|input: (Vec<Shape>, Attributes, Picture, Rules, u64)| {
         .and_then(|()| invariants::frames_are_sound(&points, &view, &options))
         .and_then(|()| invariants::order_does_not_matter(&points, &view, &options, seed))
         .and_then(|()| invariants::culling_changes_nothing(&points, &view, &options))
-        .and_then(|()| invariants::one_colour_stays_one_colour(&points, &view, &options, [0.25, 1.0, 0.7]));
+        .and_then(|()| invariants::one_color_stays_one_color(&points, &view, &options, [0.25, 1.0, 0.7]));
     if let Err(broken) = facts {
         panic!("{broken}");
     }

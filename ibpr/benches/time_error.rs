@@ -51,18 +51,18 @@ fn error(cloud: &Cloud, options: &Options) -> (f64, f64) {
     let half = 0.5 * f64::from(SIZE);
     let slope = (0.5f64 * 0.55).tan() / half;
     let (mut angles, mut squares, mut count) = (0.0, 0.0, 0.0);
-    for i in 0..frame.depth.len() {
-        let (x, y) = ((i % frame.width) as f64 + 0.5 - half, half - 0.5 - (i / frame.width) as f64);
+    for i in 0..frame.depth().len() {
+        let (x, y) = ((i % frame.width()) as f64 + 0.5 - half, half - 0.5 - (i / frame.width()) as f64);
         let ray = dvec3(x * slope, y * slope, -1.0);
         // |EYE·Z + t·ray| = 1
         let (a, b, c) = (ray.length_squared(), -EYE, EYE * EYE - 1.0);
         let root = b * b - a * c;
         let nearest = (-b - root.max(0.0).sqrt()) / a;
         let n = DVec3::Z * EYE + ray * nearest;
-        if root > 0.0 && n.truncate().length() < 0.9 && frame.depth[i] < f32::INFINITY {
-            let got = Vec3::from_array(frame.normal[i]).as_dvec3();
+        if root > 0.0 && n.truncate().length() < 0.9 && frame.depth()[i] < f32::INFINITY {
+            let got = Vec3::from_array(frame.normal()[i]).as_dvec3();
             angles += got.dot(n).clamp(-1.0, 1.0).acos().to_degrees();
-            squares += (f64::from(frame.depth[i]) - nearest).powi(2);
+            squares += (f64::from(frame.depth()[i]) - nearest).powi(2);
             count += 1.0;
         }
     }

@@ -44,9 +44,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut file = format!("P6 {SIZE} {SIZE} 255\n").into_bytes();
     // A square root is near enough to what screens do.
     file.extend(
-        frame.colour.iter().flat_map(|c| [c[0], c[1], c[2]].map(|v| (255.0 * v.sqrt()).round() as u8)),
+        frame.color().iter().flat_map(|c| [c[0], c[1], c[2]].map(|v| (255.0 * v.sqrt()).round() as u8)),
     );
     std::fs::write("scans_of_a_sphere.ppm", file)?;
-    println!("{} points, {:.2} pixels per buffer pixel", cloud.len(), frame.counts.scale);
+    println!("{} points, {:.2} pixels per buffer pixel", cloud.len(), frame.counts().scale);
     Ok(())
 }

@@ -36,7 +36,7 @@ const COUNT: usize = 4;
 const COLOUR: usize = 5;
 
 /// Weight, weighted position about the pixel's centre and weighted depth about the nearest one, number
-/// of points, weighted colour.
+/// of points, weighted color.
 type Sums = [f32; 8];
 
 /// Working memory of a band.
@@ -87,7 +87,7 @@ fn row_range(rows: &[f32; 12], half: [f32; 3], map: &BufferMap) -> (usize, usize
     ((low - 1.0).max(0.0) as usize, ((high + 2.0).max(0.0) as usize).min(map.height))
 }
 
-/// Fills the positions, depths, counts and colours of `buffer`.
+/// Fills the positions, depths, counts and colors of `buffer`.
 pub(crate) fn accumulate(
     cloud: &Cloud,
     views: &[BlockView],
@@ -103,15 +103,15 @@ pub(crate) fn accumulate(
         .zip(chunks(&mut buffer.y[inner.clone()], n))
         .zip(chunks(&mut buffer.q[inner.clone()], n))
         .zip(chunks(&mut buffer.count[inner.clone()], n))
-        .zip(chunks(&mut buffer.colour[inner], n))
+        .zip(chunks(&mut buffer.color[inner], n))
         .enumerate()
-        .for_each(|(i, ((((x, y), q), count), colour))| {
+        .for_each(|(i, ((((x, y), q), count), color))| {
             let band = Band::new(map, i * BAND_ROWS, x.len() / pitch);
-            let out = Resolved { x, y, q, count, colour, stride, pitch };
+            let out = Resolved { x, y, q, count, color, stride, pitch };
             pool.with(|scratch| match rules.layers {
                 None => {
                     sum_band(cloud, views, &band, rules, scratch);
-                    resolve(scratch, &band, &rules.scale, cloud.has_colours(), out);
+                    resolve(scratch, &band, &rules.scale, cloud.has_colors(), out);
                 }
                 Some(layers) => layers::fill_band(cloud, views, &band, rules, layers, scratch, out),
             });
@@ -188,7 +188,7 @@ fn add(
     sums: &mut [Sums],
     weight: impl Fn(&Projected, usize, usize) -> f32,
 ) {
-    let coloured = cloud.has_colours();
+    let colored = cloud.has_colors();
     walk(cloud, views, band, |p, k, pixel, point| {
         let w = weight(p, k, pixel);
         if w <= 0.0 {
@@ -202,9 +202,9 @@ fn add(
         sum[Y] += w * (p.y[k] - centre(p.y[k]));
         sum[DEPTH] += w * (p.depth[k] - near[pixel]);
         sum[COUNT] += 1.0;
-        if coloured {
-            let colour = cloud.colours[point];
-            for (s, c) in sum[COLOUR..].iter_mut().zip(colour) {
+        if colored {
+            let color = cloud.colors[point];
+            for (s, c) in sum[COLOUR..].iter_mut().zip(color) {
                 *s += w * c;
             }
         }
@@ -217,13 +217,13 @@ pub(crate) struct Resolved<'a> {
     pub(crate) y: &'a mut [f32],
     pub(crate) q: &'a mut [f32],
     pub(crate) count: &'a mut [f32],
-    pub(crate) colour: &'a mut [[f32; 3]],
+    pub(crate) color: &'a mut [[f32; 3]],
     /// Entries to the next layer and to the next row.
     pub(crate) stride: usize,
     pub(crate) pitch: usize,
 }
 
-fn resolve(scratch: &BandScratch, band: &Band, scale: &DepthScale, coloured: bool, out: Resolved<'_>) {
+fn resolve(scratch: &BandScratch, band: &Band, scale: &DepthScale, colored: bool, out: Resolved<'_>) {
     for row in 0..band.rows {
         for column in 0..band.width {
             let (from, to) = (row * band.width + column, row * out.pitch + column + PAD);
@@ -236,8 +236,8 @@ fn resolve(scratch: &BandScratch, band: &Band, scale: &DepthScale, coloured: boo
             out.x[to] = column as f32 + 0.5 + sum[X] * inverse;
             out.y[to] = (band.first_row + row) as f32 + 0.5 + sum[Y] * inverse;
             out.q[to] = scale.bent(scratch.near[from] + sum[DEPTH] * inverse);
-            if coloured {
-                out.colour[to] = [0, 1, 2].map(|c| sum[COLOUR + c] * inverse);
+            if colored {
+                out.color[to] = [0, 1, 2].map(|c| sum[COLOUR + c] * inverse);
             }
         }
     }

@@ -2,6 +2,9 @@
 
 use crate::buffer_map::BufferMap;
 
+/// Depths of neighbouring pixels of one surface differ by less than this many units (the paper's 5).
+pub(crate) const STEP: f32 = 5.0;
+
 /// Empty pixels around the buffer, so that windows need no test for its border.
 pub(crate) const PAD: usize = 4;
 
@@ -52,8 +55,8 @@ pub(crate) struct Buffer {
     pub(crate) count: Vec<f32>,
     /// What faces are made of.
     pub(crate) corners: Vec<Corner>,
-    /// Averaged colour; not kept up to date for clouds without colours.
-    pub(crate) colour: Vec<[f32; 3]>,
+    /// Averaged color; not kept up to date for clouds without colors.
+    pub(crate) color: Vec<[f32; 3]>,
 }
 
 impl Buffer {
@@ -68,8 +71,8 @@ impl Buffer {
                 array.clear();
                 array.resize(len, 0.0);
             }
-            self.colour.clear();
-            self.colour.resize(len, [0.0; 3]);
+            self.color.clear();
+            self.color.resize(len, [0.0; 3]);
             self.corners.clear();
             self.corners.resize(len, Corner::NONE);
         }
@@ -80,7 +83,7 @@ impl Buffer {
         for array in [&mut self.x, &mut self.y, &mut self.q, &mut self.count] {
             array.fill(0.0);
         }
-        self.colour.fill([0.0; 3]);
+        self.color.fill([0.0; 3]);
     }
 
     /// Index of the nearest layer of pixel (`column`, `row`).

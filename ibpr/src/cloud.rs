@@ -2,6 +2,7 @@
 
 use crate::cone::{self, Cone};
 use crate::error::IbprError;
+use crate::options::check_base;
 use crate::order::{Lattice, in_order};
 use crate::parallel::*;
 use crate::scan::Scan;
@@ -38,7 +39,7 @@ pub struct Cloud {
     /// Coordinates relative to the origin of their block, in units.
     pub(crate) offsets: [Vec<f32>; 3],
     /// Linear RGB, or empty.
-    pub(crate) colours: Vec<[f32; 3]>,
+    pub(crate) colors: Vec<[f32; 3]>,
     low: DVec3,
     high: DVec3,
     spacing: f64,
@@ -48,13 +49,15 @@ pub struct Cloud {
 impl Cloud {
     /// Sorts the points of `scans`, measures their spacing and finds where their surfaces face.
     ///
-    /// Takes about 0.3 µs per point; holds 12 bytes per point, 24 with colour. Points of scans
-    /// without colour get `base` if other scans have colours.
+    /// Takes about 0.3 µs per point; holds 12 bytes per point, 24 with color. Points of scans
+    /// without color get `base` if other scans have colors.
     ///
     /// # Errors
-    /// [`IbprError::NoPoints`], [`IbprError::PointNotFinite`], [`IbprError::BadColour`],
-    /// [`IbprError::LengthMismatch`], [`IbprError::BadScan`], [`IbprError::TooManyPoints`].
+    /// [`IbprError::NoPoints`], [`IbprError::PointNotFinite`], [`IbprError::BadColor`],
+    /// [`IbprError::LengthMismatch`], [`IbprError::BadScan`], [`IbprError::TooManyPoints`]; [`IbprError::BadOption`] if a channel of
+    /// `base` is not from 0 to [`Scan::BRIGHTEST`].
     pub fn new(scans: &[Scan<'_>], base: Vec3) -> Result<Self, IbprError> {
+        check_base(base)?;
         let points: usize = scans.iter().map(|s| s.positions.len()).sum();
         if u32::try_from(points).is_err() {
             return Err(IbprError::TooManyPoints { points });
@@ -72,12 +75,12 @@ impl Cloud {
         let ordered = in_order(scans, &lattice);
         let spacings: Vec<f64> = ordered.iter().map(|o| spacing::of_scan(&scans[o.scan], o)).collect();
         let spacing = spacing::typical(&ordered, &spacings);
-        let coloured = scans.iter().any(|s| s.colours.is_some());
+        let colored = scans.iter().any(|s| s.colors.is_some());
         let mut cloud = Self {
             blocks: vec![],
             unit: if lattice.extent > 0.0 { lattice.extent.log2().floor().exp2() } else { 1.0 },
             offsets: [0; 3].map(|_| Vec::with_capacity(points)),
-            colours: Vec::with_capacity(if coloured { points } else { 0 }),
+            colors: Vec::with_capacity(if colored { points } else { 0 }),
             low: lattice.low,
             high: lattice.high,
             spacing,
@@ -87,9 +90,9 @@ impl Cloud {
             let scan = &scans[o.scan];
             for indices in o.points.chunks(BLOCK) {
                 cloud.add_block(scan, indices);
-                if coloured {
-                    let colour = |&i: &u32| scan.colours.map_or(base.to_array(), |c| c[i as usize]);
-                    cloud.colours.extend(indices.iter().map(colour));
+                if colored {
+                    let color = |&i: &u32| scan.colors.map_or(base.to_array(), |c| c[i as usize]);
+                    cloud.colors.extend(indices.iter().map(color));
                 }
             }
         }
@@ -143,10 +146,10 @@ impl Cloud {
         })
     }
 
-    /// Whether any scan brought colours.
+    /// Whether any scan brought colors.
     #[must_use]
-    pub fn has_colours(&self) -> bool {
-        !self.colours.is_empty()
+    pub fn has_colors(&self) -> bool {
+        !self.colors.is_empty()
     }
 
     /// Lower and upper corner of the box around all points.

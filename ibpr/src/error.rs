@@ -1,5 +1,3 @@
-use pointillist_view::ViewError;
-
 /// What can be wrong with the input of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -17,9 +15,9 @@ pub enum IbprError {
         /// Its coordinates.
         value: [f64; 3],
     },
-    /// A colour is NaN, negative, or above [`Scan::BRIGHTEST`](crate::Scan::BRIGHTEST).
-    #[error("the colour of point {index} of scan {scan} is not from 0 to 1e28: {value:?}")]
-    BadColour {
+    /// A color is NaN, negative, or above [`Scan::BRIGHTEST`](crate::Scan::BRIGHTEST).
+    #[error("the color of point {index} of scan {scan} is not from 0 to 1e28: {value:?}")]
+    BadColor {
         /// Position of the scan in the slice.
         scan: usize,
         /// Position of the point in its scan.
@@ -27,13 +25,13 @@ pub enum IbprError {
         /// Linear RGB.
         value: [f32; 3],
     },
-    /// There must be a colour for each point, or none.
-    #[error("scan {scan} has {colours} colours for {points} points")]
+    /// There must be a color for each point, or none.
+    #[error("scan {scan} has {colors} colors for {points} points")]
     LengthMismatch {
         /// Position of the scan in the slice.
         scan: usize,
-        /// How many colours were given.
-        colours: usize,
+        /// How many colors were given.
+        colors: usize,
         /// How many points there are.
         points: usize,
     },
@@ -51,9 +49,6 @@ pub enum IbprError {
         /// How many there are.
         points: usize,
     },
-    /// The camera was refused. No function of this crate returns it: it lets callers use `?` on [`View`](crate::View) beside the rest.
-    #[error(transparent)]
-    View(#[from] ViewError),
     /// A side of the picture is above [`Renderer::LARGEST_SIDE`](crate::Renderer::LARGEST_SIDE).
     #[error("a picture of {width}×{height} pixels cannot be drawn: each side must be at most 16384")]
     TooLarge {

@@ -13,13 +13,13 @@ const GAIN: f32 = 300.0;
 /// More than any two depths differ by that are not 0: without it, a depth of 0 would give 0 · ∞.
 const MOST: f32 = 300.0;
 
-/// Darkens the colours of a finished frame.
+/// Darkens the colors of a finished frame.
 pub(crate) fn apply(frame: &mut Frame, dome: &EyeDome) {
     let (width, height) = (frame.width, frame.height);
     let depth = &frame.depth;
     let r = dome.radius as isize;
     let around = [(r, 0), (r, r), (0, r), (-r, r), (-r, 0), (-r, -r), (0, -r), (r, -r)];
-    chunks(&mut frame.colour, width).enumerate().for_each(|(y, row)| {
+    chunks(&mut frame.color, width).enumerate().for_each(|(y, row)| {
         for (x, pixel) in row.iter_mut().enumerate() {
             let here = depth[y * width + x];
             if here == f32::INFINITY {

@@ -5,8 +5,8 @@
 //! belong to another surface) the face reaches half a buffer pixel further: the averaged points lie
 //! inside the outline, not on it.
 
+use crate::buffer::STEP;
 use crate::buffer::{Buffer, Corner, DepthScale, SUBPIXEL};
-use crate::normals::STEP;
 use crate::raster::{Paint, Pixels, Strip, Vertex};
 
 /// How faces are made.
@@ -23,7 +23,7 @@ pub(crate) struct FaceRules {
     pub(crate) perspective: bool,
     /// Picture pixels per buffer pixel.
     pub(crate) pixel: f32,
-    /// Whether colour and count are drawn too.
+    /// Whether color and count are drawn too.
     pub(crate) painted: bool,
     /// Second pass: no face where points are dense or the surface is nearly edge-on.
     pub(crate) sparse_only: bool,
@@ -190,7 +190,7 @@ fn vertex(corner: &Corner, inside: f32) -> Vertex {
 }
 
 fn paint(buffer: &Buffer, at: usize) -> Paint {
-    let [r, g, b] = buffer.colour[at];
+    let [r, g, b] = buffer.color[at];
     [r, g, b, buffer.count[at]]
 }
 

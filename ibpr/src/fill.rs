@@ -32,7 +32,7 @@ struct Fill {
     x: f32,
     y: f32,
     q: f32,
-    colour: [f32; 3],
+    color: [f32; 3],
 }
 
 /// Working memory.
@@ -93,7 +93,7 @@ fn fill_bands(
 fn apply(buffer: &mut Buffer, fill: &Fill) {
     let i = fill.index;
     (buffer.x[i], buffer.y[i], buffer.q[i]) = (fill.x, fill.y, fill.q);
-    (buffer.count[i], buffer.colour[i]) = (FILLED, fill.colour);
+    (buffer.count[i], buffer.color[i]) = (FILLED, fill.color);
 }
 
 /// The mean of the pairs of opposite neighbours of the surface that is nearest to the eye, for a pixel
@@ -127,19 +127,19 @@ fn between(buffer: &Buffer, index: usize, scale: &DepthScale) -> Option<Fill> {
         return None;
     }
     let together = nearest + scale.bent_step(nearest, STEP);
-    let mut fill = Fill { index, x: 0.0, y: 0.0, q: 0.0, colour: [0.0; 3] };
+    let mut fill = Fill { index, x: 0.0, y: 0.0, q: 0.0, color: [0.0; 3] };
     let mut n = 0.0;
     for (a, b, q) in pairs.into_iter().filter(|p| p.2 < together) {
         n += 2.0;
         fill.x += buffer.x[a] + buffer.x[b];
         fill.y += buffer.y[a] + buffer.y[b];
         fill.q += 2.0 * q;
-        for (sum, (c, d)) in fill.colour.iter_mut().zip(buffer.colour[a].iter().zip(buffer.colour[b])) {
+        for (sum, (c, d)) in fill.color.iter_mut().zip(buffer.color[a].iter().zip(buffer.color[b])) {
             *sum += c + d;
         }
     }
     (fill.x, fill.y, fill.q) = (fill.x / n, fill.y / n, fill.q / n);
-    fill.colour = fill.colour.map(|c| c / n);
+    fill.color = fill.color.map(|c| c / n);
     Some(fill)
 }
 
@@ -161,7 +161,7 @@ fn pull(fine: &Buffer, coarse: &mut Buffer, scale: &DepthScale) {
                 coarse.x[to] += 0.5 * fine.x[c];
                 coarse.y[to] += 0.5 * fine.y[c];
                 coarse.q[to] += fine.q[c];
-                for (sum, v) in coarse.colour[to].iter_mut().zip(fine.colour[c]) {
+                for (sum, v) in coarse.color[to].iter_mut().zip(fine.color[c]) {
                     *sum += v;
                 }
             }
@@ -170,7 +170,7 @@ fn pull(fine: &Buffer, coarse: &mut Buffer, scale: &DepthScale) {
                 for array in [&mut coarse.x, &mut coarse.y, &mut coarse.q] {
                     array[to] *= inverse;
                 }
-                coarse.colour[to] = coarse.colour[to].map(|v| v * inverse);
+                coarse.color[to] = coarse.color[to].map(|v| v * inverse);
             }
         }
     }
@@ -207,7 +207,7 @@ fn below(coarse: &Buffer, fine: &Buffer, index: usize, scale: &DepthScale) -> Op
     let (x, y) = (column as f32 + 0.5, row as f32 + 0.5);
     let (dx, dy) = (0.5 * x - coarse.x[above], 0.5 * y - coarse.y[above]);
     let q = surface + dx * slope(1, &coarse.x) + dy * slope(s, &coarse.y);
-    Some(Fill { index, x, y, q, colour: coarse.colour[above] })
+    Some(Fill { index, x, y, q, color: coarse.color[above] })
 }
 
 /// Surfaces that opposite neighbours share and the pixel between them has not.
@@ -233,13 +233,13 @@ fn layers_between(buffer: &Buffer, index: usize, scale: &DepthScale, fills: &mut
             let there = layers(index).map(|i| buffer.q[i]).chain(fills[first..].iter().map(|f| f.q));
             let room = own + fills.len() - first < buffer.layers;
             if room && there.into_iter().all(|other| (other - q).abs() >= step) {
-                let (c, d) = (buffer.colour[a], buffer.colour[b]);
+                let (c, d) = (buffer.color[a], buffer.color[b]);
                 fills.push(Fill {
                     index: index + (own + fills.len() - first) * buffer.stride,
                     x: mean(&buffer.x),
                     y: mean(&buffer.y),
                     q,
-                    colour: [0, 1, 2].map(|k| 0.5 * (c[k] + d[k])),
+                    color: [0, 1, 2].map(|k| 0.5 * (c[k] + d[k])),
                 });
             }
         }

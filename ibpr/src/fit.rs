@@ -1,7 +1,6 @@
 //! Curved surfaces fitted to windows of averaged points, several pixels at a time.
 
-use crate::buffer::{Buffer, DepthScale};
-use crate::normals::STEP;
+use crate::buffer::{Buffer, DepthScale, STEP};
 use pulp::NullaryFnOnce;
 
 /// Pixels that are fitted together.

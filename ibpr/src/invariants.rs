@@ -6,7 +6,7 @@
 use crate::{Cloud, Frame, IbprError, Options, Renderer, Scan, View};
 use glam::{DVec2, DVec3, Vec3};
 
-/// Rounding allowed to opacities, to lengths of unit normals, and to a colour that all points share.
+/// Rounding allowed to opacities, to lengths of unit normals, and to a color that all points share.
 pub const TOLERANCE: f32 = 1e-4;
 
 /// A scan that owns its points.
@@ -15,7 +15,7 @@ pub struct OwnedScan {
     /// World space.
     pub positions: Vec<DVec3>,
     /// Linear RGB.
-    pub colours: Option<Vec<[f32; 3]>>,
+    pub colors: Option<Vec<[f32; 3]>>,
     /// See [`Scan::with_spacing`].
     pub spacing: Option<f64>,
     /// See [`Scan::with_scanner`].
@@ -53,7 +53,7 @@ impl OwnedScan {
         };
         let places = (-steps..=steps).flat_map(|i| (-steps..=steps).map(move |j| (i, j)));
         let positions = places.filter_map(|(i, j)| at(i, j)).collect();
-        Self { positions, spacing: Some(spacing), towards_scanner: Some(towards), colours: None }
+        Self { positions, spacing: Some(spacing), towards_scanner: Some(towards), colors: None }
     }
 
     /// Each point moved along `direction` by up to its length, forth or back.
@@ -68,8 +68,8 @@ impl OwnedScan {
     #[must_use]
     pub fn as_scan(&self) -> Scan<'_> {
         let mut scan = Scan::new(&self.positions);
-        if let Some(colours) = &self.colours {
-            scan = scan.with_colours(colours);
+        if let Some(colors) = &self.colors {
+            scan = scan.with_colors(colors);
         }
         if let Some(spacing) = self.spacing {
             scan = scan.with_spacing(spacing);
@@ -118,10 +118,10 @@ pub fn shuffled(scans: &[OwnedScan], seed: u64) -> Vec<OwnedScan> {
     let scan_order = order(scans.len());
     let mut scan = |s: &OwnedScan| {
         let points = order(s.positions.len());
-        let complete = s.colours.as_ref().filter(|c| c.len() == s.positions.len());
+        let complete = s.colors.as_ref().filter(|c| c.len() == s.positions.len());
         OwnedScan {
             positions: points.iter().map(|i| s.positions[*i]).collect(),
-            colours: complete.map(|c| points.iter().map(|i| c[*i]).collect()).or(s.colours.clone()),
+            colors: complete.map(|c| points.iter().map(|i| c[*i]).collect()).or(s.colors.clone()),
             ..*s
         }
     };
@@ -152,8 +152,8 @@ pub fn frames_are_identical(a: &Frame, b: &Frame) -> Result<(), String> {
     let place = |i: usize| format!("pixel ({}, {})", i % a.width, i / a.width);
     let differ = |p: &[f32], q: &[f32]| p.iter().zip(q).any(|(x, y)| x.to_bits() != y.to_bits());
     for i in 0..a.width * a.height {
-        let (p, q) = (&a.colour[i], &b.colour[i]);
-        check(!differ(p, q), || format!("{}: colours {p:?} and {q:?}", place(i)))?;
+        let (p, q) = (&a.color[i], &b.color[i]);
+        check(!differ(p, q), || format!("{}: colors {p:?} and {q:?}", place(i)))?;
         let (p, q) = (a.depth[i], b.depth[i]);
         check(!differ(&[p], &[q]), || format!("{}: depths {p} and {q}", place(i)))?;
     }
@@ -163,20 +163,29 @@ pub fn frames_are_identical(a: &Frame, b: &Frame) -> Result<(), String> {
     check(!differ(&a.count, &b.count) && a.count.len() == b.count.len(), || "counts differ".to_owned())
 }
 
+/// Two frames are the same, but all depths of the second are `k` times as large.
+///
+/// # Errors
+/// The first pixel that differs.
+pub fn frames_are_identical_but_for_size(a: &Frame, b: &Frame, k: f64) -> Result<(), String> {
+    let depth = a.depth.iter().map(|d| (f64::from(*d) * k) as f32).collect();
+    frames_are_identical(&Frame { depth, ..a.clone() }, b)
+}
+
 /// No value is NaN, opacities are shares, depths are in front of the eye, normals are unit vectors.
 ///
 /// # Errors
 /// The first pixel that is otherwise.
 pub fn frame_is_sound(frame: &Frame) -> Result<(), String> {
-    // A mean of colours beside black may round to a little below it.
-    let brightest = frame.colour.iter().flatten().fold(0.0f32, |m, v| m.max(*v));
-    for i in 0..frame.width * frame.height {
-        let (c, depth) = (frame.colour[i], frame.depth[i]);
-        let place = || format!("pixel ({}, {}): {c:?}, depth {depth}", i % frame.width, i / frame.width);
+    // A mean of colors beside black may round to a little below it.
+    let brightest = frame.color().iter().flatten().fold(0.0f32, |m, v| m.max(*v));
+    for i in 0..frame.width() * frame.height() {
+        let (c, depth) = (frame.color()[i], frame.depth()[i]);
+        let place = || format!("pixel ({}, {}): {c:?}, depth {depth}", i % frame.width(), i / frame.width());
         check(c.iter().all(|v| *v >= -TOLERANCE * brightest && v.is_finite()), place)?;
         check(c[3] <= 1.0 + TOLERANCE, place)?;
         check(depth >= 0.0, place)?;
-        if let (Some(n), Some(count)) = (frame.normal.get(i), frame.count.get(i)) {
+        if let (Some(n), Some(count)) = (frame.normal().get(i), frame.count().get(i)) {
             let place = || format!("{}, normal {n:?}, count {count}", place());
             let length = Vec3::from_array(*n).length();
             // A surface so far away that f32 has no number for its depth still has a normal.
@@ -194,7 +203,7 @@ pub fn frame_is_sound(frame: &Frame) -> Result<(), String> {
 /// As [`frame_is_sound`].
 pub fn frames_are_sound(scans: &[OwnedScan], view: &View, options: &Options) -> Result<(), String> {
     let Some(frame) = frame(scans, view, options) else { return Ok(()) };
-    let uncovered = frame.colour.iter().zip(&frame.depth).any(|(c, d)| c[3] < 0.5 && *d < f32::INFINITY);
+    let uncovered = frame.color().iter().zip(frame.depth()).any(|(c, d)| c[3] < 0.5 && *d < f32::INFINITY);
     let opaque = options.translucency.is_none();
     check(!(opaque && uncovered), || "depth where less than half a pixel is covered".to_owned())?;
     frame_is_sound(&frame)
@@ -241,42 +250,44 @@ pub fn use_before_does_not_matter(
 /// The first pixel with something in it.
 pub fn far_pixels_stay_empty(scans: &[OwnedScan], view: &View, options: &Options) -> Result<(), String> {
     let Some(frame) = frame(scans, view, options) else { return Ok(()) };
-    let reach = frame.counts.scale * (2.0 + f64::from(1u32 << options.fill)) + 1.0;
-    let (width, height) = (frame.width as f64, frame.height as f64);
-    let mut near = vec![false; frame.width * frame.height];
+    let reach = frame.counts().scale * (2.0 + f64::from(1u32 << options.fill)) + 1.0;
+    let (width, height) = (frame.width() as f64, frame.height() as f64);
+    let mut near = vec![false; frame.width() * frame.height()];
     let before_the_eye = scans.iter().flat_map(|s| &s.positions).filter_map(|p| view.project(*p));
     for DVec2 { x, y } in before_the_eye.filter(|seen| seen.depth > 0.0).map(|seen| seen.pixel) {
         let place = |v: f64, end: f64| v.clamp(0.0, end) as usize;
         let span = |v: f64, end: f64| place(v - reach, end)..place(v + reach + 1.0, end);
         for row in span(y, height) {
-            near[row * frame.width..][span(x, width)].fill(true);
+            near[row * frame.width()..][span(x, width)].fill(true);
         }
     }
-    let seen = |i: &usize| frame.colour[*i] != [0.0; 4] || frame.depth[*i] < f32::INFINITY;
+    let seen = |i: &usize| frame.color()[*i] != [0.0; 4] || frame.depth()[*i] < f32::INFINITY;
     let wrong = (0..near.len()).find(|i| !near[*i] && seen(i));
     wrong.map_or(Ok(()), |i| {
-        Err(format!("pixel ({}, {}) is not empty, reach {reach}", i % frame.width, i / frame.width))
+        Err(format!("pixel ({}, {}) is not empty, reach {reach}", i % frame.width(), i / frame.width()))
     })
 }
 
-/// Points of one colour, lit from everywhere, show that colour wherever anything is seen.
+/// Points of one color, lit from everywhere, show that color wherever anything is seen.
 ///
 /// # Errors
-/// The first pixel of another colour.
-pub fn one_colour_stays_one_colour(
+/// The first pixel of another color.
+pub fn one_color_stays_one_color(
     scans: &[OwnedScan],
     view: &View,
     options: &Options,
-    colour: [f32; 3],
+    color: [f32; 3],
 ) -> Result<(), String> {
-    let paint = |s: &OwnedScan| OwnedScan { colours: Some(vec![colour; s.positions.len()]), ..s.clone() };
+    let paint = |s: &OwnedScan| OwnedScan { colors: Some(vec![color; s.positions.len()]), ..s.clone() };
     let painted: Vec<OwnedScan> = scans.iter().map(paint).collect();
     let options = Options { ambient: 1.0, eye_dome: None, ..*options };
     let Some(frame) = frame(&painted, view, &options) else { return Ok(()) };
-    for (i, c) in frame.colour.iter().enumerate() {
-        let most = colour.iter().fold(1.0f32, |m, c| m.max(*c));
-        let same = c[..3].iter().zip(colour).all(|(v, w)| (v - w * c[3]).abs() <= TOLERANCE * most);
-        check(same, || format!("pixel ({}, {}): {c:?}, not {colour:?}", i % frame.width, i / frame.width))?;
+    for (i, c) in frame.color().iter().enumerate() {
+        let most = color.iter().fold(1.0f32, |m, c| m.max(*c));
+        let same = c[..3].iter().zip(color).all(|(v, w)| (v - w * c[3]).abs() <= TOLERANCE * most);
+        check(same, || {
+            format!("pixel ({}, {}): {c:?}, not {color:?}", i % frame.width(), i / frame.width())
+        })?;
     }
     Ok(())
 }

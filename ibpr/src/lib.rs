@@ -10,12 +10,12 @@
 //! assert_eq!(cloud.spacing(), 1.0);
 //! let (eye, target) = (dvec3(49.5, 49.5, 200.0), dvec3(49.5, 49.5, 0.0));
 //! let view = View::look_at(eye, target, DVec3::Y, Projection::Perspective { fov_y_rad: 0.4 }, 64, 64)?;
-//! let mut frame = Frame::default();
+//! let mut frame = Frame::new();
 //! Renderer::new().draw(&cloud, &view, &Options::default(), &mut frame)?;
 //! let middle = 32 * 64 + 32;
-//! assert!((frame.depth[middle] - 200.0).abs() < 1e-3);
-//! assert_eq!(frame.colour[middle][3], 1.0);
-//! # Ok::<(), pointillist_ibpr::IbprError>(())
+//! assert!((frame.depth()[middle] - 200.0).abs() < 1e-3);
+//! assert_eq!(frame.color()[middle][3], 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # How a frame is made
@@ -78,3 +78,6 @@ pub use options::{Culling, EyeDome, Light, Normals, Options, Passes, Scale, Tran
 pub use pointillist_view::{PixelRect, Projected, Projection, Ray, View, ViewError};
 pub use render::Renderer;
 pub use scan::Scan;
+
+/// The version of `glam` that this crate's functions take and return.
+pub use glam;

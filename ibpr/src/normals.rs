@@ -1,6 +1,6 @@
 //! Normals of the averaged points, and the corners of faces.
 
-use crate::buffer::{Buffer, Corner, DepthScale, PAD, SUBPIXEL};
+use crate::buffer::{Buffer, Corner, DepthScale, PAD, STEP, SUBPIXEL};
 use crate::buffer_map::BufferMap;
 use crate::fit::{Chunk, LANES};
 use crate::noise::{Histogram, radius_for_noise};
@@ -8,9 +8,6 @@ use crate::options::Normals;
 use crate::parallel::*;
 use glam::Vec3;
 use pulp::Arch;
-
-/// Depths of neighbouring pixels of one surface differ by less than this many units (the paper's 5).
-pub(crate) const STEP: f32 = 5.0;
 
 /// Rows per task.
 const BAND_ROWS: usize = 16;

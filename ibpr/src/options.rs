@@ -66,6 +66,7 @@ pub enum Passes {
 
 /// Surfaces one sees through.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Translucency {
     /// Opacity of each surface, 0 to 1.
     pub alpha: f32,
@@ -84,6 +85,20 @@ impl Translucency {
     pub const fn new(alpha: f32) -> Self {
         Self { alpha, layers: 5, threshold: 10.0 }
     }
+
+    /// Sets the number of surfaces kept per pixel, 1 to [`Translucency::MOST_LAYERS`].
+    #[must_use]
+    pub const fn with_layers(mut self, layers: usize) -> Self {
+        self.layers = layers;
+        self
+    }
+
+    /// Sets the depth within which points belong to one surface, spacings; above 0.
+    #[must_use]
+    pub const fn with_threshold(mut self, threshold: f32) -> Self {
+        self.threshold = threshold;
+        self
+    }
 }
 
 /// Where light comes from.
@@ -97,11 +112,20 @@ pub enum Light {
 
 /// Depth shading that needs no normals: pixels behind their surroundings darken (Boucheny 2009).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct EyeDome {
     /// How dark a step gets; 1 is usual.
     pub strength: f32,
-    /// Distance of the eight neighbours that are looked at, in pixels.
+    /// Distance of the eight neighbours that are looked at, 1 to 64 pixels.
     pub radius: u32,
+}
+
+impl EyeDome {
+    /// Darkens by `strength` (at least 0), against neighbours `radius` pixels away (1 to 64).
+    #[must_use]
+    pub const fn new(strength: f32, radius: u32) -> Self {
+        Self { strength, radius }
+    }
 }
 
 /// How a frame is drawn. The defaults are what measured best (`studies -- ibpr`).
@@ -131,36 +155,137 @@ pub struct Options {
     pub light: Light,
     /// Share of the light that comes from everywhere, 0 to 1. Default: 0.1.
     pub ambient: f32,
-    /// Colour of points that have none, linear RGB, each channel from 0 to [`Scan::BRIGHTEST`]. Default: 0.8.
+    /// Color of points that have none, linear RGB, each channel from 0 to [`Scan::BRIGHTEST`]. Default: 0.8.
     pub base: Vec3,
     /// Default: none.
     pub eye_dome: Option<EyeDome>,
-    /// Whether the frame gets normals and counts besides colour and depth. Default: false.
+    /// Whether the frame gets normals and counts besides color and depth. Default: false.
     pub surface_layers: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self {
-            scale: Scale::Auto(Self::AUTO_FACTOR),
-            gamma: 2.0,
-            weighting: Weighting::Even,
-            normals: Normals::Plane,
-            outline: Self::OUTLINE,
-            fill: 2,
-            passes: Passes::One,
-            translucency: None,
-            culling: Culling::Blocks,
-            light: Light::Eye,
-            ambient: 0.1,
-            base: Vec3::splat(0.8),
-            eye_dome: None,
-            surface_layers: false,
-        }
+        Self::DEFAULT
     }
 }
 
 impl Options {
+    /// The defaults, as a constant.
+    pub const DEFAULT: Self = Self {
+        scale: Scale::Auto(Self::AUTO_FACTOR),
+        gamma: 2.0,
+        weighting: Weighting::Even,
+        normals: Normals::Plane,
+        outline: Self::OUTLINE,
+        fill: 2,
+        passes: Passes::One,
+        translucency: None,
+        culling: Culling::Blocks,
+        light: Light::Eye,
+        ambient: 0.1,
+        base: Vec3::splat(0.8),
+        eye_dome: None,
+        surface_layers: false,
+    };
+
+    /// Sets the size of buffer pixels.
+    #[must_use]
+    pub const fn with_scale(mut self, scale: Scale) -> Self {
+        self.scale = scale;
+        self
+    }
+
+    /// Sets the thickness of a surface, spacings; above 0.
+    #[must_use]
+    pub const fn with_gamma(mut self, gamma: f32) -> Self {
+        self.gamma = gamma;
+        self
+    }
+
+    /// Sets how much each point of a surface counts.
+    #[must_use]
+    pub const fn with_weighting(mut self, weighting: Weighting) -> Self {
+        self.weighting = weighting;
+        self
+    }
+
+    /// Sets where normals come from.
+    #[must_use]
+    pub const fn with_normals(mut self, normals: Normals) -> Self {
+        self.normals = normals;
+        self
+    }
+
+    /// Sets how far faces reach beyond the outermost means, buffer pixels; 0 to 1.
+    #[must_use]
+    pub const fn with_outline(mut self, outline: f32) -> Self {
+        self.outline = outline;
+        self
+    }
+
+    /// Sets the levels of pull-push, 0 to [`Options::MOST_FILL`].
+    #[must_use]
+    pub const fn with_fill(mut self, fill: u32) -> Self {
+        self.fill = fill;
+        self
+    }
+
+    /// Sets the number of buffers.
+    #[must_use]
+    pub const fn with_passes(mut self, passes: Passes) -> Self {
+        self.passes = passes;
+        self
+    }
+
+    /// Sets how surfaces let light through; `None` for opaque ones.
+    #[must_use]
+    pub const fn with_translucency(mut self, translucency: Option<Translucency>) -> Self {
+        self.translucency = translucency;
+        self
+    }
+
+    /// Sets what is skipped because it faces away.
+    #[must_use]
+    pub const fn with_culling(mut self, culling: Culling) -> Self {
+        self.culling = culling;
+        self
+    }
+
+    /// Sets where light comes from.
+    #[must_use]
+    pub const fn with_light(mut self, light: Light) -> Self {
+        self.light = light;
+        self
+    }
+
+    /// Sets the share of the light that comes from everywhere, 0 to 1.
+    #[must_use]
+    pub const fn with_ambient(mut self, ambient: f32) -> Self {
+        self.ambient = ambient;
+        self
+    }
+
+    /// Sets the color of points that have none, linear RGB.
+    #[must_use]
+    pub const fn with_base(mut self, base: Vec3) -> Self {
+        self.base = base;
+        self
+    }
+
+    /// Sets the shading by depth; `None` for none.
+    #[must_use]
+    pub const fn with_eye_dome(mut self, eye_dome: Option<EyeDome>) -> Self {
+        self.eye_dome = eye_dome;
+        self
+    }
+
+    /// Sets whether the frame gets normals and counts.
+    #[must_use]
+    pub const fn with_surface_layers(mut self, surface_layers: bool) -> Self {
+        self.surface_layers = surface_layers;
+        self
+    }
+
     /// Factor of [`Scale::Auto`] by default, found by experiment (`studies -- ibpr`).
     pub const AUTO_FACTOR: f32 = 1.2;
 
@@ -201,14 +326,22 @@ impl Options {
             )?;
             check("radius", e.radius as f32, (1..=64).contains(&e.radius), "it must be 1 to 64")?;
         }
-        for c in self.base.to_array() {
-            check("base", c, (0.0..=Scan::BRIGHTEST).contains(&c), "it must be 0 to 1e28")?;
-        }
+        check_base(self.base)?;
         if let Light::Towards(d) = self.light
             && !(d.is_finite() && d.length_squared() > 0.0)
         {
             check("light", d.x as f32, false, "the direction must be finite and not zero")?;
         }
         Ok(())
+    }
+}
+
+/// Refuses a color for points without one that is not a color.
+pub(crate) fn check_base(base: Vec3) -> Result<(), IbprError> {
+    match base.to_array().into_iter().find(|c| !(0.0..=Scan::BRIGHTEST).contains(c)) {
+        Some(c) => {
+            Err(IbprError::BadOption { name: "base", value: f64::from(c), range: "it must be 0 to 1e28" })
+        }
+        None => Ok(()),
     }
 }

@@ -47,7 +47,7 @@ fn spread(x: u64) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-/// One scan's points in Morton order; equal codes by coordinates, then by colour.
+/// One scan's points in Morton order; equal codes by coordinates, then by color.
 pub(crate) struct Ordered {
     pub(crate) scan: usize,
     pub(crate) codes: Vec<u64>,
@@ -78,11 +78,11 @@ type PointOf<'s, 'a> = (&'s Scan<'a>, u32);
 
 fn compare_points(a: PointOf<'_, '_>, b: PointOf<'_, '_>) -> Ordering {
     let position = |(s, i): PointOf<'_, '_>| s.positions[i as usize].to_array();
-    let colour = |(s, i): PointOf<'_, '_>| s.colours.map_or([-1.0; 3], |c| c[i as usize]);
+    let color = |(s, i): PointOf<'_, '_>| s.colors.map_or([-1.0; 3], |c| c[i as usize]);
     let (p, q) = (position(a), position(b));
     let by_position = p.iter().zip(&q).map(|(x, y)| x.total_cmp(y)).find(|o| o.is_ne());
     by_position.unwrap_or_else(|| {
-        let (c, d) = (colour(a), colour(b));
+        let (c, d) = (color(a), color(b));
         c.iter().zip(&d).map(|(x, y)| x.total_cmp(y)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
     })
 }

@@ -18,7 +18,7 @@ pub(crate) struct Nearest {
     pub(crate) rim: Vec<[f32; 4]>,
     /// Covered share of rim pixels; 0 where there is no rim.
     pub(crate) rim_cover: Vec<f32>,
-    /// Colours of the two, if asked for.
+    /// Colors of the two, if asked for.
     pub(crate) solid_paint: Vec<Paint>,
     pub(crate) rim_paint: Vec<Paint>,
 }

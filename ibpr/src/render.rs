@@ -1,7 +1,7 @@
 //! A frame, from the cloud to the picture.
 
 use crate::accumulate::{self, BandScratch, BlockView, Rules};
-use crate::buffer::{Buffer, DepthScale};
+use crate::buffer::{Buffer, DepthScale, STEP};
 use crate::buffer_map::{BufferMap, depth_of};
 use crate::cloud::Cloud;
 use crate::cull;
@@ -134,7 +134,7 @@ impl Renderer {
             passes: &self.passes,
             rules: [0, 1].map(|i| maps[i].as_ref().map(|map| face_rules(cloud, map, options, i == 1))),
             shader: Shader::new(map, options),
-            coloured: cloud.has_colours(),
+            colored: cloud.has_colors(),
             width: frame.width,
             alpha: options.translucency.map(|t| t.alpha),
         };
@@ -143,16 +143,16 @@ impl Renderer {
         let draw = |i: usize, out: &mut RowsOut<'_>| {
             self.strips.with(|scratch| drawing.strip(scratch, i * rows, out));
         };
-        let base = chunks(&mut frame.colour, n).zip(chunks(&mut frame.depth, n));
+        let base = chunks(&mut frame.color, n).zip(chunks(&mut frame.depth, n));
         if options.surface_layers {
             base.zip(chunks(&mut frame.normal, n)).zip(chunks(&mut frame.count, n)).enumerate().for_each(
-                |(i, (((colour, depth), normal), count))| {
-                    draw(i, &mut RowsOut { colour, depth, surface: Some((normal, count)) });
+                |(i, (((color, depth), normal), count))| {
+                    draw(i, &mut RowsOut { color, depth, surface: Some((normal, count)) });
                 },
             );
         } else {
-            base.enumerate().for_each(|(i, (colour, depth))| {
-                draw(i, &mut RowsOut { colour, depth, surface: None });
+            base.enumerate().for_each(|(i, (color, depth))| {
+                draw(i, &mut RowsOut { color, depth, surface: None });
             });
         }
     }
@@ -170,7 +170,7 @@ struct Drawing<'a> {
     passes: &'a [Pass; 2],
     rules: [Option<FaceRules>; 2],
     shader: Shader,
-    coloured: bool,
+    colored: bool,
     width: usize,
     /// Opacity of translucent surfaces.
     alpha: Option<f32>,
@@ -178,30 +178,30 @@ struct Drawing<'a> {
 
 impl Drawing<'_> {
     fn strip(&self, scratch: &mut StripScratch, first_row: usize, out: &mut RowsOut<'_>) {
-        let painted = self.coloured || out.surface.is_some();
+        let painted = self.colored || out.surface.is_some();
         let n = out.depth.len();
         if let Some(alpha) = self.alpha {
             let [first, second] = &mut scratch.stacks;
             self.draw_passes([&mut *first, &mut *second], first_row, n, |s| s.begin(n));
             if let Some(rules) = &self.rules[1] {
-                first.pixels.draw_over(&second.pixels, &rules.scale, normals::STEP);
+                first.pixels.draw_over(&second.pixels, &rules.scale, STEP);
             }
             let scale = self.rules[0].as_ref().map(|r| r.scale);
             let together = |q: f32| scale.map_or(0.0, |s| s.bent_step(q, 1.0));
             self.finish(first_row, out, |i, place| {
                 let fragments = first.pixels.of(i);
                 (!fragments.is_empty())
-                    .then(|| self.shader.through(fragments, place, alpha, self.coloured, together))
+                    .then(|| self.shader.through(fragments, place, alpha, self.colored, together))
             });
         } else {
             let [first, second] = &mut scratch.nearest;
             self.draw_passes([&mut *first, &mut *second], first_row, n, |s| s.begin(n, painted));
             if let Some(rules) = &self.rules[1] {
-                first.pixels.draw_over(&second.pixels, &rules.scale, normals::STEP);
+                first.pixels.draw_over(&second.pixels, &rules.scale, STEP);
             }
             let pixels = &first.pixels;
             self.finish(first_row, out, |i, place| {
-                pixels.is_covered(i).then(|| self.shader.nearest(pixels, i, place, self.coloured))
+                pixels.is_covered(i).then(|| self.shader.nearest(pixels, i, place, self.colored))
             });
         }
     }
@@ -288,7 +288,7 @@ fn face_rules(cloud: &Cloud, map: &BufferMap, options: &Options, second: bool) -
         centre: (x as f32, y as f32),
         perspective: map.is_perspective(),
         pixel: map.scale as f32,
-        painted: cloud.has_colours() || options.surface_layers,
+        painted: cloud.has_colors() || options.surface_layers,
         sparse_only: second,
     }
 }

@@ -7,25 +7,25 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub struct Scan<'a> {
     pub(crate) positions: &'a [DVec3],
-    pub(crate) colours: Option<&'a [[f32; 3]]>,
+    pub(crate) colors: Option<&'a [[f32; 3]]>,
     pub(crate) spacing: Option<f64>,
     pub(crate) towards_scanner: Option<DVec3>,
 }
 
 impl<'a> Scan<'a> {
-    /// Largest channel of a colour: sums over the 2³² points that a pixel may have are still numbers in single precision.
+    /// Largest channel of a color: sums over the 2³² points that a pixel may have are still numbers in single precision.
     pub const BRIGHTEST: f32 = 1e28;
 
-    /// Points without colour, whose spacing is estimated and whose scanner is unknown.
+    /// Points without color, whose spacing is estimated and whose scanner is unknown.
     #[must_use]
     pub fn new(positions: &'a [DVec3]) -> Self {
-        Self { positions, colours: None, spacing: None, towards_scanner: None }
+        Self { positions, colors: None, spacing: None, towards_scanner: None }
     }
 
     /// Linear RGB of each point.
     #[must_use]
-    pub fn with_colours(mut self, colours: &'a [[f32; 3]]) -> Self {
-        self.colours = Some(colours);
+    pub fn with_colors(mut self, colors: &'a [[f32; 3]]) -> Self {
+        self.colors = Some(colors);
         self
     }
 
@@ -48,14 +48,14 @@ impl<'a> Scan<'a> {
         if let Some(index) = self.positions.iter().position(|p| !p.is_finite()) {
             return Err(IbprError::PointNotFinite { scan, index, value: self.positions[index].to_array() });
         }
-        if let Some(colours) = self.colours {
-            if colours.len() != self.positions.len() {
-                let (colours, points) = (colours.len(), self.positions.len());
-                return Err(IbprError::LengthMismatch { scan, colours, points });
+        if let Some(colors) = self.colors {
+            if colors.len() != self.positions.len() {
+                let (colors, points) = (colors.len(), self.positions.len());
+                return Err(IbprError::LengthMismatch { scan, colors, points });
             }
             let good = |c: &[f32; 3]| c.iter().all(|v| (0.0..=Self::BRIGHTEST).contains(v));
-            if let Some(index) = colours.iter().position(|c| !good(c)) {
-                return Err(IbprError::BadColour { scan, index, value: colours[index] });
+            if let Some(index) = colors.iter().position(|c| !good(c)) {
+                return Err(IbprError::BadColor { scan, index, value: colors[index] });
             }
         }
         let bad = |reason| Err(IbprError::BadScan { scan, reason });

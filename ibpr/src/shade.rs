@@ -1,4 +1,4 @@
-//! From surfaces to colours.
+//! From surfaces to colors.
 
 use crate::buffer_map::BufferMap;
 use crate::options::{Light, Options};
@@ -47,7 +47,7 @@ impl Shader {
         }
     }
 
-    /// Colour × (A + (1 − A)·max(0, n·l)) at the centre of a pixel, for a normal of any length.
+    /// Color × (A + (1 − A)·max(0, n·l)) at the centre of a pixel, for a normal of any length.
     #[inline]
     fn shaded(&self, surface: &[f32; 4], place: (usize, usize), paint: Option<&Paint>) -> Vec3 {
         let n = Vec3::new(surface[1], surface[2], surface[3]);
@@ -58,18 +58,12 @@ impl Shader {
         });
         let lengths2 = n.length_squared() * towards_light.length_squared();
         let facing = if lengths2 > 0.0 { n.dot(towards_light).max(0.0) / lengths2.sqrt() } else { 0.0 };
-        let colour = paint.map_or(self.base, |p| Vec3::from_slice(&p[..3]));
-        colour * (self.ambient + (1.0 - self.ambient) * facing)
+        let color = paint.map_or(self.base, |p| Vec3::from_slice(&p[..3]));
+        color * (self.ambient + (1.0 - self.ambient) * facing)
     }
 
     /// The nearest surface of a pixel, with a rim in front of it blended over what is behind.
-    pub(crate) fn nearest(
-        &self,
-        pixels: &Nearest,
-        i: usize,
-        place: (usize, usize),
-        coloured: bool,
-    ) -> Shaded {
+    pub(crate) fn nearest(&self, pixels: &Nearest, i: usize, place: (usize, usize), colored: bool) -> Shaded {
         let (solid, cover) = (&pixels.solid[i], pixels.rim_cover[i]);
         let has_solid = solid[0] < f32::INFINITY;
         let has_rim = cover > 0.0 && pixels.rim[i][0] < solid[0];
@@ -77,13 +71,13 @@ impl Shader {
         let paint_of = |paints: &'_ [Paint]| paints.get(i).copied();
         if has_solid {
             let paint = paint_of(&pixels.solid_paint);
-            let c = self.shaded(solid, place, paint.as_ref().filter(|_| coloured));
+            let c = self.shaded(solid, place, paint.as_ref().filter(|_| colored));
             out.blend(c, if has_rim { 1.0 - cover } else { 1.0 });
             out.show(solid, paint);
         }
         if has_rim {
             let paint = paint_of(&pixels.rim_paint);
-            let c = self.shaded(&pixels.rim[i], place, paint.as_ref().filter(|_| coloured));
+            let c = self.shaded(&pixels.rim[i], place, paint.as_ref().filter(|_| colored));
             out.blend(c, cover);
             // Depth and normal are those of the surface that covers more.
             if cover >= 0.5 {
@@ -101,7 +95,7 @@ impl Shader {
         fragments: &[Fragment],
         place: (usize, usize),
         alpha: f32,
-        coloured: bool,
+        colored: bool,
         together: impl Fn(f32) -> f32,
     ) -> Shaded {
         let mut out = Shaded::NOTHING;
@@ -112,7 +106,7 @@ impl Shader {
                 continue;
             }
             last = f.surface[0];
-            let c = self.shaded(&f.surface, place, Some(&f.paint).filter(|_| coloured));
+            let c = self.shaded(&f.surface, place, Some(&f.paint).filter(|_| colored));
             let share = alpha * f.cover;
             // Front to back, which is the same sum.
             out.blend(c, left * share);
@@ -144,7 +138,7 @@ impl Shader {
     /// Puts a pixel into the frame.
     #[inline]
     pub(crate) fn write(&self, shaded: &Shaded, out: &mut RowsOut<'_>, i: usize) {
-        (out.colour[i], out.depth[i]) = (shaded.colour, self.depth(shaded.surface[0]));
+        (out.color[i], out.depth[i]) = (shaded.color, self.depth(shaded.surface[0]));
         if let Some((normal, count)) = &mut out.surface {
             let shown = shaded.surface[0] < f32::INFINITY;
             normal[i] = if shown { self.normal(&shaded.surface).to_array() } else { [0.0; 3] };
@@ -155,26 +149,26 @@ impl Shader {
 
 /// Rows of the frame.
 pub(crate) struct RowsOut<'a> {
-    pub(crate) colour: &'a mut [[f32; 4]],
+    pub(crate) color: &'a mut [[f32; 4]],
     pub(crate) depth: &'a mut [f32],
     /// Normals and counts, if asked for.
     pub(crate) surface: Option<(&'a mut [[f32; 3]], &'a mut [f32])>,
 }
 
-/// A pixel: its colour, and the surface that is shown there.
+/// A pixel: its color, and the surface that is shown there.
 pub(crate) struct Shaded {
-    colour: [f32; 4],
+    color: [f32; 4],
     surface: [f32; 4],
     count: f32,
 }
 
 impl Shaded {
     pub(crate) const NOTHING: Self =
-        Self { colour: [0.0; 4], surface: [f32::INFINITY, 0.0, 0.0, 0.0], count: 0.0 };
+        Self { color: [0.0; 4], surface: [f32::INFINITY, 0.0, 0.0, 0.0], count: 0.0 };
 
     fn blend(&mut self, c: Vec3, share: f32) {
         let c = c * share;
-        for (sum, v) in self.colour.iter_mut().zip([c.x, c.y, c.z, share]) {
+        for (sum, v) in self.color.iter_mut().zip([c.x, c.y, c.z, share]) {
             *sum += v;
         }
     }

@@ -38,8 +38,10 @@ fn options() -> impl Strategy<Value = Options> {
         (o.gamma, o.outline, o.surface_layers) = (surface.0, surface.1, surface.2);
         o.weighting = if surface.2 { Weighting::Symmetric } else { Weighting::Even };
         o.light = if surface.2 { Light::Towards(surface.3) } else { Light::Eye };
-        o.translucency = layers.map(|(alpha, layers, threshold)| Translucency { alpha, layers, threshold });
-        o.eye_dome = dome.map(|(strength, radius)| EyeDome { strength, radius });
+        o.translucency = layers.map(|(alpha, layers, threshold)| {
+            Translucency::new(alpha).with_layers(layers).with_threshold(threshold)
+        });
+        o.eye_dome = dome.map(|(strength, radius)| EyeDome::new(strength, radius));
         o
     })
 }
@@ -49,10 +51,10 @@ proptest! {
 
     #[test]
     fn scans_become_a_cloud_or_are_refused(
-        positions in prop::collection::vec(vector(number), 0..6), colours in prop::option::of(prop::collection::vec(any::<[f32; 3]>(), 0..6)),
+        positions in prop::collection::vec(vector(number), 0..6), colors in prop::option::of(prop::collection::vec(any::<[f32; 3]>(), 0..6)),
         spacing in prop::option::of(number()), towards in prop::option::of(vector(number)),
     ) {
-        let scan = OwnedScan { positions, colours, spacing, towards_scanner: towards };
+        let scan = OwnedScan { positions, colors, spacing, towards_scanner: towards };
         let result = cloud(std::slice::from_ref(&scan));
         let finite = scan.positions.iter().all(|p| p.is_finite());
         match result {
@@ -127,5 +129,5 @@ fn a_renderer_that_refused_goes_on() {
     bad.gamma = f32::NAN;
     assert!(renderer.draw(&cloud, &view, &bad, &mut frame).is_err());
     renderer.draw(&cloud, &view, &Options::default(), &mut frame).unwrap();
-    assert!(frame.colour[40][3] == 1.0);
+    assert!(frame.color()[40][3] == 1.0);
 }

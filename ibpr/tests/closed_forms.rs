@@ -39,7 +39,7 @@ fn middle(half: f64) -> impl Iterator<Item = usize> {
 }
 
 fn angle_deg(frame: &Frame, i: usize, wanted: DVec3) -> f64 {
-    let n = glam::Vec3::from_array(frame.normal[i]).as_dvec3();
+    let n = glam::Vec3::from_array(frame.normal()[i]).as_dvec3();
     n.dot(wanted.normalize()).clamp(-1.0, 1.0).acos().to_degrees()
 }
 
@@ -63,7 +63,7 @@ fn a_plane_seen_from_afar_is_exact_to_rounding() {
                 let wanted = 1000.0 - slope.0 * x - slope.1 * y;
                 // Corners are placed in steps of 1/256 pixel.
                 let rounding = 1e-3 + (slope.0.abs() + slope.1.abs()) / 256.0;
-                let error = (f64::from(frame.depth[i]) - wanted).abs();
+                let error = (f64::from(frame.depth()[i]) - wanted).abs();
                 assert!(error <= rounding, "slope {slope:?}, scale {scale}, pixel {i}: {error}");
                 let angle = angle_deg(&frame, i, dvec3(-slope.0, -slope.1, 1.0));
                 assert!(angle <= 0.1, "slope {slope:?}, scale {scale}, pixel {i}: {angle}°");
@@ -84,7 +84,7 @@ fn a_plane_in_perspective_is_flat() {
         // On the ray, x = z'·u and y = z'·v with z' = 150 − z and z = 0.5 x + 0.3 y.
         let (u, v) = (x / focal, y / focal);
         let wanted = 150.0 / (1.0 + 0.5 * u + 0.3 * v);
-        let error = (f64::from(frame.depth[i]) - wanted).abs();
+        let error = (f64::from(frame.depth()[i]) - wanted).abs();
         // A buffer pixel is 0.73 units wide.
         assert!(error <= 0.01, "pixel {i}: {error}");
         let angle = angle_deg(&frame, i, dvec3(-0.5, -0.3, 1.0));
@@ -105,7 +105,7 @@ fn a_sphere_has_its_depths_and_normals() {
         for i in middle(48.0).filter(|i| centre(*i).0.hypot(centre(*i).1) < 32.0) {
             let (x, y) = centre(i);
             let z = (1600.0 - x * x - y * y).sqrt();
-            let error = (f64::from(frame.depth[i]) - (1000.0 - z)).abs();
+            let error = (f64::from(frame.depth()[i]) - (1000.0 - z)).abs();
             let slope = x.hypot(y) / z;
             assert!(error <= 1.5 * 1.5 / 80.0 * (1.0 + slope).powi(3) + 0.02, "pixel {i}: {error}");
             let angle = angle_deg(&frame, i, dvec3(x, y, z));
@@ -128,10 +128,10 @@ fn one_point_per_pixel_at_scale_one_is_reproduced() {
         let DVec2 { x, y } = flat_view().project(*p).unwrap().pixel;
         let i = y as usize * SIZE as usize + x as usize;
         assert_eq!((x.fract(), y.fract()), (0.5, 0.5), "points lie on pixel centres");
-        let error = (f64::from(frame.depth[i]) - (1000.0 - p.z)).abs();
+        let error = (f64::from(frame.depth()[i]) - (1000.0 - p.z)).abs();
         // Depths near 1000 are stored in steps of 2⁻¹⁴.
         assert!(error <= 2f64.powi(-13), "{p}: {error}");
-        assert!(frame.count[i] == 1.0 && frame.colour[i][3] == 1.0, "{p}: {:?}", frame.colour[i]);
+        assert!(frame.count()[i] == 1.0 && frame.color()[i][3] == 1.0, "{p}: {:?}", frame.color()[i]);
     }
 }
 
@@ -147,7 +147,7 @@ fn translucent_planes_cover_as_the_closed_form_says() {
             let frame = frame(&scans, &flat_view(), &o).unwrap();
             let wanted = 1.0 - (1.0 - alpha).powi(layers);
             for i in middle(30.0) {
-                let got = frame.colour[i][3];
+                let got = frame.color()[i][3];
                 assert!(
                     (got - wanted).abs() <= 1e-5,
                     "α {alpha}, {layers} planes, pixel {i}: {got}, not {wanted}"
@@ -166,7 +166,7 @@ fn faces_of_a_dense_plane_have_no_gaps() {
         for view in [flat_view(), perspective(0.5, 250.0)] {
             let frame = frame(std::slice::from_ref(&scan), &view, &options(scale)).unwrap();
             for i in middle(20.0) {
-                assert_eq!(frame.colour[i][3], 1.0, "slope {slope:?}, scale {scale}, pixel {i}");
+                assert_eq!(frame.color()[i][3], 1.0, "slope {slope:?}, scale {scale}, pixel {i}");
             }
         }
     }
@@ -187,7 +187,7 @@ fn outlines_enclose_the_area_of_what_was_scanned() {
         {
             let area = scan.positions.len() as f64 * step * step;
             let frame = frame(std::slice::from_ref(scan), &flat_view(), &options(scale)).unwrap();
-            let got: f64 = frame.colour.iter().map(|c| f64::from(c[3])).sum();
+            let got: f64 = frame.color().iter().map(|c| f64::from(c[3])).sum();
             let strip = (got - area) / (length * f64::from(scale));
             println!("{name}, S = {scale}: {got:.1}, not {area:.1}: {strip:.3} buffer pixels");
             assert!(
@@ -212,7 +212,7 @@ fn a_plane_scanned_twice_is_one_plane() {
         let frame = frame(&scans, &flat_view(), &o).unwrap();
         let mut angles = vec![];
         for i in middle(30.0) {
-            let depth = f64::from(frame.depth[i]);
+            let depth = f64::from(frame.depth()[i]);
             assert!((1000.0 - offset - 1e-3..=1000.0 + 1e-3).contains(&depth), "offset {offset}: {depth}");
             angles.push(angle_deg(&frame, i, DVec3::Z));
         }
@@ -233,7 +233,7 @@ fn noise_below_gamma_leaves_one_surface() {
             let mut o = options(2.0);
             (o.gamma, o.weighting) = (2.0, weighting);
             let frame = frame(&[OwnedScan { spacing: Some(1.0), ..scan }], &flat_view(), &o).unwrap();
-            let errors: Vec<f64> = middle(30.0).map(|i| f64::from(frame.depth[i]) - 1000.0).collect();
+            let errors: Vec<f64> = middle(30.0).map(|i| f64::from(frame.depth()[i]) - 1000.0).collect();
             let mean = errors.iter().sum::<f64>() / errors.len() as f64;
             let spread = errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / errors.len() as f64;
             assert!(errors.iter().all(|e| e.abs() <= noise), "{weighting:?}: a second surface");

@@ -37,7 +37,7 @@ impl ColouredCloud {
     pub(crate) fn points(&self) -> Points<'_> {
         Points::new(&self.positions)
             .with_normals(&self.normals)
-            .with_colours(&self.colours)
+            .with_colors(&self.colours)
             .with_radii(&self.radii)
     }
 

@@ -4,6 +4,19 @@ use pointillist_ibpr::Frame;
 
 use crate::true_surface::Truth;
 
+/// What is compared of a frame.
+pub(crate) struct Layers {
+    pub(crate) color: Vec<[f32; 4]>,
+    pub(crate) depth: Vec<f32>,
+    pub(crate) normal: Vec<[f32; 3]>,
+}
+
+impl Layers {
+    pub(crate) fn of(frame: &Frame) -> Self {
+        Self { color: frame.color().to_vec(), depth: frame.depth().to_vec(), normal: frame.normal().to_vec() }
+    }
+}
+
 /// Pixels from an outline or a depth step that do not count as interior.
 pub(crate) const EDGE: usize = 2;
 
@@ -78,7 +91,7 @@ impl Measure {
         100.0 * count as f64 / self.interior_pixels().max(1) as f64
     }
 
-    pub(crate) fn of(&self, frame: &Frame) -> FrameError {
+    pub(crate) fn of(&self, frame: &Layers) -> FrameError {
         let drawn = |i: usize| frame.depth[i] < f32::INFINITY;
         let interior: Vec<usize> =
             (0..frame.depth.len()).filter(|i| self.interior[*i] && drawn(*i)).collect();
@@ -106,12 +119,12 @@ impl Measure {
         }
     }
 
-    fn psnr(&self, frame: &Frame) -> f64 {
+    fn psnr(&self, frame: &Layers) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for (row, column) in self.rows.clone().flat_map(|r| self.columns.clone().map(move |c| (r, c))) {
             let i = row * self.truth.size + column;
             let wanted = srgb(self.truth.grey[i]);
-            for c in &frame.colour[i][..3] {
+            for c in &frame.color[i][..3] {
                 sum += (srgb(f64::from(*c)) - wanted).powi(2);
                 count += 1.0;
             }

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 use pointillist_ibpr::{Cloud, Frame, FrameCounts, IbprError, Options, Renderer, Scan, View};
 
-use crate::frame_error::{FrameError, Measure};
+use crate::frame_error::{FrameError, Layers, Measure};
 use crate::ibpr_report::{COLUMNS, Measured, markdown};
 use crate::ibpr_settings::{Group, again, groups};
 use crate::report::{Clock, Outcome, Row, chart_of, least_seconds, on_one_thread, write, write_csv};
@@ -57,7 +57,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
         results
             .extend(on_one_thread(|| bench.groups(name, faults, SEEDS[0], groups().drain(..1).collect()))?);
     }
-    let empty = bench.measure.of(&bench.measure.truth().as_frame());
+    let empty = bench.measure.of(&bench.measure.truth().as_layers());
     assert!(empty.normal_mean < 1e-3 && empty.holes == 0.0, "the truth has no error: {empty:?}");
     let rows = |error: fn(&FrameError) -> f64| results.iter().map(|r| r.row(error)).collect::<Vec<_>>();
     write_csv(out_dir, "ibpr", &COLUMNS, &rows(|e| e.depth_rmse))?;
@@ -128,7 +128,7 @@ impl Bench {
         let mut layered = *options;
         layered.surface_layers = true;
         renderer.draw(cloud, &self.view, &layered, &mut frame)?;
-        Ok((frame.counts, seconds, self.measure.of(&frame)))
+        Ok((*frame.counts(), seconds, self.measure.of(&Layers::of(&frame))))
     }
 }
 

@@ -29,7 +29,7 @@ impl PictureLayers {
         Self {
             width: frame.width(),
             height: frame.height(),
-            colour: frame.colour().to_vec(),
+            colour: frame.color().to_vec(),
             depth: frame.depth().to_vec(),
             normal: frame.normal().to_vec(),
         }

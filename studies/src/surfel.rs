@@ -123,15 +123,16 @@ impl Bench {
     fn front_sections(&mut self) -> Result<[Section; 2], SurfelError> {
         let mut stage = Stage::new("front", &self.surface, front(&self.surface, SIZE), &self.effort);
         self.note_reference(&stage, "front.exr");
-        let points = self.small.points();
-        let bare = |points: Points<'_>| Cloud::new(&points);
+        let bare = || Points::new(&self.small.positions).with_colors(&self.small.colours);
+        let without_normals = Cloud::new(&bare().with_radii(&self.small.radii))?;
+        let without_radii = Cloud::new(&bare().with_normals(&self.small.normals))?;
         let ldi = sampled(&self.surface, Method::Ldi, SCANNED_POINTS)?.ready()?;
         let (mut clouds, mut radii) = (vec![], vec![]);
         let of_points = |n: usize, what: &str| format!("{n} points{what}");
         for (name, cloud) in [
             (of_points(PAPERS_POINTS, ""), &self.small_ready),
-            (of_points(PAPERS_POINTS, " without normals"), &bare(Points { normals: None, ..points })?),
-            (of_points(PAPERS_POINTS, " without radii"), &bare(Points { radii: None, ..points })?),
+            (of_points(PAPERS_POINTS, " without normals"), &without_normals),
+            (of_points(PAPERS_POINTS, " without radii"), &without_radii),
             (of_points(SCANNED_POINTS, ""), &self.large_ready),
             (of_points(ldi.len(), " by rays"), &ldi),
         ] {

@@ -2,7 +2,7 @@
 
 use pointillist_surfel::{
     Cloud, Focus, Frame, FrameCounts, Light, Method, Options, Procedure, Projection, Renderer, SurfelError,
-    View, ViewError,
+    View,
 };
 
 use crate::layer_error::LayerMeasure;
@@ -99,7 +99,7 @@ impl Stage {
         setting: String,
         options: &Options,
     ) -> Result<Measured, SurfelError> {
-        let (view, mut renderer, mut frame) = (view(&self.camera)?, Renderer::new(), Frame::default());
+        let (view, mut renderer, mut frame) = (view(&self.camera), Renderer::new(), Frame::default());
         let times = self.effort.times(|| renderer.draw(cloud, &view, options, &mut frame))?;
         let (picture, counts) = drawn(cloud, &self.camera, options)?;
         let series = name(options.procedure);
@@ -143,9 +143,10 @@ pub(crate) fn options(camera: &LensCamera, matt: &Matt, procedure: Procedure) ->
     options
 }
 
-pub(crate) fn view(camera: &LensCamera) -> Result<View, ViewError> {
+pub(crate) fn view(camera: &LensCamera) -> View {
     let projection = Projection::Perspective { fov_y_rad: camera.fov_y_rad };
     View::from_matrix(camera.view_from_world(), projection, camera.width, camera.height)
+        .expect("the cameras of this study are rigid and of a size that can be drawn")
 }
 
 /// A frame with all its layers.
@@ -155,7 +156,7 @@ pub(crate) fn drawn(
     options: &Options,
 ) -> Result<(PictureLayers, FrameCounts), SurfelError> {
     let (mut options, mut frame) = (*options, Frame::default());
-    options.normals = true;
-    Renderer::new().draw(cloud, &view(camera)?, &options, &mut frame)?;
-    Ok((PictureLayers::of(&frame), frame.counts))
+    options.surface_layers = true;
+    Renderer::new().draw(cloud, &view(camera), &options, &mut frame)?;
+    Ok((PictureLayers::of(&frame), *frame.counts()))
 }

@@ -34,7 +34,7 @@ fn lens_views(camera: &LensCamera, count: u32) -> Result<Vec<LensView>, SurfelEr
         let camera = camera.widened(margin as u32, shift_px.as_dvec2() / px_per_place);
         // An eye further right sees all further left, one further up all further down.
         let first = margin + IVec2::new(-shift_px.x, shift_px.y);
-        Ok(LensView { view: view(&camera)?, first: first.to_array().map(|v| v as usize) })
+        Ok(LensView { view: view(&camera), first: first.to_array().map(|v| v as usize) })
     };
     samples.of_pixel(0, SEED).map(|(_, lens)| of_place(lens)).collect()
 }
@@ -63,8 +63,8 @@ impl Mean {
         let share = 1.0 / views.len() as f32;
         for LensView { view, first: [x, y] } in views {
             self.renderer.draw(cloud, view, options, &mut self.frame)?;
-            self.points += self.frame.counts.points;
-            let lines = self.frame.colour().chunks_exact(self.frame.width()).skip(*y);
+            self.points += self.frame.counts().points;
+            let lines = self.frame.color().chunks_exact(self.frame.width()).skip(*y);
             for (sums, line) in self.colour.chunks_exact_mut(width).zip(lines) {
                 for (sum, colour) in sums.iter_mut().zip(&line[*x..]) {
                     sum.iter_mut().zip(colour).for_each(|(s, c)| *s += share * c);

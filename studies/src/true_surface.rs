@@ -2,10 +2,11 @@
 
 use glam::{DVec3, dvec2};
 use pointillist_cli::mesh_io::read_ply;
-use pointillist_ibpr::{Frame, Projection, View};
+use pointillist_ibpr::{Projection, View};
 use rayon::prelude::*;
 
 use crate::data;
+use crate::frame_error::Layers;
 use crate::loop_subdivision::subdivided;
 use crate::ray_reference::Tree;
 use crate::scenes::{Sketch, unit_sphere};
@@ -184,15 +185,14 @@ impl Truth {
         Self { size, depth, normal, grey }
     }
 
-    /// This truth, drawn as a frame: what the metrics must call perfect.
-    pub(crate) fn as_frame(&self) -> Frame {
-        let mut frame = Frame::default();
-        (frame.width, frame.height) = (self.size, self.size);
-        let colour = |g: &f64| [*g as f32, *g as f32, *g as f32, 1.0];
-        frame.colour = self.grey.iter().map(colour).collect();
-        frame.depth = self.depth.iter().map(|d| *d as f32).collect();
-        frame.normal = self.normal.iter().map(|n| n.as_vec3().to_array()).collect();
-        frame
+    /// This truth as the layers of a frame: what the metrics must call perfect.
+    pub(crate) fn as_layers(&self) -> Layers {
+        let color = |g: &f64| [*g as f32, *g as f32, *g as f32, 1.0];
+        Layers {
+            color: self.grey.iter().map(color).collect(),
+            depth: self.depth.iter().map(|d| *d as f32).collect(),
+            normal: self.normal.iter().map(|n| n.as_vec3().to_array()).collect(),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! How long for how much error: clouds of a sphere made ready (octree alone; with radii; with normals too), and frames of 97,000
 //! and 362,000 points at 400×400, sharp and blurred, by each procedure. The error in each name is the root mean square over
-//! colour and opacity: of sharp frames against the sphere itself inside its outline, of blurred ones against 97 views from
+//! color and opacity: of sharp frames against the sphere itself inside its outline, of blurred ones against 97 views from
 //! the opening of the lens.
 //!
 //! `cargo bench -p pointillist-surfel --bench drawing`
@@ -19,7 +19,7 @@ const COUNTS: [u32; 2] = [97_000, 362_000];
 /// Views from the opening of the lens: its middle, and 16 on each of so many rings.
 const RINGS: u32 = 6;
 
-/// The colour at a place of the sphere.
+/// The color at a place of the sphere.
 fn paint(p: DVec3) -> [f32; 3] {
     p.to_array().map(|v| (0.5 + 0.4 * (9.0 * v).sin()) as f32)
 }
@@ -36,7 +36,7 @@ fn view() -> View {
     view_from(DVec3::Z * EYE, DVec3::ZERO)
 }
 
-/// In their own colours.
+/// In their own colors.
 fn options(procedure: Procedure, focus: Focus) -> Options {
     let mut options = Options::default();
     (options.procedure, options.focus, options.ambient) = (procedure, focus, 1.0);
@@ -55,13 +55,13 @@ fn rms(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
     f64::sqrt(sum / count)
 }
 
-/// Against the colours of the sphere, all but a rim of two pixels.
+/// Against the colors of the sphere, all but a rim of two pixels.
 fn error_of_sharp(frame: &Frame) -> f64 {
     let pixel = |i: usize| sphere_at(&view(), i, DVec3::ZERO, 1.0, 2.0).map(|(_, place)| (i, paint(place)));
-    let inside = (0..frame.colour().len()).filter_map(pixel);
+    let inside = (0..frame.color().len()).filter_map(pixel);
     rms(inside.flat_map(|(i, [r, g, b])| {
         let wanted = [r, g, b, 1.0].map(f64::from);
-        frame.colour()[i].map(f64::from).into_iter().zip(wanted)
+        frame.color()[i].map(f64::from).into_iter().zip(wanted)
     }))
 }
 
@@ -100,7 +100,7 @@ fn add_shifted(sum: &mut [[f64; 4]], frame: &Frame, [dx, dy]: [f64; 2]) {
                 let weight = share(dx - left, i) * share(dy - top, j);
                 let (tx, ty) = (x + left as i32 + i, y + top as i32 + j);
                 if (0..size).contains(&tx) && (0..size).contains(&ty) {
-                    let from = frame.colour()[(y * size + x) as usize];
+                    let from = frame.color()[(y * size + x) as usize];
                     let to = &mut sum[(ty * size + tx) as usize];
                     to.iter_mut().zip(from).for_each(|(t, f)| *t += weight * f64::from(f));
                 }
@@ -110,7 +110,7 @@ fn add_shifted(sum: &mut [[f64; 4]], frame: &Frame, [dx, dy]: [f64; 2]) {
 }
 
 fn error_of_blurred(frame: &Frame, wanted: &[[f64; 4]]) -> f64 {
-    let values = frame.colour().iter().flatten().map(|v| f64::from(*v));
+    let values = frame.color().iter().flatten().map(|v| f64::from(*v));
     rms(values.zip(wanted.iter().flatten().copied()))
 }
 

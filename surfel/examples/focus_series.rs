@@ -34,9 +34,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let normals: Vec<_> = points.iter().map(|p| p.normal.as_vec3()).collect();
     let radii: Vec<_> = points.iter().map(|p| p.radius).collect();
     // Red in front, blue behind.
-    let colours: Vec<_> =
+    let colors: Vec<_> =
         places.iter().map(|p| [0.5 + 0.4 * p.z as f32, 0.4, 0.5 - 0.4 * p.z as f32]).collect();
-    let all = Points::new(&places).with_normals(&normals).with_radii(&radii).with_colours(&colours);
+    let all = Points::new(&places).with_normals(&normals).with_radii(&radii).with_colors(&colors);
     let cloud = Cloud::new(&all)?;
 
     let eye = dvec3(0.0, 1.3, 3.0);
@@ -49,9 +49,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut file = format!("P6 {SIZE} {SIZE} 255\n").into_bytes();
         // A square root is near enough to what screens do.
         let bytes = |c: &[f32; 4]| [c[0], c[1], c[2]].map(|v| (255.0 * v.sqrt()).round() as u8);
-        file.extend(frame.colour().iter().flat_map(bytes));
+        file.extend(frame.color().iter().flat_map(bytes));
         std::fs::write(format!("focus_{i}.ppm"), file)?;
-        println!("focus at {focus}: {} discs drawn of {}", frame.counts.points, cloud.len());
+        println!("focus at {focus}: {} discs drawn of {}", frame.counts().points, cloud.len());
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! How much of the surface each point of a cloud stands for.
 //!
-//! A picture is a sum of kernels, one about each point, of the point's area in volume. It shows a surface of one colour as
-//! one colour only if the kernels add up to 1 everywhere. The areas for which they do best, in the sense of least squares
+//! A picture is a sum of kernels, one about each point, of the point's area in volume. It shows a surface of one color as
+//! one color only if the kernels add up to 1 everywhere. The areas for which they do best, in the sense of least squares
 //! over the surface, have `Σⱼ aⱼ ∫ Kᵢ Kⱼ = ∫ Kᵢ = 1` for every point `i`: the sum is 1 in the mean over each kernel. (To make
 //! it 1 at the points alone looks simpler, but there each kernel has its peak: for points on rays, all areas are then 5 %
 //! too large, and the sum at other places ripples by 0.090 where it does by 0.071 here.)

@@ -1,8 +1,8 @@
 //! A view of one cloud: all that a frame needs to know to put points onto the picture, in units of the cloud's lattice.
 
-use crate::cloud::Node;
 use crate::focus::Focus;
 use crate::lattice::Lattice;
+use crate::node::Node;
 use crate::vector::Real;
 use glam::{DVec3, Vec3};
 use pointillist_view::View;

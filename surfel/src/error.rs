@@ -1,7 +1,5 @@
 //! What can be wrong.
 
-use pointillist_view::ViewError;
-
 /// What can be wrong with a mesh or a cloud, or with what is asked of them.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -73,9 +71,9 @@ pub enum SurfelError {
         /// Number of the point.
         index: usize,
     },
-    /// A channel of a colour is negative, not a number, or above [`crate::Points::BRIGHTEST`].
-    #[error("the colour of point {index} has a channel that is not between 0 and 1e30")]
-    BadColour {
+    /// A channel of a color is negative, not a number, or above [`crate::Points::BRIGHTEST`].
+    #[error("the color of point {index} has a channel that is not between 0 and 1e30")]
+    BadColor {
         /// Number of the point.
         index: usize,
     },
@@ -89,9 +87,6 @@ pub enum SurfelError {
         /// As given.
         radius: f32,
     },
-    /// The camera was refused. No function of this crate returns it: it lets callers use `?` on [`View`](crate::View) beside the rest.
-    #[error(transparent)]
-    View(#[from] ViewError),
     /// A side of the picture is above [`Renderer::LARGEST_SIDE`](crate::Renderer::LARGEST_SIDE).
     #[error("a picture of {width}×{height} pixels cannot be drawn: each side must be at most 16384")]
     TooLarge {

@@ -7,6 +7,7 @@ use crate::error::SurfelError;
 /// Both forms blur a point at depth l, focused at depth f, over a disc of radius d·|l − f| in the plane of the
 /// point; a thin lens of aperture radius a has d = a/f.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Focus {
     /// Everything is sharp.
     #[default]

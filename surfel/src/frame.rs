@@ -1,21 +1,23 @@
 //! The picture.
 
-use crate::tile::{self, Place};
+use crate::grid::{HEIGHT, Place, WIDTH};
 
-/// A drawn frame: row-major layers of `width · height` entries.
+/// A drawn frame: layers of `width · height` entries, row by row from the top left pixel.
 ///
-/// Keep one and draw into it again: memory is allocated for the first frame only, and tiles that stay empty are not touched.
+/// Frames of `pointillist-ibpr` and `pointillist-surfel` have the same form. Color and depth are always there; the other layers are
+/// empty unless [`Options::surface_layers`](crate::Options::surface_layers) asks for them. A new frame has no pixels. Keep one and
+/// draw into it again: memory is allocated for the first frame, and when the size of the picture changes; tiles that stay empty are
+/// not touched.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
     width: usize,
     height: usize,
-    colour: Vec<[f32; 4]>,
+    color: Vec<[f32; 4]>,
     depth: Vec<f32>,
     normal: Vec<[f32; 3]>,
     /// Tiles that are not empty, row by row.
     drawn: Vec<bool>,
-    /// What was drawn and what was skipped.
-    pub counts: FrameCounts,
+    pub(crate) counts: FrameCounts,
 }
 
 /// What one frame drew and skipped.
@@ -37,6 +39,12 @@ pub struct FrameCounts {
 }
 
 impl Frame {
+    /// A frame without pixels.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
     /// Pixels from left to right.
     #[must_use]
     pub fn width(&self) -> usize {
@@ -49,23 +57,29 @@ impl Frame {
         self.height
     }
 
-    /// Linear RGB, premultiplied, and opacity.
+    /// Linear RGB, premultiplied by the opacity, and opacity from 0 to 1; all 0 where there is no surface.
     #[must_use]
-    pub fn colour(&self) -> &[[f32; 4]] {
-        &self.colour
+    pub fn color(&self) -> &[[f32; 4]] {
+        &self.color
     }
 
-    /// Distance along the view axis of the nearest surface that, with those before it, covers half the pixel or more;
-    /// +∞ where there is none.
+    /// Distance from the eye along the view direction, world units, of the nearest surface that, with those before it, covers half
+    /// the pixel or more; `f32::INFINITY` where there is none.
     #[must_use]
     pub fn depth(&self) -> &[f32] {
         &self.depth
     }
 
-    /// Unit normal of that surface in the world, 0 where there is none. Empty if normals were not asked for.
+    /// Unit normal of that surface in the world; 0 where there is none. Empty if surface layers were not asked for.
     #[must_use]
     pub fn normal(&self) -> &[[f32; 3]] {
         &self.normal
+    }
+
+    /// What was drawn and what was skipped.
+    #[must_use]
+    pub fn counts(&self) -> &FrameCounts {
+        &self.counts
     }
 
     /// Makes room.
@@ -78,27 +92,27 @@ impl Frame {
         *self = Self {
             width,
             height,
-            colour: vec![[0.0; 4]; n],
+            color: vec![[0.0; 4]; n],
             depth: vec![f32::INFINITY; n],
             normal: vec![[0.0; 3]; normal_count],
-            drawn: vec![false; width.div_ceil(tile::WIDTH) * height.div_ceil(tile::HEIGHT)],
+            drawn: vec![false; width.div_ceil(WIDTH) * height.div_ceil(HEIGHT)],
             counts: FrameCounts::default(),
         };
     }
 
     /// The frame in rows of tiles.
     pub(crate) fn bands(&mut self) -> Vec<Band<'_>> {
-        let n = self.width * tile::HEIGHT;
+        let n = self.width * HEIGHT;
         let mut normals = self.normal.chunks_mut(n);
-        let layers = self.colour.chunks_mut(n).zip(self.depth.chunks_mut(n));
-        let drawn = self.drawn.chunks_mut(self.width.div_ceil(tile::WIDTH));
+        let layers = self.color.chunks_mut(n).zip(self.depth.chunks_mut(n));
+        let drawn = self.drawn.chunks_mut(self.width.div_ceil(WIDTH));
         layers
             .zip(drawn)
             .enumerate()
-            .map(|(i, ((colour, depth), drawn))| Band {
-                first_row: i * tile::HEIGHT,
+            .map(|(i, ((color, depth), drawn))| Band {
+                first_row: i * HEIGHT,
                 width: self.width,
-                colour,
+                color,
                 depth,
                 normal: normals.next(),
                 drawn,
@@ -111,7 +125,7 @@ impl Frame {
 pub(crate) struct Band<'a> {
     pub(crate) first_row: usize,
     pub(crate) width: usize,
-    pub(crate) colour: &'a mut [[f32; 4]],
+    pub(crate) color: &'a mut [[f32; 4]],
     pub(crate) depth: &'a mut [f32],
     pub(crate) normal: Option<&'a mut [[f32; 3]]>,
     /// Which tiles are not empty.
@@ -125,7 +139,7 @@ impl Band<'_> {
 
     /// Columns of a tile.
     fn columns(&self, tile: usize) -> std::ops::Range<usize> {
-        tile * tile::WIDTH..((tile + 1) * tile::WIDTH).min(self.width)
+        tile * WIDTH..((tile + 1) * WIDTH).min(self.width)
     }
 
     /// All tiles as one.
@@ -147,7 +161,7 @@ impl Band<'_> {
         let columns = self.columns(tile);
         for row in 0..self.rows() {
             let pixels = row * self.width + columns.start..row * self.width + columns.end;
-            self.colour[pixels.clone()].fill([0.0; 4]);
+            self.color[pixels.clone()].fill([0.0; 4]);
             self.depth[pixels.clone()].fill(f32::INFINITY);
             if let Some(normal) = &mut self.normal {
                 normal[pixels].fill([0.0; 3]);

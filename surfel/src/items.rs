@@ -1,15 +1,18 @@
 //! What a node draws, in the node's own frame: its points or links, one by one or in pairs.
 
-use crate::cloud::{Attributes, Cloud, Node, radius_of_area};
+use crate::attributes::Attributes;
+use crate::batch::BATCH;
+use crate::cloud::Cloud;
 use crate::lattice::offset;
-use crate::links::Links;
+use crate::links::radius_of_area;
+use crate::node::Node;
 use crate::packed;
-use crate::splat::LANES;
+use crate::packed_links::PackedLinks;
 use pulp::{Arch, NullaryFnOnce};
 use std::ops::Range;
 
 /// One value of each disc; twice as many before pairs become one disc each.
-pub(crate) type Values = [f32; 2 * LANES];
+pub(crate) type Values = [f32; 2 * BATCH];
 
 /// Discs in the frame of their node.
 pub(crate) struct Items {
@@ -19,21 +22,21 @@ pub(crate) struct Items {
     pub(crate) areas: Values,
     /// The way between the places of a pair, times their standard deviation in shares of it; 0 for one item.
     pub(crate) spreads: [Values; 3],
-    /// Colours without light, if points have any.
+    /// Colors without light, if points have any.
     pub(crate) paint: [Values; 3],
 }
 
 impl Items {
     pub(crate) const NOTHING: Self = Self {
-        offsets: [[0.0; 2 * LANES]; 3],
-        normals: [[0.0; 2 * LANES]; 3],
-        radii: [0.0; 2 * LANES],
-        areas: [0.0; 2 * LANES],
-        spreads: [[0.0; 2 * LANES]; 3],
-        paint: [[0.0; 2 * LANES]; 3],
+        offsets: [[0.0; 2 * BATCH]; 3],
+        normals: [[0.0; 2 * BATCH]; 3],
+        radii: [0.0; 2 * BATCH],
+        areas: [0.0; 2 * BATCH],
+        spreads: [[0.0; 2 * BATCH]; 3],
+        paint: [[0.0; 2 * BATCH]; 3],
     };
 
-    /// Takes items of a node, at most [`LANES`] discs.
+    /// Takes items of a node, at most [`BATCH`] discs.
     pub(crate) fn take(&mut self, cloud: &Cloud, node: &Node, run: &Run) {
         Arch::new().dispatch(Take { discs: self, cloud, node, run });
     }
@@ -52,7 +55,7 @@ impl Run {
         let (start, end) = (node.items.start as usize, node.items.end as usize);
         let middle = if in_pairs { start + 2 * node.pairs as usize } else { start };
         let parts = move |items: Range<usize>, in_pairs: bool| {
-            let step = if in_pairs { 2 * LANES } else { LANES };
+            let step = if in_pairs { 2 * BATCH } else { BATCH };
             let end = items.end;
             items.step_by(step).map(move |first| Self { items: first..(first + step).min(end), in_pairs })
         };
@@ -87,7 +90,7 @@ impl NullaryFnOnce for Take<'_> {
         if run.in_pairs {
             discs.unite();
         } else {
-            discs.spreads.iter_mut().for_each(|s| s[..LANES].fill(0.0));
+            discs.spreads.iter_mut().for_each(|s| s[..BATCH].fill(0.0));
         }
     }
 }
@@ -105,13 +108,13 @@ impl Items {
         }
         self.radii[..count].copy_from_slice(&points.radii[items.clone()]);
         self.areas[..count].copy_from_slice(&points.areas[items.clone()]);
-        if let Some(colours) = &points.colours {
-            self.take_colours(colours[items].iter().copied());
+        if let Some(colors) = &points.colors {
+            self.take_colors(colors[items].iter().copied());
         }
     }
 
     #[inline(always)]
-    fn take_links(&mut self, links: &Links, node: &Node, items: Range<usize>) {
+    fn take_links(&mut self, links: &PackedLinks, node: &Node, items: Range<usize>) {
         let count = items.len();
         for axis in 0..3 {
             for (to, &place) in self.offsets[axis].iter_mut().zip(&links.places[axis][items.clone()]) {
@@ -127,16 +130,16 @@ impl Items {
         for ((radius, to), &area) in self.radii.iter_mut().zip(&mut self.areas).zip(areas) {
             (*radius, *to) = (radius_of_area(area), area);
         }
-        if let Some(colours) = &links.colours {
-            self.take_colours(colours[items].iter().map(|&c| packed::unpack_colour(c)));
+        if let Some(colors) = &links.colors {
+            self.take_colors(colors[items].iter().map(|&c| packed::unpack_color(c)));
         }
     }
 
     #[inline(always)]
-    fn take_colours(&mut self, colours: impl Iterator<Item = [f32; 3]>) {
+    fn take_colors(&mut self, colors: impl Iterator<Item = [f32; 3]>) {
         let [red, green, blue] = &mut self.paint;
-        for (((red, green), blue), colour) in red.iter_mut().zip(green).zip(blue).zip(colours) {
-            [*red, *green, *blue] = colour;
+        for (((red, green), blue), color) in red.iter_mut().zip(green).zip(blue).zip(colors) {
+            [*red, *green, *blue] = color;
         }
     }
 
@@ -144,8 +147,8 @@ impl Items {
     /// covariance that both have together. All that there is room for: a number known beforehand makes vectors of the loops.
     #[inline(always)]
     fn unite(&mut self) {
-        let (mut shares, mut deviations) = ([0.0; LANES], [0.0; LANES]);
-        for i in 0..LANES {
+        let (mut shares, mut deviations) = ([0.0; BATCH], [0.0; BATCH]);
+        for i in 0..BATCH {
             let (first, second) = (self.areas[2 * i], self.areas[2 * i + 1]);
             let (r, q) = (self.radii[2 * i], self.radii[2 * i + 1]);
             let share = second / (first + second);
@@ -154,17 +157,17 @@ impl Items {
             self.radii[i] = (r * r + (q * q - r * r) * share).sqrt();
         }
         for (offsets, spreads) in self.offsets.iter().zip(&mut self.spreads) {
-            for i in 0..LANES {
+            for i in 0..BATCH {
                 spreads[i] = (offsets[2 * i + 1] - offsets[2 * i]) * deviations[i];
             }
         }
         for values in self.offsets.iter_mut().chain(&mut self.normals).chain(&mut self.paint) {
-            for i in 0..LANES {
+            for i in 0..BATCH {
                 let (first, second) = (values[2 * i], values[2 * i + 1]);
                 values[i] = first + (second - first) * shares[i];
             }
         }
-        normalise(&mut self.normals, LANES);
+        normalise(&mut self.normals, BATCH);
     }
 }
 

@@ -1,8 +1,8 @@
 //! Discs into a tile: nearest depths, then weighted sums.
 
+use crate::grid::SQUARE;
 use crate::layer::{Depths, LANES, Layer, Normals, Open, PITCH, RAMP, Sums};
 use crate::splat::Splat;
-use crate::tile::SQUARE;
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
@@ -204,7 +204,7 @@ fn add_block<S: Simd>(simd: S, s: &Splat, i: usize, weights: S::f32s, depths: S:
     *weight = simd.add_f32s(*weight, weights);
     let depth = &mut S::as_mut_simd_f32s(depth).0[i];
     *depth = simd.add_f32s(*depth, simd.mul_f32s(weights, depths));
-    let [red, green, blue] = s.colour;
+    let [red, green, blue] = s.color;
     for (sums, value) in values.iter_mut().zip([s.sharpness, red, green, blue]) {
         add_value(simd, value, weights, &mut S::as_mut_simd_f32s(sums).0[i]);
     }

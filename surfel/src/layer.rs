@@ -1,6 +1,6 @@
 //! Working memory of a tile, in blocks of pixels that are computed together.
 
-use crate::tile::{HEIGHT, SQUARE, WIDTH};
+use crate::grid::{HEIGHT, SQUARE, WIDTH};
 use std::ops::Range;
 
 /// Pixels of a block, next to one another in a row: a whole number of vectors of any processor.
@@ -25,7 +25,7 @@ pub(crate) struct Depths {
     pub(crate) floor: Lanes,
 }
 
-/// Weighted sums of a block: weight, bent depth, sharpness, colour.
+/// Weighted sums of a block: weight, bent depth, sharpness, color.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct Sums(pub(crate) [Lanes; 6]);
@@ -47,8 +47,8 @@ impl Normals {
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct Pixels {
-    /// Premultiplied colour and opacity.
-    pub(crate) colour: [Lanes; 4],
+    /// Premultiplied color and opacity.
+    pub(crate) color: [Lanes; 4],
     /// Bent depth and normal (in the picture's axes) of the layer that made it half opaque; the depth is +∞ before.
     pub(crate) depth: Lanes,
     pub(crate) normal: [Lanes; 3],
@@ -56,7 +56,7 @@ pub(crate) struct Pixels {
 
 impl Pixels {
     pub(crate) const EMPTY: Self =
-        Self { colour: [[0.0; LANES]; 4], depth: [f32::INFINITY; LANES], normal: [[0.0; LANES]; 3] };
+        Self { color: [[0.0; LANES]; 4], depth: [f32::INFINITY; LANES], normal: [[0.0; LANES]; 3] };
 }
 
 /// Depths and sums of the layer that is being drawn.

@@ -15,16 +15,16 @@
 //! let from_world = DAffine3::from_translation(dvec3(-0.5, -0.5, -2.0));
 //! let view = View::from_matrix(from_world, Projection::Orthographic { height: 2.0 }, 32, 32)?;
 //! let mut options = Options::default();
-//! let (mut renderer, mut frame) = (Renderer::new(), Frame::default());
+//! let (mut renderer, mut frame) = (Renderer::new(), Frame::new());
 //! renderer.draw(&cloud, &view, &options, &mut frame)?;
-//! let covered: f32 = frame.colour().iter().map(|c| c[3]).sum();
+//! let covered: f32 = frame.color().iter().map(|c| c[3]).sum();
 //! assert!((covered / 256.0 - 1.0).abs() < 0.08);
 //! assert_eq!(frame.depth()[32 * 16 + 16], 2.0);
 //!
 //! // The same through a lens that is focused nearer.
 //! options.focus = Focus::Lens { aperture: 0.1, focus: 1.5 };
 //! renderer.draw(&cloud, &view, &options, &mut frame)?;
-//! # Ok::<(), pointillist_surfel::SurfelError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Sampling
@@ -37,7 +37,7 @@
 //! # Drawing
 //!
 //! * [`Cloud`]: an octree whose leaves hold the points and whose inner nodes hold links to a few of them, each with the area
-//!   and the mean place, normal and colour of what it stands for.
+//!   and the mean place, normal and color of what it stands for.
 //! * [`Renderer`] takes each part of the cloud from the coarsest level on which about one point falls on a pixel, or, out of focus,
 //!   points are as far apart as the blur is wide. Between two levels it draws pairs of neighbours as one disc. Discs become ellipses with exact perspective and are lit; in each pixel those of the nearest surface are averaged and laid over
 //!   what is behind.
@@ -61,14 +61,18 @@
 #![forbid(unsafe_code)]
 
 mod areas;
+mod attributes;
+mod batch;
 mod blue_noise;
 mod camera;
 mod cloud;
 mod cover;
 mod eliminate;
+mod ellipse;
 mod error;
 mod focus;
 mod frame;
+mod grid;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod items;
@@ -79,12 +83,15 @@ mod ldi;
 mod links;
 mod mesh;
 mod neighbours;
+mod node;
 mod normals;
 mod octree;
 mod options;
 mod packed;
+mod packed_links;
 mod pairs;
 mod paper;
+mod placed;
 mod point;
 mod points;
 mod project;
@@ -93,6 +100,7 @@ mod render;
 mod resolve;
 mod rows;
 mod sample;
+mod scene;
 mod select;
 mod shade;
 mod spacing;
@@ -111,3 +119,6 @@ pub use pointillist_view::{PixelRect, Projected, Projection, Ray, View, ViewErro
 pub use points::Points;
 pub use render::Renderer;
 pub use sample::{Amount, MAX_COUNT, Method, SampleOptions, sample, sample_with};
+
+/// The version of `glam` that this crate's functions take and return.
+pub use glam;

@@ -1,12 +1,11 @@
 //! Coarser levels: links to a few of a cube's points, each of which stands for its surroundings.
 //!
-//! A link names the point that is nearest to the middle of what it stands for; place, normal and colour are the means of that, and the
+//! A link names the point that is nearest to the middle of what it stands for; place, normal and color are the means of that, and the
 //! area is the sum, as the prefiltered textures of \[1\] are, so that a coarse level is not a noisy one.
 
-use crate::cloud::{Attributes, Node};
+use crate::attributes::Attributes;
 use crate::lattice::{CODE_BITS, between, morton, moved};
 use crate::octree::Cube;
-use crate::packed;
 use glam::Vec3;
 use pointillist_parallel as parallel;
 
@@ -23,44 +22,30 @@ pub(crate) struct Link {
     /// Area of all that it stands for, square units.
     pub(crate) area: f32,
     pub(crate) normal: Vec3,
-    pub(crate) colour: Vec3,
+    pub(crate) color: Vec3,
 }
 
-/// The links of all cubes, packed: 18 bytes each, 22 with colour.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Links {
-    pub(crate) points: Vec<u32>,
-    /// Where they are drawn in the boxes of their nodes, see [`Node::offset`].
-    pub(crate) places: [Vec<i16>; 3],
-    pub(crate) areas: Vec<f32>,
-    pub(crate) normals: Vec<u32>,
-    pub(crate) colours: Option<Vec<u32>>,
-}
-
-impl Links {
-    /// `nodes` are those of the cubes.
-    pub(crate) fn pack(links: &[Vec<Link>], nodes: &[Node], coloured: bool) -> Self {
-        let all = || links.iter().flatten();
-        let with_nodes =
-            || nodes.iter().zip(links).flat_map(|(node, list)| list.iter().map(move |l| (node, l)));
-        let place = |axis: usize| {
-            with_nodes().map(|(node, link): (&Node, &Link)| node.place(axis, link.cell[axis])).collect()
-        };
+impl Link {
+    /// A point that stands for itself.
+    fn of_point(points: &Attributes, point: usize) -> Self {
+        let color = points.colors.as_ref().map_or(Vec3::ZERO, |all| Vec3::from_array(all[point]));
         Self {
-            points: all().map(|l| l.point).collect(),
-            places: [0, 1, 2].map(place),
-            areas: all().map(|l| l.area).collect(),
-            normals: all().map(|l| packed::pack_direction(l.normal)).collect(),
-            colours: coloured.then(|| all().map(|l| packed::pack_colour(l.colour.to_array())).collect()),
+            point: point as u32,
+            cell: points.cell(point),
+            area: points.areas[point],
+            normal: points.normal(point),
+            color,
         }
     }
+}
 
-    /// Memory of all links.
-    pub(crate) fn bytes(&self) -> usize {
-        4 * (self.points.len() + self.areas.len() + self.normals.len())
-            + 2 * 3 * self.points.len()
-            + 4 * self.colours.as_ref().map_or(0, Vec::len)
-    }
+/// Radius of a disc over the square root of its share of the surface: a little more than half the diagonal of a square (0.71), so that discs
+/// on a square lattice overlap at its corners.
+const RADIUS_PER_ROOT_AREA: f32 = 0.75;
+
+/// The radius that a link is drawn with.
+pub(crate) fn radius_of_area(area: f32) -> f32 {
+    RADIUS_PER_ROOT_AREA * area.sqrt()
 }
 
 /// Makes the links of every cube from those of its children, the deepest first; leaves get none.
@@ -81,7 +66,7 @@ fn links_of(cube: &Cube, cubes: &[Cube], links: &[Vec<Link>], points: &Attribute
     let mut finer = vec![];
     for child in cube.children.clone() {
         if cubes[child].children.is_empty() {
-            finer.extend(cubes[child].points.clone().map(|p| points.link(p)));
+            finer.extend(cubes[child].points.clone().map(|p| Link::of_point(points, p)));
         } else {
             finer.extend_from_slice(&links[child]);
         }
@@ -152,7 +137,7 @@ fn merged(links: &[Link]) -> Link {
     let area: f32 = links.iter().map(|l| l.area).sum();
     let mean = links.iter().map(|l| place(l) * (l.area / area)).sum::<Vec3>();
     let normal = links.iter().map(|l| l.normal * (l.area / area)).sum::<Vec3>();
-    let colour = links.iter().map(|l| l.colour * (l.area / area)).sum::<Vec3>();
+    let color = links.iter().map(|l| l.color * (l.area / area)).sum::<Vec3>();
     let distance2 = |l: &Link| place(l).distance_squared(mean);
     let nearest = links
         .iter()
@@ -163,6 +148,6 @@ fn merged(links: &[Link]) -> Link {
         cell: moved(origin, mean),
         area,
         normal: normal.try_normalize().unwrap_or(nearest.normal),
-        colour,
+        color,
     }
 }

@@ -43,28 +43,87 @@ pub struct Options {
     pub light: Light,
     /// Share of the light that comes from everywhere, 0 to 1. Default: 0.1.
     pub ambient: f32,
-    /// Colour of points that have none, linear RGB. Default: 0.8.
+    /// Color of points that have none, linear RGB. Default: 0.8.
     pub base: Vec3,
-    /// Whether the frame gets normals besides colour and depth. Default: false.
-    pub normals: bool,
+    /// Whether the frame gets normals besides color and depth. Default: false.
+    pub surface_layers: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self {
-            focus: Focus::Everywhere,
-            procedure: Procedure::Blended,
-            level: 1.4,
-            culling: true,
-            light: Light::Eye,
-            ambient: 0.1,
-            base: Vec3::splat(0.8),
-            normals: false,
-        }
+        Self::DEFAULT
     }
 }
 
 impl Options {
+    /// The defaults, as a constant.
+    pub const DEFAULT: Self = Self {
+        focus: Focus::Everywhere,
+        procedure: Procedure::Blended,
+        level: 1.4,
+        culling: true,
+        light: Light::Eye,
+        ambient: 0.1,
+        base: Vec3::splat(0.8),
+        surface_layers: false,
+    };
+
+    /// Sets what is sharp.
+    #[must_use]
+    pub const fn with_focus(mut self, focus: Focus) -> Self {
+        self.focus = focus;
+        self
+    }
+
+    /// Sets how discs become a picture.
+    #[must_use]
+    pub const fn with_procedure(mut self, procedure: Procedure) -> Self {
+        self.procedure = procedure;
+        self
+    }
+
+    /// Sets the distance of points on the picture, pixels; at least 0.
+    #[must_use]
+    pub const fn with_level(mut self, level: f32) -> Self {
+        self.level = level;
+        self
+    }
+
+    /// Sets whether nodes that face away or are hidden are skipped.
+    #[must_use]
+    pub const fn with_culling(mut self, culling: bool) -> Self {
+        self.culling = culling;
+        self
+    }
+
+    /// Sets where light comes from.
+    #[must_use]
+    pub const fn with_light(mut self, light: Light) -> Self {
+        self.light = light;
+        self
+    }
+
+    /// Sets the share of the light that comes from everywhere, 0 to 1.
+    #[must_use]
+    pub const fn with_ambient(mut self, ambient: f32) -> Self {
+        self.ambient = ambient;
+        self
+    }
+
+    /// Sets the color of points that have none, linear RGB.
+    #[must_use]
+    pub const fn with_base(mut self, base: Vec3) -> Self {
+        self.base = base;
+        self
+    }
+
+    /// Sets whether the frame gets normals.
+    #[must_use]
+    pub const fn with_surface_layers(mut self, surface_layers: bool) -> Self {
+        self.surface_layers = surface_layers;
+        self
+    }
+
     pub(crate) fn check(&self) -> Result<(), SurfelError> {
         let check = |name, value: f32, good: bool, range| {
             if good { Ok(()) } else { Err(SurfelError::BadOption { name, value: f64::from(value), range }) }

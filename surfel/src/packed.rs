@@ -1,4 +1,4 @@
-//! Directions and colours in 32 bits, for links.
+//! Directions and colors in 32 bits, for links.
 
 use glam::Vec3;
 
@@ -30,8 +30,8 @@ pub(crate) fn unpack_way(packed: u32) -> Vec3 {
 const MANTISSA: i32 = 9;
 const BIAS: i32 = 15;
 
-/// A colour with a common exponent, 9 bits a channel; channels up to 65,408, off by at most 1/512 of the largest.
-pub(crate) fn pack_colour(c: [f32; 3]) -> u32 {
+/// A color with a common exponent, 9 bits a channel; channels up to 65,408, off by at most 1/512 of the largest.
+pub(crate) fn pack_color(c: [f32; 3]) -> u32 {
     let largest = (1.0 - f32::exp2(-MANTISSA as f32)) * f32::exp2((31 - BIAS) as f32);
     let c = c.map(|v| v.clamp(0.0, largest));
     let brightest = c[0].max(c[1]).max(c[2]);
@@ -47,9 +47,9 @@ pub(crate) fn pack_colour(c: [f32; 3]) -> u32 {
     m[0] | m[1] << 9 | m[2] << 18 | (exponent as u32) << 27
 }
 
-/// The colour again.
+/// The color again.
 #[inline(always)]
-pub(crate) fn unpack_colour(packed: u32) -> [f32; 3] {
+pub(crate) fn unpack_color(packed: u32) -> [f32; 3] {
     // 2 to the power of the exponent, without a call: it is a normal number.
     let exponent = (packed >> 27) as i32 - BIAS - MANTISSA;
     let scale = f32::from_bits(((exponent + F32_BIAS) as u32) << (f32::MANTISSA_DIGITS - 1));
@@ -79,11 +79,11 @@ mod tests {
     }
 
     #[test]
-    fn colours_survive() {
+    fn colors_survive() {
         for c in
             [[0.0; 3], [1.0; 3], [0.999; 3], [0.2, 0.5, 1e-4], [3e4, 0.1, 7.0], [1e-5; 3], [0.25, 0.5, 0.75]]
         {
-            let back = unpack_colour(pack_colour(c));
+            let back = unpack_color(pack_color(c));
             let brightest = c[0].max(c[1]).max(c[2]);
             for (a, b) in c.iter().zip(back) {
                 assert!((a - b).abs() <= brightest / 512.0 + 1e-7, "{c:?} became {back:?}");

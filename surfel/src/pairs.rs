@@ -3,9 +3,9 @@
 //! Between a level of the octree and the next lies a factor of more than two in distance. A node that is drawn with one disc
 //! for every pair gives a level in between, and needs no memory for it.
 
-use crate::cloud::{Attributes, radius_of_area};
+use crate::attributes::Attributes;
 use crate::lattice::between;
-use crate::links::Link;
+use crate::links::{Link, radius_of_area};
 use crate::octree::Cube;
 use glam::Vec3;
 use pointillist_parallel as parallel;

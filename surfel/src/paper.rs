@@ -11,13 +11,14 @@
 
 use crate::camera::Camera;
 use crate::frame::Band;
+use crate::grid::{HEIGHT, Place};
 use crate::kernel;
 use crate::layer::{LANES, Layer, PITCH, Touched};
 use crate::project::Projector;
+use crate::scene::Scene;
 use crate::select::Selected;
 use crate::splat::{Shape, Splat};
 use crate::splats::Splats;
-use crate::tile::{self, Place, Scene};
 use glam::Vec3;
 
 /// The filter's radius is this many of its standard deviations.
@@ -38,14 +39,14 @@ struct Link {
     radius: f32,
     normal: Vec3,
     /// Shaded.
-    colour: Vec3,
+    color: Vec3,
 }
 
 impl Link {
-    const NONE: Self = Self { depth: f32::INFINITY, radius: 0.0, normal: Vec3::ZERO, colour: Vec3::ZERO };
+    const NONE: Self = Self { depth: f32::INFINITY, radius: 0.0, normal: Vec3::ZERO, color: Vec3::ZERO };
 
     fn of(s: &Splat) -> Self {
-        Self { depth: s.depth, radius: s.sharpness, normal: s.normal.into(), colour: s.colour.into() }
+        Self { depth: s.depth, radius: s.sharpness, normal: s.normal.into(), color: s.color.into() }
     }
 }
 
@@ -132,8 +133,8 @@ pub(crate) fn reconstruct(scene: &Scene<'_>, cells: &[Cell], band: &mut Band<'_>
         for column in 0..width {
             let i = row * width + column;
             let filtered = Filter::new(scene, cells, (width, height), (column, band.first_row + row)).run();
-            let [r, g, b] = (filtered.colour * filtered.alpha).to_array();
-            band.colour[i] = [r, g, b, filtered.alpha];
+            let [r, g, b] = (filtered.color * filtered.alpha).to_array();
+            band.color[i] = [r, g, b, filtered.alpha];
             let shown = filtered.alpha >= 0.5;
             band.depth[i] = if shown { scene.camera.world_depth(filtered.depth) } else { f32::INFINITY };
             if let Some(normals) = &mut band.normal {
@@ -145,7 +146,7 @@ pub(crate) fn reconstruct(scene: &Scene<'_>, cells: &[Cell], band: &mut Band<'_>
 }
 
 struct Filtered {
-    colour: Vec3,
+    color: Vec3,
     normal: Vec3,
     depth: f32,
     alpha: f32,
@@ -167,7 +168,7 @@ impl<'a> Filter<'a> {
     fn run(&self) -> Filtered {
         let cell = &self.cells[self.at.1 * self.size.0 + self.at.0];
         let depth = if cell.near[0] < f32::INFINITY { cell.near[0] } else { cell.near[1] };
-        let blank = Filtered { colour: Vec3::ZERO, normal: Vec3::ZERO, depth, alpha: 0.0 };
+        let blank = Filtered { color: Vec3::ZERO, normal: Vec3::ZERO, depth, alpha: 0.0 };
         if depth == f32::INFINITY {
             return blank;
         }
@@ -176,7 +177,7 @@ impl<'a> Filter<'a> {
         let thickness = self.camera.bent_length(cell.radius, depth);
         let differ = (cell.near[0] - cell.near[1]).abs() > thickness || cell.near[0] == f32::INFINITY;
         if link.depth < f32::INFINITY && !blurred && !differ {
-            return Filtered { colour: link.colour, normal: link.normal, depth, alpha: 1.0 };
+            return Filtered { color: link.color, normal: link.normal, depth, alpha: 1.0 };
         }
         let radius = cell.radius.clamp(1.0, WIDEST_PX);
         let mut sums = Sums::default();
@@ -197,7 +198,7 @@ impl<'a> Filter<'a> {
             return self.nearest_link(radius, depth).unwrap_or(blank);
         }
         let alpha = if blurred || differ { sums.covered / sums.all } else { 1.0 };
-        Filtered { colour: sums.colour / sums.weight, normal: sums.normal / sums.weight, depth, alpha }
+        Filtered { color: sums.color / sums.weight, normal: sums.normal / sums.weight, depth, alpha }
     }
 
     /// Calls `each` with all pixels within `radius` and their squared distances.
@@ -225,7 +226,7 @@ impl<'a> Filter<'a> {
                 nearest = Some((distance2, other.link));
             }
         });
-        nearest.map(|(_, l)| Filtered { colour: l.colour, normal: l.normal, depth, alpha: 1.0 })
+        nearest.map(|(_, l)| Filtered { color: l.color, normal: l.normal, depth, alpha: 1.0 })
     }
 }
 
@@ -237,7 +238,7 @@ fn gaussian(distance2: f32, radius: f32) -> f32 {
 #[derive(Default)]
 struct Sums {
     weight: f32,
-    colour: Vec3,
+    color: Vec3,
     normal: Vec3,
     /// Of the filter: all, and where there is surface.
     all: f32,
@@ -247,7 +248,7 @@ struct Sums {
 impl Sums {
     fn add(&mut self, link: &Link, weight: f32) {
         self.weight += weight;
-        self.colour += link.colour * weight;
+        self.color += link.color * weight;
         self.normal += link.normal * weight;
     }
 }
@@ -259,5 +260,5 @@ pub(crate) fn reshape(cells: &mut Vec<Cell>, width: usize, height: usize) {
 
 /// Rows of cells for each band of tiles.
 pub(crate) fn rows(cells: &mut [Cell], width: usize) -> impl Iterator<Item = &mut [Cell]> {
-    cells.chunks_mut(width * tile::HEIGHT)
+    cells.chunks_mut(width * HEIGHT)
 }

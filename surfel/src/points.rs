@@ -7,20 +7,20 @@ use glam::{DVec3, Vec3};
 #[derive(Clone, Copy, Debug)]
 pub struct Points<'a> {
     /// World.
-    pub positions: &'a [DVec3],
+    pub(crate) positions: &'a [DVec3],
     /// Outward; of any length above 0. Without them planes are fitted, and the surface is seen from both sides.
-    pub normals: Option<&'a [Vec3]>,
+    pub(crate) normals: Option<&'a [Vec3]>,
     /// Linear RGB, from 0 to [`Points::BRIGHTEST`].
-    pub colours: Option<&'a [[f32; 3]]>,
+    pub(crate) colors: Option<&'a [[f32; 3]]>,
     /// Discs of these radii leave no gap; world units, above 0. Without them they are estimated.
-    pub radii: Option<&'a [f32]>,
+    pub(crate) radii: Option<&'a [f32]>,
 }
 
 impl<'a> Points<'a> {
     /// Points without attributes.
     #[must_use]
     pub const fn new(positions: &'a [DVec3]) -> Self {
-        Self { positions, normals: None, colours: None, radii: None }
+        Self { positions, normals: None, colors: None, radii: None }
     }
 
     /// Gives them normals.
@@ -30,10 +30,10 @@ impl<'a> Points<'a> {
         self
     }
 
-    /// Gives them colours.
+    /// Gives them colors.
     #[must_use]
-    pub const fn with_colours(mut self, colours: &'a [[f32; 3]]) -> Self {
-        self.colours = Some(colours);
+    pub const fn with_colors(mut self, colors: &'a [[f32; 3]]) -> Self {
+        self.colors = Some(colors);
         self
     }
 
@@ -47,7 +47,7 @@ impl<'a> Points<'a> {
     /// Most points of a cloud: numbers of points are 32 bits wide, and some stay free.
     pub const MOST: usize = 1 << 30;
 
-    /// Largest channel of a colour: weighted sums of it are still numbers.
+    /// Largest channel of a color: weighted sums of it are still numbers.
     pub const BRIGHTEST: f32 = 1e30;
 
     pub(crate) fn check(&self) -> Result<(), SurfelError> {
@@ -60,7 +60,7 @@ impl<'a> Points<'a> {
         }
         let lengths = [
             ("normals", self.normals.map(<[_]>::len)),
-            ("colours", self.colours.map(<[_]>::len)),
+            ("colors", self.colors.map(<[_]>::len)),
             ("radii", self.radii.map(<[_]>::len)),
         ];
         for (what, length) in lengths {
@@ -83,8 +83,8 @@ impl<'a> Points<'a> {
             return Err(SurfelError::BadNormal { index });
         }
         let channel = |c: &f32| (0.0..=Self::BRIGHTEST).contains(c);
-        if let Some(index) = self.colours.and_then(|all| all.iter().position(|c| !c.iter().all(channel))) {
-            return Err(SurfelError::BadColour { index });
+        if let Some(index) = self.colors.and_then(|all| all.iter().position(|c| !c.iter().all(channel))) {
+            return Err(SurfelError::BadColor { index });
         }
         let radius = |r: &f32| *r > 0.0 && r.is_finite();
         if let Some(index) = self.radii.and_then(|all| all.iter().position(|r| !radius(r))) {

@@ -1,10 +1,14 @@
 //! From the items of a node to discs on the picture.
 
+use crate::batch::{Projected, Value};
+use crate::ellipse::project;
+use crate::grid::Place;
 use crate::items::{Items, Run, Values};
+use crate::placed::{Map, Placed};
+use crate::scene::Scene;
 use crate::select::Selected;
-use crate::splat::{Map, Placed, Projected, Shape, Value, project};
+use crate::splat::Shape;
 use crate::splats::Splats;
-use crate::tile::{self, Scene};
 use crate::vector::Vector;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -25,7 +29,7 @@ impl Projector {
         scene: &Scene<'_>,
         selected: &Selected,
         shape: &Shape,
-        tile: &tile::Place,
+        tile: &Place,
         splats: &mut Splats,
     ) {
         let node = &scene.cloud.nodes[selected.node as usize];
@@ -34,7 +38,7 @@ impl Projector {
             self.discs.take(scene.cloud, node, &run);
             let count = run.discs();
             Arch::new().dispatch(Project { lanes: self, scene, shape, map: &map, count });
-            splats.append(&self.out, count);
+            splats.append(&self.out, count, selected.place);
         }
     }
 }

@@ -4,11 +4,13 @@ use crate::camera::Camera;
 use crate::cloud::Cloud;
 use crate::error::SurfelError;
 use crate::frame::{Frame, FrameCounts};
+use crate::grid::Place;
 use crate::options::{Options, Procedure};
 use crate::paper::{self, Cell, PaperTile};
+use crate::scene::Scene;
 use crate::select::{self, Selected};
 use crate::shade::Shader;
-use crate::tile::{Place, Scene, Tile};
+use crate::tile::Tile;
 use pointillist_parallel::{self as parallel, Pool};
 use pointillist_view::View;
 use std::ops::Range;
@@ -55,16 +57,16 @@ impl Renderer {
         }
         options.check()?;
         let camera = Camera::new(view, &cloud.lattice, &cloud.nodes[0], &options.focus);
-        frame.reshape(width as usize, height as usize, options.normals);
+        frame.reshape(width as usize, height as usize, options.surface_layers);
         let mut counts = FrameCounts::default();
         select::select(cloud, &camera, options, &mut self.selected, &mut self.stack, &mut counts);
-        let shader = Shader::new(&camera, options, cloud.has_colours());
+        let shader = Shader::new(&camera, options, cloud.has_colors());
         let mut shown = std::mem::take(&mut self.shown);
         shown.clear();
         // The paper's procedure hides nothing.
         let is_paper = options.procedure == Procedure::Paper;
         shown.resize_with(self.selected.len(), || AtomicBool::new(is_paper));
-        let Options { culling, normals, .. } = *options;
+        let Options { culling, surface_layers: normals, .. } = *options;
         let scene = Scene { cloud, camera, shader, culling, normals, shown: &shown };
         match options.procedure {
             Procedure::Blended => self.blend(&scene, frame),

@@ -1,9 +1,9 @@
-//! From the sums of a layer to the colours of its pixels, a block at a time.
+//! From the sums of a layer to the colors of its pixels, a block at a time.
 
 use crate::frame::Band;
+use crate::grid::{Place, WIDTH};
 use crate::layer::{LANES, Lanes, Layer, Open, PITCH, Pixels, Touched};
 use crate::shade::{INDEPENDENT, LEAST_LIGHT, Shader, opacity};
-use crate::tile::{Place, WIDTH};
 use crate::vector::Vector;
 use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
 
@@ -56,7 +56,7 @@ impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANT
                 let depths = &mut layer.depths[index];
                 for i in 0..LANES / S::F32_LANES {
                     let vector = |lanes: &Lanes| Vector::new(simd, S::as_simd_f32s(lanes).0[i]);
-                    let [weight, depth, sharpness, colour @ ..] = &layer.sums[index].0;
+                    let [weight, depth, sharpness, color @ ..] = &layer.sums[index].0;
                     let weight = vector(weight);
                     // Not where it is NaN.
                     let is_there = weight.exceeds(LEAST_WEIGHT);
@@ -64,9 +64,9 @@ impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANT
                     let mean = |sums: &Lanes| vector(sums) * inverse;
                     let alpha = opacity(lines.evened::<S, FIRST>(weight, column, i), mean(sharpness));
                     let under = Under { alpha, is_there, i };
-                    let colour = [mean(&colour[0]), mean(&colour[1]), mean(&colour[2])];
+                    let color = [mean(&color[0]), mean(&color[1]), mean(&color[2])];
                     let pixels = &mut pixels[index];
-                    let (is_first, after) = under.blend::<FIRST>(simd, &mut pixels.colour, colour);
+                    let (is_first, after) = under.blend::<FIRST>(simd, &mut pixels.color, color);
                     let empty = f32::INFINITY;
                     keep::<S, FIRST>(mean(depth), is_first, empty, &mut pixels.depth, i);
                     if WANTED {
@@ -106,7 +106,7 @@ impl<S: Simd> Under<S> {
         &self,
         simd: S,
         pixels: &mut [Lanes; 4],
-        colour: [Vector<S>; 3],
+        color: [Vector<S>; 3],
     ) -> (S::m32s, Vector<S>) {
         let [channels @ .., opacity] = pixels;
         let opacity = &mut S::as_mut_simd_f32s(opacity).0[self.i];
@@ -115,10 +115,10 @@ impl<S: Simd> Under<S> {
         let share = (self.alpha * overlap).min(-(before - 1.0)).if_set(self.is_there, 0.0);
         let after = before + share;
         *opacity = after.lanes;
-        for (channel, colour) in channels.iter_mut().zip(colour) {
+        for (channel, color) in channels.iter_mut().zip(color) {
             let channel = &mut S::as_mut_simd_f32s(channel).0[self.i];
             // What is not there may be no number.
-            let added = share * colour.if_set(self.is_there, 0.0);
+            let added = share * color.if_set(self.is_there, 0.0);
             *channel = if FIRST { added } else { Vector::new(simd, *channel) + added }.lanes;
         }
         let half = Vector::all(simd, 0.5);
@@ -266,10 +266,10 @@ impl<S: Simd> Weights<S> {
 
 impl Pixels {
     #[inline(always)]
-    fn write(&self, shader: &Shader, colours: &mut [[f32; 4]], depths: &mut [f32]) {
-        let [red, green, blue, alpha] = &self.colour;
-        for (i, colour) in colours.iter_mut().enumerate() {
-            *colour = [red[i], green[i], blue[i], alpha[i]];
+    fn write(&self, shader: &Shader, colors: &mut [[f32; 4]], depths: &mut [f32]) {
+        let [red, green, blue, alpha] = &self.color;
+        for (i, color) in colors.iter_mut().enumerate() {
+            *color = [red[i], green[i], blue[i], alpha[i]];
         }
         for (depth, &bent) in depths.iter_mut().zip(&self.depth) {
             *depth = shader.depth(bent);
@@ -293,14 +293,13 @@ impl NullaryFnOnce for Write<'_, '_> {
         for row in 0..place.height {
             let from = &pixels[row * PITCH..];
             let to = row * band.width + place.x..row * band.width + place.x + place.width;
-            let colours = band.colour[to.clone()].chunks_mut(LANES);
+            let colors = band.color[to.clone()].chunks_mut(LANES);
             let depths = band.depth[to.clone()].chunks_mut(LANES);
-            for ((pixels, colours), depths) in from.iter().zip(colours).zip(depths) {
+            for ((pixels, colors), depths) in from.iter().zip(colors).zip(depths) {
                 // Whole blocks by themselves: what has a length known beforehand needs no call to copy.
-                match (<&mut [_; LANES]>::try_from(&mut *colours), <&mut [_; LANES]>::try_from(&mut *depths))
-                {
-                    (Ok(colours), Ok(depths)) => pixels.write(shader, colours, depths),
-                    _ => pixels.write(shader, colours, depths),
+                match (<&mut [_; LANES]>::try_from(&mut *colors), <&mut [_; LANES]>::try_from(&mut *depths)) {
+                    (Ok(colors), Ok(depths)) => pixels.write(shader, colors, depths),
+                    _ => pixels.write(shader, colors, depths),
                 }
             }
             let Some(normals) = &mut band.normal else { continue };

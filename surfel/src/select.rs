@@ -1,8 +1,9 @@
 //! Which nodes of the octree a frame draws: in view, not facing away, coarse enough.
 
 use crate::camera::{Camera, REACH};
-use crate::cloud::{Cloud, Node};
+use crate::cloud::Cloud;
 use crate::frame::FrameCounts;
+use crate::node::Node;
 use crate::options::Options;
 use crate::spacing::{Angles, Depths, REACH_ROUNDED_UP, largest_spacing};
 use crate::splat::{DEVIATION_PER_RADIUS, NEAREST_PLANE2, PIXEL_DEVIATION};
@@ -91,7 +92,7 @@ impl Seen {
         let blur_radius = camera.blur_radius(nearest_point).max(camera.blur_radius(depths[1]));
         let scale = camera.pixels_per_unit(nearest_point);
         let deviation = DEVIATION_PER_RADIUS * widest;
-        // Planes that come towards the eye look longer there: see `ends` in `splat.rs`, where this is 1/(1 − √τ).
+        // Planes that come towards the eye look longer there: see `ends` in `ellipse.rs`, where this is 1/(1 − √τ).
         let towards_eye = camera.plane_reach(widest, blur_radius) * scale / camera.focal;
         let growth =
             if camera.is_perspective { 1.0 / (1.0 - towards_eye.min(NEAREST_PLANE2.sqrt())) } else { 1.0 };

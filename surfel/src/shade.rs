@@ -20,12 +20,12 @@ pub(crate) struct Shader {
     /// Towards the light in the picture's axes; none if it comes from the eye.
     light: Option<Vec3>,
     ambient: f32,
-    /// Colour of all points, if they have none of their own.
+    /// Color of all points, if they have none of their own.
     base: Option<Vec3>,
 }
 
 impl Shader {
-    pub(crate) fn new(camera: &Camera, options: &Options, coloured: bool) -> Self {
+    pub(crate) fn new(camera: &Camera, options: &Options, colored: bool) -> Self {
         let light = match options.light {
             Light::Eye => None,
             Light::Towards(d) => {
@@ -36,7 +36,7 @@ impl Shader {
             camera: camera.clone(),
             light,
             ambient: options.ambient,
-            base: (!coloured).then_some(options.base),
+            base: (!colored).then_some(options.base),
         }
     }
 
@@ -62,7 +62,7 @@ impl Shader {
         -(normal[0] * x + normal[1] * y + normal[2]) / (x * x + y * y + 1.0).sqrt()
     }
 
-    /// Colour × (A + (1 − A)·max(0, n·l)) of surfaces at places (x, y) of the picture.
+    /// Color × (A + (1 − A)·max(0, n·l)) of surfaces at places (x, y) of the picture.
     #[inline(always)]
     pub(crate) fn lit<S: Simd>(
         &self,

@@ -1,7 +1,7 @@
 //! How far apart points of a node may be: for the size of its pixels, for how it faces the eye, and for its blur.
 
 use crate::camera::Camera;
-use crate::cloud::Node;
+use crate::node::Node;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
 

@@ -4,39 +4,24 @@
 //! nearest disc, and all discs that lie within their thickness behind that are averaged. Neither depends on the order of
 //! discs, up to the rounding of sums, and that is fixed by the order of nodes.
 
-use crate::camera::Camera;
-use crate::cloud::Cloud;
 use crate::frame::Band;
+use crate::grid::{HEIGHT, Place, SQUARE, WIDTH};
 use crate::kernel;
 use crate::layer::{Layer, Open, PITCH, Pixels, Touched};
 use crate::project::Projector;
 use crate::resolve::{resolve, write};
+use crate::scene::Scene;
 use crate::select::Selected;
-use crate::shade::Shader;
 use crate::splat::Shape;
 use crate::splats::Splats;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Pixels of a tile: sums and depths fit into the second-level cache.
-pub(crate) const WIDTH: usize = 128;
-pub(crate) const HEIGHT: usize = 64;
+use std::sync::atomic::Ordering;
 
 /// Surfaces behind one another in a pixel. All that lies behind the last but one is taken for the last.
 const MOST_LAYERS: usize = 4;
 
-/// Side of the squares for which the farthest depth is kept, to skip what is hidden.
-pub(crate) const SQUARE: usize = 16;
+/// Squares of a tile: columns, rows.
 const SQUARES: [usize; 2] = [WIDTH / SQUARE, HEIGHT / SQUARE];
-
-/// Where a tile lies in the picture, in pixels.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
-    pub(crate) x: usize,
-    pub(crate) y: usize,
-    pub(crate) width: usize,
-    pub(crate) height: usize,
-}
 
 /// Working memory for tiles.
 pub(crate) struct Tile {
@@ -64,18 +49,6 @@ impl Default for Tile {
             hidden: vec![],
         }
     }
-}
-
-/// What all tiles of a frame share.
-pub(crate) struct Scene<'a> {
-    pub(crate) cloud: &'a Cloud,
-    pub(crate) camera: Camera,
-    pub(crate) shader: Shader,
-    pub(crate) culling: bool,
-    /// Whether normals are asked for.
-    pub(crate) normals: bool,
-    /// Which of the selected nodes any tile has drawn.
-    pub(crate) shown: &'a [AtomicBool],
 }
 
 impl Tile {
@@ -115,7 +88,7 @@ impl Tile {
         write(&self.pixels, &scene.shader, place, band);
     }
 
-    /// From the splats of the first layer, which touch these pixels, to the colours of all, with normals if they are `WANTED`.
+    /// From the splats of the first layer, which touch these pixels, to the colors of all, with normals if they are `WANTED`.
     fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, place: &Place, mut touched: Touched) {
         for blocks in touched.others(place.height) {
             self.pixels[blocks.clone()].fill(Pixels::EMPTY);
@@ -150,9 +123,10 @@ impl Tile {
         self.projector.project(scene, selected, &Shape::BLENDED, place, &mut self.splats);
     }
 
-    /// Leaves those of the discs behind that may be seen through `open` pixels, and adds those of hidden nodes; all that they
-    /// may touch.
+    /// Leaves those of the discs behind that may be seen through `open` pixels, and adds those of hidden nodes, in the order
+    /// of nodes. Returns all that they may touch.
     fn add_hidden(&mut self, scene: &Scene<'_>, place: &Place, open: &Open) -> Touched {
+        let drawn = self.splats.as_slice().len();
         let mut hidden = std::mem::take(&mut self.hidden);
         hidden.retain(|selected| {
             let mut touched = Touched::NOTHING;
@@ -176,6 +150,10 @@ impl Tile {
             }
             is_seen
         });
+        if self.splats.as_slice().len() > drawn {
+            // Sums are rounded: they have to be taken in the order in which they are without culling.
+            self.splats.sort_by_node(&mut self.behind);
+        }
         touched
     }
 

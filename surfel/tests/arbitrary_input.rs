@@ -53,7 +53,8 @@ fn options() -> BoxedStrategy<Options> {
     (picture, prop::option::of(vector(number)), prop::option::of([share(), share(), share()]))
         .prop_map(|((focus, [paper, culling, normals], level, ambient), light, base)| {
             let mut o = Options::default();
-            (o.focus, o.culling, o.normals, o.level, o.ambient) = (focus, culling, normals, level, ambient);
+            (o.focus, o.culling, o.surface_layers, o.level, o.ambient) =
+                (focus, culling, normals, level, ambient);
             o.procedure = if paper { Procedure::Paper } else { Procedure::Blended };
             o.light = light.map_or(Light::Eye, Light::Towards);
             o.base = base.map_or(o.base, Vec3::from_array);
@@ -78,9 +79,9 @@ proptest! {
     #[test]
     fn points_become_a_cloud_or_are_refused(
         positions in prop::collection::vec(vector(number), 0..6), normals in prop::option::of(prop::collection::vec(normal(), 0..6)),
-        colours in prop::option::of(prop::collection::vec(any::<[f32; 3]>(), 0..6)), radii in prop::option::of(prop::collection::vec(positive(), 0..6)),
+        colors in prop::option::of(prop::collection::vec(any::<[f32; 3]>(), 0..6)), radii in prop::option::of(prop::collection::vec(positive(), 0..6)),
     ) {
-        let points = OwnedPoints { positions, normals, colours, radii };
+        let points = OwnedPoints { positions, normals, colors, radii };
         match cloud(&points) {
             Ok(cloud) => {
                 prop_assert!(cloud.len() == points.positions.len());
@@ -109,14 +110,14 @@ proptest! {
     #[test]
     fn anything_that_is_accepted_can_be_drawn(
         positions in prop::collection::vec(vector(finite), 1..12), normals in prop::option::of(prop::collection::vec(normal(), 12)),
-        radii in prop::option::of(prop::collection::vec(positive(), 12)), coloured: bool,
+        radii in prop::option::of(prop::collection::vec(positive(), 12)), colored: bool,
         eye in vector(finite), target in vector(finite), p in projection(), w in 1..20u32, h in 1..20u32, o in options(),
     ) {
         let n = positions.len();
         let points = OwnedPoints {
             normals: normals.map(|all| all[..n].to_vec()),
             radii: radii.map(|all| all[..n].to_vec()),
-            colours: coloured.then(|| (0..n).map(|i| [i as f32, 1e30, 0.0]).collect()),
+            colors: colored.then(|| (0..n).map(|i| [i as f32, 1e30, 0.0]).collect()),
             positions,
         };
         if let Some(view) = look_at(eye, target, p, w, h) {

@@ -23,7 +23,7 @@ fn flat_view() -> View {
 
 fn with(change: impl Fn(&mut Options)) -> Options {
     let mut options = Options::default();
-    options.normals = true;
+    options.surface_layers = true;
     change(&mut options);
     options
 }
@@ -44,7 +44,7 @@ const COUNT: u32 = 12_000;
 static SPHERE: LazyLock<Cloud> = LazyLock::new(|| cloud(&sphere()).unwrap());
 
 fn alpha(frame: &Frame, i: usize) -> f64 {
-    f64::from(frame.colour()[i][3])
+    f64::from(frame.color()[i][3])
 }
 
 /// Pixels per world unit at depth 1 of a square picture.
@@ -281,25 +281,25 @@ fn the_energy_of_a_blurred_point_is_conserved() {
     }
 }
 
-/// A half plane x < 0 at this depth before a whole one at another, in colours.
+/// A half plane x < 0 at this depth before a whole one at another, in colors.
 fn edge_before_wall(near: f64, far: f64) -> OwnedPoints {
-    let plane = |z: f64, from: f64, to: f64, colour: [f32; 3]| {
+    let plane = |z: f64, from: f64, to: f64, color: [f32; 3]| {
         // A point per pixel or so.
         let step = 0.7 * z / focal_px(0.7);
         let width = z * (0.35f64).tan() * 1.4;
         let (columns, rows) = ((width * (to - from) / step) as u32, (2.0 * width / step) as u32);
         let middle = dvec3(0.5 * (from + to) * width, 0.0, -z);
-        OwnedPoints::plane(middle, DVec3::X * step, DVec3::Y * step, columns, rows).painted(move |_| colour)
+        OwnedPoints::plane(middle, DVec3::X * step, DVec3::Y * step, columns, rows).painted(move |_| color)
     };
     plane(near, -1.0, 0.0, [1.0, 0.0, 0.0]).and(&plane(far, -1.0, 1.0, [0.0, 1.0, 0.0]))
 }
 
-/// Mean colour of each column over the middle rows.
+/// Mean color of each column over the middle rows.
 fn columns(frame: &Frame) -> Vec<[f64; 4]> {
     let rows = frame.height() / 4..3 * frame.height() / 4;
     let mean = |x: usize| {
         let sum =
-            |c: usize| rows.clone().map(|y| f64::from(frame.colour()[y * frame.width() + x][c])).sum::<f64>();
+            |c: usize| rows.clone().map(|y| f64::from(frame.color()[y * frame.width() + x][c])).sum::<f64>();
         [0, 1, 2, 3].map(|c| sum(c) / rows.len() as f64)
     };
     (0..frame.width()).map(mean).collect()
@@ -370,13 +370,13 @@ fn what_is_in_focus_stays_as_it_is() {
     let view = perspective(DVec3::Z * 3.0, DVec3::ZERO, 0.4);
     let sharp = frame(&points, &view, &with(|_| {})).unwrap();
     let lens = frame(&points, &view, &with(|o| o.focus = Focus::Lens { aperture: 0.5, focus: 3.0 })).unwrap();
-    for (a, b) in sharp.colour().iter().flatten().zip(lens.colour().iter().flatten()) {
+    for (a, b) in sharp.color().iter().flatten().zip(lens.color().iter().flatten()) {
         assert!((a - b).abs() < 1e-3, "{a} and {b}");
     }
 }
 
 #[test]
-fn a_plane_has_its_depth_and_colour() {
+fn a_plane_has_its_depth_and_color() {
     let points = OwnedPoints::plane(DVec3::ZERO, DVec3::X * 0.8, DVec3::Y * 0.8, 120, 120);
     let points = points.moved(|p| dvec3(p.x, p.y, 0.5 * p.x - 0.3 * p.y));
     let normal = Vec3::new(-0.5, 0.3, 1.0).normalize();
@@ -388,9 +388,9 @@ fn a_plane_has_its_depth_and_colour() {
             if x.abs().max(y.abs()) < 40.0 {
                 let error = (f64::from(drawn.depth()[i]) - (1000.0 - 0.5 * x + 0.3 * y)).abs();
                 assert!(error < most, "{procedure:?}, pixel {i}: depth {error} off");
-                // Light from the eye: colour × (0.1 + 0.9·cos).
+                // Light from the eye: color × (0.1 + 0.9·cos).
                 let wanted = 0.8 * (0.1 + 0.9 * normal.z);
-                let got = drawn.colour()[i][0];
+                let got = drawn.color()[i][0];
                 assert!((got - wanted).abs() < 2e-3, "{procedure:?}, pixel {i}: {got}, not {wanted}");
             }
         }

@@ -43,11 +43,11 @@ fn shape() -> BoxedStrategy<OwnedPoints> {
 fn points() -> BoxedStrategy<OwnedPoints> {
     let radius = prop_oneof![3 => 0.005..0.2f32, 1 => 1e-6..3.0f32];
     (shape(), prop::option::of(shape()), any::<[bool; 2]>(), prop::option::weighted(0.3, radius))
-        .prop_map(|(first, second, [coloured, two_sided], radius)| {
+        .prop_map(|(first, second, [colored, two_sided], radius)| {
             let mut all = second.map_or(first.clone(), |s| first.and(&s));
             let n = all.positions.len();
-            let colour = |i: usize| [i as f32 / n as f32, 0.5, (i % 7) as f32];
-            all.colours = coloured.then(|| (0..n).map(colour).collect());
+            let color = |i: usize| [i as f32 / n as f32, 0.5, (i % 7) as f32];
+            all.colors = colored.then(|| (0..n).map(color).collect());
             all.normals = all.normals.filter(|_| !two_sided);
             all.radii = radius.map(|r| (0..n).map(|i| r * (1.0 + (i % 3) as f32)).collect()).or(all.radii);
             all
@@ -89,7 +89,8 @@ fn options() -> BoxedStrategy<Options> {
             // The paper's filter takes a time that grows with the square of the blur.
             let paper = paper && matches!(focus, Focus::Everywhere | Focus::Depth { depth: ..0.02, .. });
             let mut o = Options::default();
-            (o.focus, o.culling, o.normals, o.level, o.ambient) = (focus, culling, normals, level, ambient);
+            (o.focus, o.culling, o.surface_layers, o.level, o.ambient) =
+                (focus, culling, normals, level, ambient);
             o.procedure = if paper { Procedure::Paper } else { Procedure::Blended };
             o.light = light.map_or(Light::Eye, Light::Towards);
             o
@@ -138,11 +139,11 @@ proptest! {
     }
 
     #[test]
-    fn constant_colour_stays_constant(
-        p in points(), v in view(), o in options(), colour in [0.0..2.0f32, 0.0..2.0f32, 0.0..2.0f32], kept: bool,
+    fn constant_color_stays_constant(
+        p in points(), v in view(), o in options(), color in [0.0..2.0f32, 0.0..2.0f32, 0.0..2.0f32], kept: bool,
     ) {
         let short = |c: f32| (c * 64.0).round() / 64.0;
-        holds!(invariants::one_colour_stays_one_colour(&p, &v, &o, if kept { colour.map(short) } else { colour }));
+        holds!(invariants::one_color_stays_one_color(&p, &v, &o, if kept { color.map(short) } else { color }));
     }
 
     #[test]
@@ -190,7 +191,7 @@ proptest! {
         let focus = match o.focus {
             Focus::Depth { depth, focus } => Focus::Depth { depth, focus: focus * k },
             Focus::Lens { aperture, focus } => Focus::Lens { aperture: aperture * k, focus: focus * k },
-            Focus::Everywhere => Focus::Everywhere,
+            other => other,
         };
         if let (Some(a), Some(b)) = (frame(&p, &here, &o), frame(&p.resized(k), &there, &with(o, |o| o.focus = focus))) {
             holds!(frames_are_identical_but_for_size(&a, &b, k));

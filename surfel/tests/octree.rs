@@ -59,12 +59,12 @@ fn points() -> BoxedStrategy<OwnedPoints> {
         prop_oneof![3 => 0.01..2.0f32, 1 => (1.0..9.0f32, -37..38).prop_map(|(r, e)| r * 10f32.powi(e))];
     let radii = prop::option::of(prop::collection::vec(radius, 1..4));
     (positions, normals, radii, any::<bool>())
-        .prop_map(|(positions, normals, radii, coloured)| {
+        .prop_map(|(positions, normals, radii, colored)| {
             let n = positions.len();
             OwnedPoints {
                 normals: normals.map(|some| some.into_iter().cycle().take(n).collect()),
                 radii: radii.map(|some| some.into_iter().cycle().take(n).collect()),
-                colours: coloured.then(|| (0..n).map(|i| [i as f32, 0.5, 1.0 / (i + 1) as f32]).collect()),
+                colors: colored.then(|| (0..n).map(|i| [i as f32, 0.5, 1.0 / (i + 1) as f32]).collect()),
                 positions,
             }
         })
@@ -88,7 +88,7 @@ proptest! {
     }
 }
 
-/// Large ones: a sphere, a thin sheet with two sides, a plane without normals, all with colours.
+/// Large ones: a sphere, a thin sheet with two sides, a plane without normals, all with colors.
 fn surfaces() -> Vec<OwnedPoints> {
     let (right, up) = (DVec3::X * 0.01, DVec3::Y * 0.01);
     let sheet = OwnedPoints::plane(DVec3::ZERO, right, up, 70, 70).and(&OwnedPoints::plane(
@@ -132,7 +132,7 @@ fn a_single_point_is_a_cloud() {
     let points = OwnedPoints::loose(vec![dvec3(1.0, -2.0, 3e5)]);
     let cloud = cloud(&points).unwrap();
     invariants::octree_is_sound(&cloud).unwrap();
-    assert_eq!((cloud.len(), cloud.has_colours(), cloud.has_estimated_normals()), (1, false, true));
+    assert_eq!((cloud.len(), cloud.has_colors(), cloud.has_estimated_normals()), (1, false, true));
     let off = cloud.positions().next().unwrap() - points.positions[0];
     assert!(off.abs().max_element() <= 2f64.powi(-32), "{off}");
 }

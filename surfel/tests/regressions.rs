@@ -2,7 +2,8 @@
 
 use glam::{DAffine3, DMat3, DVec3, Vec3, dvec3};
 use pointillist_surfel::invariants::{
-    OwnedPoints, cloud, frame, frame_is_sound, frames_are_identical, look_at, use_before_does_not_matter,
+    OwnedPoints, cloud, culling_changes_nothing, frame, frame_is_sound, frames_are_identical, look_at,
+    use_before_does_not_matter,
 };
 use pointillist_surfel::{
     Focus, Light, Options, Projection, SampleOptions, SurfelError, View, field_of_view_rad, sample,
@@ -106,7 +107,7 @@ fn nodes_behind_a_wall_are_counted_as_hidden() {
     let hidden = |culling| {
         let mut options = Options::default();
         options.culling = culling;
-        frame(&points, &view, &options).unwrap().counts.nodes_hidden
+        frame(&points, &view, &options).unwrap().counts().nodes_hidden
     };
     assert!(hidden(true) > 10, "{}", hidden(true));
     assert_eq!(hidden(false), 0);
@@ -120,6 +121,20 @@ fn the_ends_of_a_small_cloud_are_where_they_are() {
     let view =
         look_at(DVec3::Z * 2.0, DVec3::ZERO, Projection::Orthographic { height: 4.0 }, 40, 40).unwrap();
     let drawn = frame(&points, &view, &Options::default()).unwrap();
-    let [red, green] = [drawn.colour()[40 * 20 + 10], drawn.colour()[40 * 20 + 30]];
+    let [red, green] = [drawn.color()[40 * 20 + 10], drawn.color()[40 * 20 + 30]];
     assert!(red[0] > 0.5 && red[1] == 0.0 && green[1] > 0.5 && green[0] == 0.0, "{red:?} and {green:?}");
+}
+
+/// What hidden nodes show through a translucent surface was added up after all else: a bit of the sum changed.
+#[test]
+fn hidden_nodes_are_added_up_in_their_order() {
+    // A blurred wall before the left part of a slanted one, of which the left side is nearer: nodes that the first wall
+    // hides wholly are nearer than those that it hides in part.
+    let before = OwnedPoints::plane(dvec3(-0.3, 0.0, 2.0), DVec3::X * 0.02, DVec3::Y * 0.02, 20, 60);
+    let slanted = OwnedPoints::plane(DVec3::ZERO, dvec3(0.01, 0.0, -0.01), DVec3::Y * 0.01, 150, 90);
+    let points = before.and(&slanted).painted(|p| (p * 100.0).as_vec3().to_array().map(|c| c.sin().abs()));
+    let view = look_at(DVec3::Z * 4.0, DVec3::ZERO, PERSPECTIVE, 90, 90).unwrap();
+    let mut options = Options::default();
+    options.focus = Focus::Depth { depth: 0.3, focus: 4.0 };
+    culling_changes_nothing(&points, &view, &options).unwrap();
 }

@@ -38,8 +38,8 @@
 //! the smallest subnormal number to 1e300, and an `up` close to the view direction. Vectors are scaled by powers of two before they
 //! are normalised, which rounds nothing, so a scene scaled by a power of two has the same axes bit for bit.
 //! [`View::project`] and [`View::unproject`] invert each other within a few ulps of the numbers involved (coordinates of the eye and
-//! the point, width of the picture there); the functions of the module `invariants` (feature) state the bounds. They take a few
-//! nanoseconds and do not allocate.
+//! the point, width of the picture there); the functions of the module `invariants` (feature) state the bounds. They take 4 to
+//! 30 nanoseconds each (`benches/camera.rs`) and do not allocate.
 //!
 //! # Features
 //! `invariants`: facts that hold for every view, for property tests and fuzzing.

@@ -22,6 +22,8 @@ pub struct View {
     projection: Projection,
     width: u32,
     height: u32,
+    /// Follows from the projection and the height; kept because the tangent takes longer than the rest of a projection.
+    focal_px: f64,
 }
 
 /// Where a point is in the picture: the answer of [`View::project`].
@@ -130,7 +132,7 @@ impl View {
     ) -> Result<Self, ViewError> {
         let (right, up) = right_and_up(forward, up).ok_or(ViewError::BadUp { up, forward })?;
         projection.check()?;
-        Self { eye, right, up, forward, projection, width, height }.with_size(width, height)
+        Self { eye, right, up, forward, projection, width, height, focal_px: 0.0 }.with_size(width, height)
     }
 
     /// The same camera with a picture of another size. What is seen from top to bottom stays; the width of the picture
@@ -143,7 +145,7 @@ impl View {
         if !(sides.contains(&width) && sides.contains(&height)) {
             return Err(ViewError::BadSize { width, height });
         }
-        Ok(Self { width, height, ..self })
+        Ok(Self { width, height, focal_px: focal_px(self.projection, height), ..self })
     }
 
     /// Position of the camera, world units. For an orthographic view: a point of the plane of depth 0, seen in the middle.
@@ -203,12 +205,8 @@ impl View {
     /// Pixels per world unit at depth 1 (perspective; at depth d it is this over d) or at any depth (orthographic). Pixels are
     /// square: the same in both directions.
     #[must_use]
-    pub fn focal_px(&self) -> f64 {
-        let half = 0.5 * f64::from(self.height);
-        match self.projection {
-            Projection::Perspective { fov_y_rad } => half / (0.5 * fov_y_rad).tan(),
-            Projection::Orthographic { height } => half / (0.5 * height),
-        }
+    pub const fn focal_px(&self) -> f64 {
+        self.focal_px
     }
 
     /// The rigid motion that takes the world into the frame of the camera, for [`View::from_matrix`] and for others' renderers.
@@ -259,6 +257,15 @@ impl View {
                 Ray { origin: self.eye + self.right * offset.x - self.up * offset.y, direction: self.forward }
             }
         }
+    }
+}
+
+/// See [`View::focal_px`].
+fn focal_px(projection: Projection, picture_height: u32) -> f64 {
+    let half = 0.5 * f64::from(picture_height);
+    match projection {
+        Projection::Perspective { fov_y_rad } => half / (0.5 * fov_y_rad).tan(),
+        Projection::Orthographic { height } => half / (0.5 * height),
     }
 }
 

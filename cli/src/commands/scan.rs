@@ -6,7 +6,6 @@ use crate::error::CliError;
 use crate::options::{ScanOptions, layer_list};
 use crate::points::{Drawn, PointLayer, window_of};
 use crate::scan::{LoadOptions, ScanSet};
-use crate::scene::Camera;
 use pointillist_ibpr as ibpr;
 
 /// Layers of a scan's picture.
@@ -38,10 +37,11 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     if target.is_done(&stamp, window, &report) {
         return report.finish();
     }
+    let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
     let mut frame = ibpr::Frame::default();
-    report.stats.stage("draw", || draw(options, &cloud, &camera, &mut frame, &report))?;
+    report.stats.stage("draw", || draw(options, &cloud, &view, &mut frame, &report))?;
     tell_counts(&report, &cloud, &frame);
-    let picture = window_of(&as_drawn(&frame), window, &layers, &camera);
+    let picture = window_of(&as_drawn(&frame), window, &layers, &view);
     report.stats.stage("write", || target.write(&picture, stamp))?;
     let seconds = report.stats.elapsed().as_secs_f64();
     report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));
@@ -50,35 +50,33 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
 
 fn as_drawn(frame: &ibpr::Frame) -> Drawn<'_> {
     Drawn {
-        width: frame.width,
-        height: frame.height,
-        colour: &frame.colour,
-        depth: &frame.depth,
-        normal: &frame.normal,
-        count: &frame.count,
+        width: frame.width(),
+        height: frame.height(),
+        colour: frame.color(),
+        depth: frame.depth(),
+        normal: frame.normal(),
+        count: frame.count(),
     }
 }
 
 fn draw(
     options: &ScanOptions,
     cloud: &ibpr::Cloud,
-    camera: &Camera,
+    view: &ibpr::View,
     frame: &mut ibpr::Frame,
     report: &Report<'_>,
 ) -> Result<(), CliError> {
     // All that the renderer can refuse now is a value of an option.
     let usage = |error: ibpr::IbprError| CliError::Usage(error.to_string());
-    let size = points::size(&options.camera);
-    let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
     let frame_options = options.frame_options();
     let mut renderer = ibpr::Renderer::new();
     points::repeat(report, options.repeat, || {
-        renderer.draw(cloud, &view, &frame_options, frame).map_err(usage)
+        renderer.draw(cloud, view, &frame_options, frame).map_err(usage)
     })
 }
 
 fn tell_counts(report: &Report<'_>, cloud: &ibpr::Cloud, frame: &ibpr::Frame) {
-    let counts = &frame.counts;
+    let counts = frame.counts();
     let stats = &report.stats;
     stats.count("points", cloud.len() as u64);
     stats.count("points_drawn", counts.points as u64);
@@ -92,7 +90,7 @@ fn tell_counts(report: &Report<'_>, cloud: &ibpr::Cloud, frame: &ibpr::Frame) {
         cloud.density_spacing(),
         counts.scale
     ));
-    if frame.depth.iter().all(|d| d.is_infinite()) {
+    if frame.depth().iter().all(|d| d.is_infinite()) {
         report.warn(if counts.points > 0 {
             "nothing was drawn: too few points are near one another; try a larger --scale or --spacing"
         } else if counts.blocks_facing_away > 0 {

@@ -30,18 +30,18 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
         return report.finish();
     }
     drop(set);
+    let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
     let mut frame = surfel::Frame::default();
     report.stats.stage("draw", || {
         // All that the renderer can refuse now is a value of an option.
         let usage = |error: surfel::SurfelError| CliError::Usage(error.to_string());
-        let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
         let mut renderer = surfel::Renderer::new();
         points::repeat(&report, options.repeat, || {
             renderer.draw(&cloud, &view, &frame_options, &mut frame).map_err(usage)
         })
     })?;
     tell_counts(&report, &cloud, &frame);
-    let picture = window_of(&as_drawn(&frame), window, &layers, &camera);
+    let picture = window_of(&as_drawn(&frame), window, &layers, &view);
     report.stats.stage("write", || target.write(&picture, stamp))?;
     let seconds = report.stats.elapsed().as_secs_f64();
     report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));
@@ -52,7 +52,7 @@ fn as_drawn(frame: &surfel::Frame) -> Drawn<'_> {
     Drawn {
         width: frame.width(),
         height: frame.height(),
-        colour: frame.colour(),
+        colour: frame.color(),
         depth: frame.depth(),
         normal: frame.normal(),
         count: &[],
@@ -60,7 +60,7 @@ fn as_drawn(frame: &surfel::Frame) -> Drawn<'_> {
 }
 
 fn tell_counts(report: &Report<'_>, cloud: &surfel::Cloud, frame: &surfel::Frame) {
-    let counts = &frame.counts;
+    let counts = frame.counts();
     let stats = &report.stats;
     stats.count("points", cloud.len() as u64);
     stats.count("points_drawn", counts.points as u64);

@@ -191,17 +191,16 @@ impl ScanOptions {
             1 => ibpr::Passes::One,
             _ => ibpr::Passes::Two { finer: surface.finer as f32 },
         };
-        options.translucency = surface.alpha.map(|alpha| ibpr::Translucency {
-            alpha,
-            layers: surface.depth_layers.into(),
-            threshold: surface.layer_threshold as f32,
+        options.translucency = surface.alpha.map(|alpha| {
+            ibpr::Translucency::new(alpha)
+                .with_layers(surface.depth_layers.into())
+                .with_threshold(surface.layer_threshold as f32)
         });
         if let Some(Vector(light)) = self.shading.light {
             options.light = ibpr::Light::Towards(light.into());
         }
         options.ambient = self.shading.ambient;
-        options.eye_dome =
-            self.shading.edl.map(|strength| ibpr::EyeDome { strength: strength as f32, radius: 2 });
+        options.eye_dome = self.shading.edl.map(|strength| ibpr::EyeDome::new(strength as f32, 2));
         options.surface_layers = !self.layers.is_empty();
         options
     }

@@ -151,7 +151,7 @@ impl SurfelOptions {
             options.light = surfel::Light::Towards(light.into());
         }
         options.ambient = self.shading.ambient;
-        options.normals = !self.layers.is_empty();
+        options.surface_layers = !self.layers.is_empty();
         Ok(options)
     }
 }

@@ -88,9 +88,15 @@ impl PointSet {
     /// [`InputError`] for an attribute that cannot be used.
     pub fn cloud(&self, estimate_normals: bool) -> Result<Cloud, InputError> {
         let mut points = Points::new(&self.positions);
-        points.normals = self.normals.as_deref().filter(|_| !estimate_normals);
-        points.colours = self.colours.as_deref();
-        points.radii = self.radii.as_deref();
+        if let Some(normals) = self.normals.as_deref().filter(|_| !estimate_normals) {
+            points = points.with_normals(normals);
+        }
+        if let Some(colors) = &self.colours {
+            points = points.with_colors(colors);
+        }
+        if let Some(radii) = &self.radii {
+            points = points.with_radii(radii);
+        }
         Cloud::new(&points).map_err(|error| self.blame(&error))
     }
 
@@ -99,7 +105,7 @@ impl PointSet {
         let index = match error {
             SurfelError::NotFinite { index }
             | SurfelError::BadNormal { index }
-            | SurfelError::BadColour { index }
+            | SurfelError::BadColor { index }
             | SurfelError::BadRadius { index, .. } => *index,
             _ => 0,
         };

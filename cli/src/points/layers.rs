@@ -1,7 +1,8 @@
 //! A drawn frame as the layers of a picture file.
 
 use crate::image_io::{Frame, Layer, PixelRect};
-use crate::scene::{Camera, Projection};
+use glam::DVec2;
+use pointillist_view::View;
 
 /// What can be asked for beside colour and depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +33,7 @@ pub struct Drawn<'a> {
 }
 
 /// The part of a drawn frame in `window`, with the layers that were asked for.
-pub fn window_of(frame: &Drawn<'_>, window: PixelRect, layers: &[PointLayer], camera: &Camera) -> Frame {
+pub fn window_of(frame: &Drawn<'_>, window: PixelRect, layers: &[PointLayer], view: &View) -> Frame {
     let rows = (window.y0..window.y1).map(|y| {
         let start = y as usize * frame.width;
         start + window.x0 as usize..start + window.x1 as usize
@@ -45,7 +46,7 @@ pub fn window_of(frame: &Drawn<'_>, window: PixelRect, layers: &[PointLayer], ca
     };
     let layer = |layer: &PointLayer| match layer {
         PointLayer::Normal => named("N", &|i| frame.normal[i]),
-        PointLayer::Position => named("P", &|i| position(frame, i, camera)),
+        PointLayer::Position => named("P", &|i| position(frame, i, view)),
         PointLayer::Count => {
             Layer { channels: vec!["count".to_owned()], planes: vec![plane(&|i| frame.count[i])] }
         }
@@ -60,18 +61,11 @@ pub fn window_of(frame: &Drawn<'_>, window: PixelRect, layers: &[PointLayer], ca
 }
 
 /// Where the surface at the centre of pixel `i` is; 0 where there is none.
-fn position(frame: &Drawn<'_>, i: usize, camera: &Camera) -> [f32; 3] {
+fn position(frame: &Drawn<'_>, i: usize, view: &View) -> [f32; 3] {
     let depth = f64::from(frame.depth[i]);
     if depth.is_infinite() {
         return [0.0; 3];
     }
-    let [right, up, backward] = camera.axes();
-    let (x, y) = ((i % frame.width) as f64 + 0.5, (i / frame.width) as f64 + 0.5);
-    let (u, v) = (x - 0.5 * frame.width as f64, 0.5 * frame.height as f64 - y);
-    let units_per_pixel = match camera.projection {
-        Projection::Perspective { fov_y_rad } => depth * (0.5 * fov_y_rad).tan() * 2.0 / frame.height as f64,
-        Projection::Orthographic { height } => height / frame.height as f64,
-    };
-    let p = camera.eye + (u * right + v * up) * units_per_pixel - depth * backward;
-    p.as_vec3().to_array()
+    let pixel = DVec2::new((i % frame.width) as f64 + 0.5, (i / frame.width) as f64 + 0.5);
+    view.unproject(pixel, depth).as_vec3().to_array()
 }

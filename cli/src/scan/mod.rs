@@ -179,7 +179,7 @@ impl LoadedScan {
     fn as_scan(&self) -> ibpr::Scan<'_> {
         let mut scan = ibpr::Scan::new(&self.positions);
         if !self.colours.is_empty() {
-            scan = scan.with_colours(&self.colours);
+            scan = scan.with_colors(&self.colours);
         }
         if let Some(spacing) = self.spacing {
             scan = scan.with_spacing(spacing);

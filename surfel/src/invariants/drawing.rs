@@ -2,7 +2,7 @@
 
 use super::frames::agree;
 use super::{OwnedPoints, TOLERANCE, check, cloud, drawn, frame, frame_is_sound, frames_are_identical};
-use crate::packed::{pack_colour, unpack_colour};
+use crate::packed::{pack_color, unpack_color};
 use crate::{Focus, Frame, Options, Renderer, View};
 
 /// Any input gives a sound frame or is refused.
@@ -11,9 +11,9 @@ use crate::{Focus, Frame, Options, Renderer, View};
 /// As [`frame_is_sound`].
 pub fn frames_are_sound(points: &OwnedPoints, view: &View, options: &Options) -> Result<(), String> {
     let Some(frame) = frame(points, view, options) else { return Ok(()) };
-    let brightest = match &points.colours {
-        // Links round colours to 1/512 of the brightest channel.
-        Some(colours) => (1.0 + 1.0 / 512.0) * colours.iter().flatten().fold(0.0f32, |m, c| m.max(*c)),
+    let brightest = match &points.colors {
+        // Links round colors to 1/512 of the brightest channel.
+        Some(colors) => (1.0 + 1.0 / 512.0) * colors.iter().flatten().fold(0.0f32, |m, c| m.max(*c)),
         None => options.base.max_element(),
     };
     frame_is_sound(&frame, brightest)
@@ -99,27 +99,27 @@ pub fn a_lens_is_a_depth(
     if depth.is_some() { agree(by(Focus::Lens { aperture, focus }), depth) } else { Ok(()) }
 }
 
-/// Points of one colour (at most 65,408), lit from everywhere, show that colour wherever anything is seen; with links, as
+/// Points of one color (at most 65,408), lit from everywhere, show that color wherever anything is seen; with links, as
 /// exactly as these keep it.
 ///
 /// # Errors
-/// The first pixel of another colour.
-pub fn one_colour_stays_one_colour(
+/// The first pixel of another color.
+pub fn one_color_stays_one_color(
     points: &OwnedPoints,
     view: &View,
     options: &Options,
-    colour: [f32; 3],
+    color: [f32; 3],
 ) -> Result<(), String> {
     let options = Options { ambient: 1.0, ..*options };
-    let Some(frame) = frame(&points.painted(|_| colour), view, &options) else { return Ok(()) };
-    let most = colour.iter().fold(0.0f32, |m, c| m.max(*c));
-    let is_kept = unpack_colour(pack_colour(colour)) == colour;
+    let Some(frame) = frame(&points.painted(|_| color), view, &options) else { return Ok(()) };
+    let most = color.iter().fold(0.0f32, |m, c| m.max(*c));
+    let is_kept = unpack_color(pack_color(color)) == color;
     let slack = most * if is_kept { TOLERANCE } else { TOLERANCE + 1.0 / 512.0 };
-    let same = |c: &[f32; 4]| c[..3].iter().zip(colour).all(|(v, w)| (v - w * c[3]).abs() <= slack * c[3]);
-    match frame.colour().iter().position(|c| !same(c)) {
+    let same = |c: &[f32; 4]| c[..3].iter().zip(color).all(|(v, w)| (v - w * c[3]).abs() <= slack * c[3]);
+    match frame.color().iter().position(|c| !same(c)) {
         Some(i) => {
             let (x, y) = (i % frame.width(), i / frame.width());
-            Err(format!("pixel ({x}, {y}): {:?}, not {colour:?}", frame.colour()[i]))
+            Err(format!("pixel ({x}, {y}): {:?}, not {color:?}", frame.color()[i]))
         }
         None => Ok(()),
     }
@@ -136,6 +136,6 @@ pub fn frames_are_identical_but_for_size(a: &Frame, b: &Frame, k: f64) -> Result
         let holds = wanted == *got || wanted.abs() < f32::MIN_POSITIVE || !a.depth()[i].is_normal();
         check(holds, || format!("pixel {i}: depths {wanted} and {got}"))?;
     }
-    let colours = a.colour() == b.colour() && a.normal() == b.normal();
-    check(colours, || "colours or normals differ".to_owned())
+    let colors = a.color() == b.color() && a.normal() == b.normal();
+    check(colors, || "colors or normals differ".to_owned())
 }

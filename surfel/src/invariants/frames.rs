@@ -4,7 +4,7 @@ use super::{OwnedPoints, check, cloud};
 use crate::{Cloud, Frame, Options, Projection, Renderer, View};
 use glam::{DVec3, Vec3};
 
-/// Rounding allowed to opacities, to lengths of unit normals, and to a colour that all points share.
+/// Rounding allowed to opacities, to lengths of unit normals, and to a color that all points share.
 pub const TOLERANCE: f32 = 1e-4;
 
 /// A view from `eye` to `target`; `None` if there is none, or its up is along the way.
@@ -39,8 +39,8 @@ pub fn frames_are_identical(a: &Frame, b: &Frame) -> Result<(), String> {
     check((a.width(), a.height()) == (b.width(), b.height()), || "sizes differ".to_owned())?;
     let differ = |p: &[f32], q: &[f32]| p.iter().zip(q).any(|(x, y)| x.to_bits() != y.to_bits());
     for i in 0..a.width() * a.height() {
-        let (p, q) = (&a.colour()[i], &b.colour()[i]);
-        check(!differ(p, q), || format!("{}: colours {p:?} and {q:?}", place(a, i)))?;
+        let (p, q) = (&a.color()[i], &b.color()[i]);
+        check(!differ(p, q), || format!("{}: colors {p:?} and {q:?}", place(a, i)))?;
         let (p, q) = (a.depth()[i], b.depth()[i]);
         check(!differ(&[p], &[q]), || format!("{}: depths {p} and {q}", place(a, i)))?;
     }
@@ -59,14 +59,14 @@ pub(super) fn agree(a: Option<Frame>, b: Option<Frame>) -> Result<(), String> {
     }
 }
 
-/// No value is NaN; colours are premultiplied shares of what is at most `brightest`; there is depth, before the eye,
+/// No value is NaN; colors are premultiplied shares of what is at most `brightest`; there is depth, before the eye,
 /// only where half a pixel or more is covered, and a unit normal only there.
 ///
 /// # Errors
 /// The first pixel that is otherwise.
 pub fn frame_is_sound(frame: &Frame, brightest: f32) -> Result<(), String> {
     for i in 0..frame.width() * frame.height() {
-        let (c, depth) = (frame.colour()[i], frame.depth()[i]);
+        let (c, depth) = (frame.color()[i], frame.depth()[i]);
         let told = || format!("{}: {c:?}, depth {depth}", place(frame, i));
         check(c.iter().all(|v| *v >= 0.0 && v.is_finite()) && c[3] <= 1.0 + TOLERANCE, told)?;
         let most = brightest * c[3] * (1.0 + TOLERANCE) + f32::MIN_POSITIVE;

@@ -1,8 +1,9 @@
 //! The tree of a cloud, as it is kept.
 
 use super::{OwnedPoints, check, cloud};
-use crate::cloud::{Cloud, Node};
+use crate::cloud::Cloud;
 use crate::lattice::between;
+use crate::node::Node;
 use crate::packed::unpack_way;
 use glam::Vec3;
 use std::ops::Range;
@@ -11,7 +12,7 @@ use std::ops::Range;
 const AREA_ROUNDING: f64 = 1e-3;
 
 /// Bytes per point that octree, links and areas of a surface take at most, for clouds of 10,000 points and more: 4 for the
-/// area, and for nodes and links 3 (a sphere) to 10 (a thin sheet with two sides and colours).
+/// area, and for nodes and links 3 (a sphere) to 10 (a thin sheet with two sides and colors).
 pub const MOST_OVERHEAD: f64 = 16.0;
 
 /// Any points become a sound octree, or are refused.
@@ -114,6 +115,6 @@ fn links_are_sound(cloud: &Cloud, node: &Node, below: Range<usize>) -> Result<()
     let (links, points) = (sum(&cloud.links.areas[items.clone()]), sum(&cloud.points.areas[below]));
     let off = (links / points - 1.0).abs();
     check(off <= AREA_ROUNDING, || format!("links stand for an area of {links:e}, not {points:e}"))?;
-    let coloured = cloud.links.colours.as_ref().is_none_or(|c| c.len() == cloud.links.points.len());
-    check(coloured && cloud.links.normals.len() == cloud.links.points.len(), || "lengths differ".to_owned())
+    let colored = cloud.links.colors.as_ref().is_none_or(|c| c.len() == cloud.links.points.len());
+    check(colored && cloud.links.normals.len() == cloud.links.points.len(), || "lengths differ".to_owned())
 }

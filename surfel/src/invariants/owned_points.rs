@@ -11,8 +11,8 @@ pub struct OwnedPoints {
     pub positions: Vec<DVec3>,
     /// See [`Points::normals`].
     pub normals: Option<Vec<Vec3>>,
-    /// See [`Points::colours`].
-    pub colours: Option<Vec<[f32; 3]>>,
+    /// See [`Points::colors`].
+    pub colors: Option<Vec<[f32; 3]>>,
     /// See [`Points::radii`].
     pub radii: Option<Vec<f32>>,
 }
@@ -47,7 +47,7 @@ impl OwnedPoints {
         Self {
             positions,
             normals: Some(vec![normal; count]),
-            colours: None,
+            colors: None,
             radii: (radius > 0.0).then(|| vec![radius; count]),
         }
     }
@@ -101,10 +101,10 @@ impl OwnedPoints {
         Self { radii, ..self.moved(|p| p * k) }
     }
 
-    /// Every point in the colour of its place.
+    /// Every point in the color of its place.
     #[must_use]
-    pub fn painted(&self, colour: impl Fn(DVec3) -> [f32; 3]) -> Self {
-        Self { colours: Some(self.positions.iter().map(|p| colour(*p)).collect()), ..self.clone() }
+    pub fn painted(&self, color: impl Fn(DVec3) -> [f32; 3]) -> Self {
+        Self { colors: Some(self.positions.iter().map(|p| color(*p)).collect()), ..self.clone() }
     }
 
     /// Both lots of points, with the attributes that both have.
@@ -116,7 +116,7 @@ impl OwnedPoints {
         Self {
             positions: [self.positions.as_slice(), other.positions.as_slice()].concat(),
             normals: both(self.normals.as_ref(), other.normals.as_ref()),
-            colours: both(self.colours.as_ref(), other.colours.as_ref()),
+            colors: both(self.colors.as_ref(), other.colors.as_ref()),
             radii: both(self.radii.as_ref(), other.radii.as_ref()),
         }
     }
@@ -137,7 +137,7 @@ impl OwnedPoints {
         Self {
             positions: order.iter().map(|i| self.positions[*i]).collect(),
             normals: reordered(self.normals.as_ref(), &order),
-            colours: reordered(self.colours.as_ref(), &order),
+            colors: reordered(self.colors.as_ref(), &order),
             radii: reordered(self.radii.as_ref(), &order),
         }
     }
@@ -148,7 +148,7 @@ impl OwnedPoints {
         Points {
             positions: &self.positions,
             normals: self.normals.as_deref(),
-            colours: self.colours.as_deref(),
+            colors: self.colors.as_deref(),
             radii: self.radii.as_deref(),
         }
     }

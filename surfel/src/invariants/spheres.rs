@@ -7,7 +7,7 @@ use glam::{DVec3, dvec2};
 /// Sum of all opacities, pixels.
 #[must_use]
 pub fn covered_px(frame: &Frame) -> f64 {
-    frame.colour().iter().map(|c| f64::from(c[3])).sum()
+    frame.color().iter().map(|c| f64::from(c[3])).sum()
 }
 
 /// The ray through the centre of pixel `i`: where it starts, and its unit direction.
@@ -51,9 +51,9 @@ pub fn sphere_has_no_holes(
     margin_px: f64,
 ) -> Result<(), String> {
     let frame = drawn(cloud, view, options).ok_or("refused")?;
-    let alpha = |i: usize| frame.colour()[i][3];
+    let alpha = |i: usize| frame.color()[i][3];
     let inside =
-        (0..frame.colour().len()).filter(|i| sphere_at(view, *i, centre, radius, margin_px).is_some());
+        (0..frame.color().len()).filter(|i| sphere_at(view, *i, centre, radius, margin_px).is_some());
     let bare: Vec<usize> = inside.filter(|i| alpha(*i) < 0.999).collect();
     let worst = bare.iter().min_by(|a, b| alpha(**a).total_cmp(&alpha(**b)));
     worst.map_or(Ok(()), |&i| {
@@ -62,10 +62,10 @@ pub fn sphere_has_no_holes(
     })
 }
 
-/// Root of the mean squared difference of two frames' colours and opacities.
+/// Root of the mean squared difference of two frames' colors and opacities.
 #[must_use]
 pub fn difference(a: &Frame, b: &Frame) -> f64 {
-    let values = || a.colour().iter().flatten().zip(b.colour().iter().flatten());
+    let values = || a.color().iter().flatten().zip(b.color().iter().flatten());
     let sum: f64 = values().map(|(p, q)| f64::from(p - q).powi(2)).sum();
     (sum / values().count() as f64).sqrt()
 }

@@ -1,0 +1,108 @@
+//! What the points of a cloud are, in the cloud's order.
+
+use crate::lattice::{Lattice, morton};
+use crate::neighbours::Places;
+use crate::points::Points;
+use crate::{areas, normals, radius};
+use glam::{DVec3, Vec3};
+use pointillist_parallel as parallel;
+use std::cmp::Ordering;
+
+/// Radii and areas are at least this many units: 2⁻³³, half a cell of the lattice.
+pub(crate) const SMALLEST: f32 = 1.164_153_2e-10;
+
+/// What points are: those of a leaf follow one another.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Attributes {
+    pub(crate) cells: [Vec<u32>; 3],
+    /// Unit vectors.
+    pub(crate) normals: [Vec<f32>; 3],
+    /// Units.
+    pub(crate) radii: Vec<f32>,
+    /// Share of the surface, square units.
+    pub(crate) areas: Vec<f32>,
+    pub(crate) colors: Option<Vec<[f32; 3]>>,
+}
+
+impl Attributes {
+    pub(crate) fn cell(&self, point: usize) -> [u32; 3] {
+        [0, 1, 2].map(|axis| self.cells[axis][point])
+    }
+
+    pub(crate) fn normal(&self, point: usize) -> Vec3 {
+        Vec3::from_array([0, 1, 2].map(|axis| self.normals[axis][point]))
+    }
+
+    /// Puts the point that was at `places[i]` at place i.
+    pub(crate) fn reorder(&mut self, places: &[u32]) {
+        fn reordered<T: Copy>(list: &mut Vec<T>, places: &[u32]) {
+            *list = places.iter().map(|&old| list[old as usize]).collect();
+        }
+        self.cells.iter_mut().for_each(|list| reordered(list, places));
+        self.normals.iter_mut().for_each(|list| reordered(list, places));
+        reordered(&mut self.radii, places);
+        reordered(&mut self.areas, places);
+        self.colors.iter_mut().for_each(|list| reordered(list, places));
+    }
+}
+
+/// Estimates what is missing and brings all into an order that depends on what points are, not on how they came.
+pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, Vec<u64>) {
+    let count = points.positions.len();
+    let cells = parallel::map(count, |i| lattice.cell(points.positions[i]));
+    let mut keys = parallel::map(count, |i| (morton(cells[i]), i as u32));
+    parallel::sort_by(&mut keys, |a, b| {
+        a.0.cmp(&b.0).then_with(|| compare(points, &cells, a.1 as usize, b.1 as usize))
+    });
+    // In units about the cube's corner: estimates see the same numbers wherever the cloud lies.
+    let at = |i: u32| (points.positions[i as usize] - lattice.low) / lattice.side;
+    let positions: Vec<DVec3> = keys.iter().map(|&(_, i)| at(i)).collect();
+    let places = Places::new(&positions);
+    let two_sided = points.normals.is_none();
+    let unit = |n: Vec3| (n / n.abs().max_element()).normalize();
+    let normals: Vec<Vec3> = match points.normals {
+        Some(given) => keys.iter().map(|&(_, i)| unit(given[i as usize])).collect(),
+        None => normals::estimate(&places),
+    };
+    let radii: Vec<f32> = match points.radii {
+        Some(given) => {
+            keys.iter().map(|&(_, i)| (f64::from(given[i as usize]) / lattice.side) as f32).collect()
+        }
+        None => radius::of_cloud(&places, &normals, two_sided),
+    };
+    let radii: Vec<f32> = radii.into_iter().map(|r| r.clamp(SMALLEST, 1e6)).collect();
+    let areas = areas::of_cloud(&places, &normals, &radii, two_sided);
+    let attributes = Attributes {
+        cells: [0, 1, 2].map(|axis| keys.iter().map(|&(_, i)| cells[i as usize][axis]).collect()),
+        normals: [0, 1, 2].map(|axis| normals.iter().map(|n| n[axis]).collect()),
+        radii,
+        areas: areas.into_iter().map(|a| a.clamp(SMALLEST * SMALLEST, 1e12)).collect(),
+        colors: points.colors.map(|given| keys.iter().map(|&(_, i)| given[i as usize]).collect()),
+    };
+    (attributes, keys.into_iter().map(|key| key.0).collect())
+}
+
+/// Points of one code by everything that they are: those that are equal in all are the same.
+fn compare(points: &Points<'_>, cells: &[[u32; 3]], a: usize, b: usize) -> Ordering {
+    let exact = |i: usize| points.positions[i].to_array();
+    let normal = |i: usize| points.normals.map_or([0.0; 3], |all| all[i].to_array());
+    let color = |i: usize| points.colors.map_or([0.0; 3], |all| all[i]);
+    let radius = |i: usize| points.radii.map_or(0.0, |all| all[i]);
+    let by = |p: [f32; 3], q: [f32; 3]| {
+        p.iter().zip(&q).map(|(p, q)| p.total_cmp(q)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
+    };
+    let by_position = || {
+        exact(a)
+            .iter()
+            .zip(&exact(b))
+            .map(|(p, q)| p.total_cmp(q))
+            .find(|o| o.is_ne())
+            .unwrap_or(Ordering::Equal)
+    };
+    cells[a]
+        .cmp(&cells[b])
+        .then_with(by_position)
+        .then_with(|| by(normal(a), normal(b)))
+        .then_with(|| by(color(a), color(b)))
+        .then_with(|| radius(a).total_cmp(&radius(b)))
+}
