@@ -1,9 +1,10 @@
 //! The correlated rule: a receiver minus everything that stands in its light.
 
-use crate::light::{Measure, Query};
-use crate::scratch::{Caster, Nearby, Target, Work};
+use crate::casters::Caster;
+use crate::query::{Measure, Query};
+use crate::target::Target;
 use glam::DVec2;
-use pointillist_dice::hide::Occluders;
+use pointillist_dice::hide::{Blocker, Occluders, Regions};
 use pointillist_dice::{ConvexPolygon, convex};
 use pointillist_micropoint::{Face, Front, Layer, in_front};
 use std::cmp::Ordering;
@@ -11,16 +12,26 @@ use std::cmp::Ordering;
 /// Overlaps below this share of a receiver are rounding.
 const NEGLIGIBLE: f64 = 1e-9;
 
+/// Memory of this rule.
+#[derive(Debug, Default)]
+pub(crate) struct Memory {
+    regions: Regions,
+    blockers: Vec<Blocker>,
+    /// The caster that hid the last target.
+    last_hider: u32,
+    /// Targets that had to be cut.
+    pub(crate) partial: u64,
+}
+
 /// The lit fraction of a target, 0..=1.
 pub(crate) fn lit_fraction(
     query: &Query<'_>,
     target: &Target,
     outline: &[DVec2],
     measure: &Measure<'_>,
-    nearby: &[Nearby],
-    work: &mut Work,
+    work: &mut Memory,
 ) -> f64 {
-    if !find_blockers(query, target, outline, measure.face, nearby, work) {
+    if !find_blockers(query, target, outline, measure.face, work) {
         return 0.0;
     }
     if work.blockers.is_empty() {
@@ -50,12 +61,12 @@ fn find_blockers(
     target: &Target,
     outline: &[DVec2],
     face: &Face,
-    nearby: &[Nearby],
-    work: &mut Work,
+    work: &mut Memory,
 ) -> bool {
     work.blockers.clear();
     let (low, high) = target.bounds;
     // What hid the last target often hides the next.
+    let nearby = query.nearby;
     let last = nearby.iter().position(|n| n.index == work.last_hider);
     let rest = nearby.iter().enumerate().filter(|(i, _)| Some(*i) != last).map(|(_, n)| n);
     for near in last.map(|i| &nearby[i]).into_iter().chain(rest) {
