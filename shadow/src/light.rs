@@ -11,7 +11,7 @@ use crate::screen::{Emitter, Screens};
 use crate::target::{Target, Targets};
 use crate::{copies, exact, layers};
 use glam::{DVec2, DVec3};
-use pointillist_dice::ConvexPolygon;
+use pointillist_dice::{ConvexPolygon, clip_ring, share_before_crossing};
 use pointillist_micropoint::{
     Face, Geometry, GridRect, Lens, LensKind, Occlusion, ProjectedVertex, Setup, TexturedOpacity, ViewVolume,
     set_up_face,
@@ -159,16 +159,8 @@ impl<'a> ShadowLight<'a> {
         ];
         for normal in sides {
             let mut clipped = Vec::with_capacity(ring.len() + 1);
-            for (i, &a) in ring.iter().enumerate() {
-                let b = ring[(i + 1) % ring.len()];
-                let (va, vb) = (normal.dot(a), normal.dot(b));
-                if va >= 0.0 {
-                    clipped.push(a);
-                }
-                if (va >= 0.0) != (vb >= 0.0) {
-                    clipped.push(a + (b - a) * (va / (va - vb)));
-                }
-            }
+            let crossing = |(a, va): (DVec3, f64), (b, vb)| a + (b - a) * share_before_crossing(va, vb);
+            clip_ring(&ring, |p| normal.dot(p), crossing, |p| clipped.push(p));
             ring = clipped;
         }
         if ring.len() >= 3 && ring.iter().all(|p| p.z > 0.0) {
