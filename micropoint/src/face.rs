@@ -179,7 +179,7 @@ pub struct GridRect {
 
 /// The outline of a face on the grid, in positive order.
 #[derive(Clone, Copy, Debug)]
-pub struct Outline {
+pub(crate) struct Outline {
     vertices: [DVec2; 8],
     len: usize,
 }
@@ -188,7 +188,7 @@ impl Outline {
     /// The vertices; fewer than three if nothing is visible.
     #[must_use]
     #[inline]
-    pub fn vertices(&self) -> &[DVec2] {
+    pub(crate) fn vertices(&self) -> &[DVec2] {
         &self.vertices[..self.len]
     }
 
@@ -230,7 +230,7 @@ pub struct Setup<'a> {
 /// face with its outline. `None` if there is nothing to see.
 #[must_use]
 #[inline]
-pub fn set_up_face(
+pub(crate) fn set_up_face(
     setup: &Setup<'_>,
     triangle: &Triangle,
     source: (u32, u32),

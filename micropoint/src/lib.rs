@@ -38,6 +38,7 @@
 //! 3. L. Carpenter: *The A-buffer, an antialiased hidden surface method*, SIGGRAPH 1984.
 #![forbid(unsafe_code)]
 
+mod bounds;
 mod closed;
 mod error;
 mod face;
@@ -50,18 +51,18 @@ mod render;
 mod resolve;
 mod texel;
 mod tile;
+mod visit;
 mod volume;
 
+pub use bounds::Bounds;
 pub use error::MicropointError;
-pub use face::{
-    Face, GridRect, Outline, PlainOpacity, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity, set_up_face,
-};
+pub use face::{Face, GridRect, PlainOpacity, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity};
 pub use front::{Front, Layer, in_front};
-pub use geometry::{Bounds, Cluster, ClusterQueue, Geometry, HiddenSides, Surface, Triangle};
-pub use lens::{Lens, LensKind, Plane, TIE};
-pub use pointillist_view::{PixelRect, Projected, Projection, Ray, View, ViewError};
+pub use geometry::{Geometry, HiddenSides, Surface};
+pub use lens::{Lens, LensKind, Plane};
+pub use pointillist_view::{PixelRect, Projection, View, ViewError};
 pub use render::{Fragment, Micropoint, MicropointOptions, Renderer, Tile};
 pub use resolve::Occlusion;
 pub use texel::{TexelCorner, TexelSums, TexelWrap};
 pub use tile::TileCounts;
-pub use volume::ViewVolume;
+pub use visit::{FaceVisitor, VisitCounts, VisitMemory};

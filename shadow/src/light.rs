@@ -1,8 +1,9 @@
 //! One light and the fractions of it that reach receivers.
 
-use crate::casters::{Caster, Nearby};
+use crate::casters::{Caster, Casters, Nearby};
 use crate::cells::LightCells;
 use crate::error::ShadowError;
+use crate::grid::LightGrid;
 use crate::options::{Resolution, ShadowOptions};
 use crate::query::{Measure, Query};
 use crate::receiver::{Receivers, Viewer};
@@ -13,8 +14,8 @@ use crate::{copies, exact, layers};
 use glam::{DVec2, DVec3};
 use pointillist_dice::{ConvexPolygon, clip_ring, share_before_crossing};
 use pointillist_micropoint::{
-    Face, Geometry, GridRect, Lens, LensKind, Occlusion, ProjectedVertex, Setup, TexturedOpacity, ViewVolume,
-    set_up_face,
+    Bounds, Face, FaceVisitor, Geometry, GridRect, Lens, LensKind, Occlusion, ProjectedVertex, Setup,
+    Surface, TexturedOpacity,
 };
 
 /// A light with its screens, ready to be asked from any thread.
@@ -186,55 +187,20 @@ impl<'a> ShadowLight<'a> {
     /// may darken.
     fn collect_casters(&self, screen: usize, scratch: &mut ShadowScratch) {
         let lens = &self.screens.lenses[screen];
-        let (low, high) = scratch.grid.bounds();
-        let rect = GridRect { low, high };
-        let volume = ViewVolume::new(lens, &rect);
+        let ShadowScratch { grid, casters, visit, counts, copy_keys, .. } = scratch;
+        casters.clear();
+        let (low, high) = grid.bounds();
         let all = self.options.occlusion == Occlusion::Paper;
-        let farthest = if all { f64::INFINITY } else { lens.depth(scratch.grid.least_nearness) };
-        scratch.casters.clear();
-        let mut queue = std::mem::take(&mut scratch.queue);
-        let skipped = self.geometry.visit_near_to_far(
-            &mut queue,
-            |bounds| volume.nearest_depth(bounds).filter(|&d| d <= farthest),
-            |cluster| {
-                self.link_cluster(lens, cluster, scratch);
-                if scratch.grid.open_groups == 0 { f64::NEG_INFINITY } else { farthest }
-            },
-        );
-        scratch.counts.clusters_skipped += skipped;
-        scratch.queue = queue;
+        let farthest = if all { f64::INFINITY } else { lens.depth(grid.least_nearness) };
+        let setup = Setup { lens, rect: &self.screens.rect, hidden: &self.screens.hidden, keeps_backs: true };
+        let mut linker = Linker { lens, farthest, grid, casters, linked: 0, unlinked: 0 };
+        let seen = self.geometry.visit_faces(&setup, &GridRect { low, high }, farthest, visit, &mut linker);
+        counts.clusters += seen.clusters;
+        counts.clusters_skipped += seen.clusters_skipped;
+        counts.casters += linker.linked;
+        counts.casters_culled += seen.triangles_culled + linker.unlinked;
         if self.options.occlusion == Occlusion::Correlated {
-            copies::merge(&mut scratch.casters.list, &mut scratch.copy_keys);
-        }
-    }
-
-    fn link_cluster(&self, lens: &Lens, cluster: u32, scratch: &mut ShadowScratch) {
-        let (bounds, vertices, triangles) = self.geometry.cluster(cluster);
-        let hidden = &self.screens.hidden;
-        let ShadowScratch { grid, casters, projected, counts, .. } = scratch;
-        if self.geometry.hides_cluster(cluster, lens, hidden) || !grid.may_be_darkened_by(lens, bounds) {
-            counts.clusters_skipped += 1;
-            return;
-        }
-        counts.clusters += 1;
-        let setup = Setup { lens, rect: &self.screens.rect, hidden, keeps_backs: true };
-        projected.clear();
-        projected.extend(vertices.iter().map(|&v| ProjectedVertex::new(lens, v)));
-        for (i, t) in triangles.iter().enumerate() {
-            let v = t.corners.map(|c| &projected[usize::from(c)]);
-            let surface = &self.geometry.surfaces()[t.surface as usize];
-            if surface.opacity <= 0.0 || grid.is_missed_by(v) {
-                counts.casters_culled += 1;
-                continue;
-            }
-            let linked =
-                set_up_face(&setup, t, (cluster, i as u32), v, surface).is_some_and(|(face, outline)| {
-                    let polygon = ConvexPolygon::from_vertices(outline.vertices());
-                    let opacity =
-                        if surface.textured_opacity { None } else { Some(f64::from(surface.opacity)) };
-                    casters.link(Caster { face, bounds: polygon.bounds(), polygon, opacity }, grid)
-                });
-            *(if linked { &mut counts.casters } else { &mut counts.casters_culled }) += 1;
+            copies::merge(&mut casters.list, copy_keys);
         }
     }
 
@@ -287,6 +253,43 @@ impl<'a> ShadowLight<'a> {
             None => exact::lit_fraction(query, target, outline, measure, &mut rules.exact),
             Some(cells) => layers::lit_fraction(query, outline, measure.face, cells, &mut rules.layers),
         }
+    }
+}
+
+/// Links triangles to the groups of targets that they may darken.
+struct Linker<'s> {
+    lens: &'s Lens,
+    farthest: f64,
+    grid: &'s mut LightGrid,
+    casters: &'s mut Casters,
+    linked: u64,
+    unlinked: u64,
+}
+
+impl FaceVisitor for Linker<'_> {
+    #[inline]
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.grid.may_be_darkened_by(self.lens, bounds)
+    }
+
+    #[inline]
+    fn skips(&self, corners: [&ProjectedVertex; 3], surface: &Surface) -> bool {
+        surface.opacity <= 0.0 || self.grid.is_missed_by(corners)
+    }
+
+    #[inline]
+    fn visit(&mut self, face: Face, outline: &[DVec2], opacity: Option<f32>) {
+        let polygon = ConvexPolygon::from_vertices(outline);
+        let caster = Caster { face, bounds: polygon.bounds(), polygon, opacity: opacity.map(f64::from) };
+        if self.casters.link(caster, self.grid) {
+            self.linked += 1;
+        } else {
+            self.unlinked += 1;
+        }
+    }
+
+    fn farthest(&self) -> f64 {
+        if self.grid.open_groups == 0 { f64::NEG_INFINITY } else { self.farthest }
     }
 }
 

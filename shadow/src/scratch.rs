@@ -6,7 +6,7 @@ use crate::counts::ShadowCounts;
 use crate::grid::LightGrid;
 use crate::target::Targets;
 use crate::{exact, layers};
-use pointillist_micropoint::{ClusterQueue, Face, ProjectedVertex};
+use pointillist_micropoint::{Face, VisitMemory};
 
 /// Which side of a face the viewer sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,8 +93,7 @@ pub struct ShadowScratch {
     pub(crate) grid: LightGrid,
     pub(crate) casters: Casters,
     pub(crate) copy_keys: Vec<(u64, u32)>,
-    pub(crate) queue: ClusterQueue,
-    pub(crate) projected: Vec<ProjectedVertex>,
+    pub(crate) visit: VisitMemory,
     pub(crate) nearby: Vec<Nearby>,
     pub(crate) rules: RuleMemory,
 }
