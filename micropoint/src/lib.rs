@@ -1,6 +1,6 @@
 //! Triangles to visible micropoints: exact coverage and exact occlusion in every cell.
 //!
-//! An observer of a pixel sees Coverage × Alpha × Colour, so coverage can be moved into opacity and no
+//! An observer of a pixel sees Coverage × Alpha × Color, so coverage can be moved into opacity and no
 //! sample is needed, nor missed (\[1\], §3). This crate cuts triangles by the cells of the pixel grid,
 //! finds out what is visible of each piece, and hands out *micropoints*: a weight, a place on a
 //! triangle, and the visible outline, for anyone to shade.
@@ -25,7 +25,7 @@
 //! # Accuracy and cost
 //! Geometry is f64 relative to the eye. Areas are exact up to rounding; where several parts meet in one
 //! cell they are clipped against each other, so that what a pixel shows is the exact area integral of
-//! piecewise constant colours. Surfaces whose depths differ by less than 1e-10 (relative) coincide.
+//! piecewise constant colors. Surfaces whose depths differ by less than 1e-10 (relative) coincide.
 //! Cost grows with the visible outline, not with hidden or covered area: closed cells refuse what lies
 //! behind them, whole clusters at a time, and covered cells are never cut.
 //!

@@ -97,6 +97,7 @@ const COVERED: f64 = 1e-9;
 
 /// What was done and what was not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct TileCounts {
     /// Clusters that were looked into.
     pub clusters: u64,

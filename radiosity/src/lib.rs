@@ -72,7 +72,7 @@ pub use error::{PolygonError, RadiosityError};
 pub use factor::{FactorOptions, FormFactor, form_factor};
 pub use hemicube::{Hemicube, HemicubeKind};
 pub use lamp::{Irradiance, Lamp};
-pub use link::LinkCounts;
+pub use link::{LinkCounts, RuleCounts};
 pub use patches::Patch;
 pub use polygon::{Polygon, SHAPE_TOLERANCE};
 pub use rgb::Rgb;

@@ -15,6 +15,18 @@ pub(crate) struct Link {
     pub(crate) between: (u32, u32),
 }
 
+/// Unoccluded links by the rule that computed them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct RuleCounts {
+    /// Quadrature over both areas.
+    pub areas: usize,
+    /// Lambert's formula at points of one of the two.
+    pub points: usize,
+    /// Contour integrals.
+    pub contours: usize,
+}
+
 /// What was skipped and why, and what was done.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -23,8 +35,8 @@ pub struct LinkCounts {
     pub links: usize,
     /// Of them, with something between.
     pub partly_hidden: usize,
-    /// Unoccluded links by quadrature over both areas, by Lambert's formula at points of one, and by contours.
-    pub by_rule: [usize; 3],
+    /// Unoccluded links, by the rule that computed them.
+    pub by_rule: RuleCounts,
     /// Pairs that face apart.
     pub facing_apart: usize,
     /// Pairs of which one neither emits nor reflects.
@@ -47,9 +59,9 @@ impl std::ops::AddAssign for LinkCounts {
     fn add_assign(&mut self, o: Self) {
         self.links += o.links;
         self.partly_hidden += o.partly_hidden;
-        for (rule, more) in self.by_rule.iter_mut().zip(o.by_rule) {
-            *rule += more;
-        }
+        self.by_rule.areas += o.by_rule.areas;
+        self.by_rule.points += o.by_rule.points;
+        self.by_rule.contours += o.by_rule.contours;
         self.facing_apart += o.facing_apart;
         self.black += o.black;
         self.hidden += o.hidden;

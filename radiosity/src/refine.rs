@@ -299,9 +299,9 @@ impl Refiner<'_> {
         found.counts.links += 1;
         if between.is_empty() {
             match mutual.rule {
-                Rule::Areas => found.counts.by_rule[0] += 1,
-                Rule::Points => found.counts.by_rule[1] += 1,
-                Rule::Contours | Rule::Apart => found.counts.by_rule[2] += 1,
+                Rule::Areas => found.counts.by_rule.areas += 1,
+                Rule::Points => found.counts.by_rule.points += 1,
+                Rule::Contours | Rule::Apart => found.counts.by_rule.contours += 1,
             }
         } else {
             found.counts.partly_hidden += 1;

@@ -38,8 +38,8 @@ pub(crate) fn lit_fraction(
         return 1.0;
     }
     // The result must not depend on the order in which casters were found.
-    work.blockers
-        .sort_unstable_by(|a, b| compare(&query.casters[a.0 as usize], &query.casters[b.0 as usize]));
+    let caster = |b: &Blocker| &query.casters[b.number as usize];
+    work.blockers.sort_unstable_by(|a, b| compare(caster(a), caster(b)));
     work.partial += 1;
     let polygon = ConvexPolygon::from_vertices(outline);
     work.regions.hide(polygon, NEGLIGIBLE * target.area, &work.blockers, query);
@@ -96,8 +96,8 @@ fn find_blockers(
         }
         match front {
             Front::Nowhere => {}
-            Front::Everywhere => work.blockers.push((c, None)),
-            Front::Within(half) => work.blockers.push((c, Some(half))),
+            Front::Everywhere => work.blockers.push(Blocker { number: c, front: None }),
+            Front::Within(half) => work.blockers.push(Blocker { number: c, front: Some(half) }),
         }
     }
     true
@@ -143,8 +143,8 @@ impl Occluders for Query<'_> {
     }
 }
 
-/// Opaque ones first: what they hide, no texture needs to be asked about. Then nearest to the light
-/// first, then by place; the triangle's number only between equals.
+/// A canonical order of casters: opaque ones before textured ones, whose masks need not be asked where opaque ones hide the receiver;
+/// then by nearness to the light, nearest first, then by place. The triangle's number decides only between equals.
 pub(crate) fn compare(a: &Caster, b: &Caster) -> Ordering {
     let key = |c: &Caster| {
         let (low, high) = c.bounds;
