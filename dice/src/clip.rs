@@ -1,116 +1,45 @@
-//! Clipping in homogeneous space, before there is a screen to cut by a grid.
+//! Clipping a convex ring by a half-space, whatever its vertices are.
 
-use glam::{DVec2, DVec3, DVec4, Vec4Swizzles};
-
-use crate::DiceError;
-
-/// A vertex in clip space, with what lets the caller recover everything else it carries.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ClipVertex {
-    /// Homogeneous position.
-    pub position: DVec4,
-    /// Barycentric coordinates in the original triangle, or any three values that are affine in space.
-    pub weights: DVec3,
-}
-
-impl ClipVertex {
-    /// The corners of a triangle, with the unit vectors as weights.
-    #[must_use]
-    pub fn triangle(positions: [DVec4; 3]) -> [Self; 3] {
-        let weights = [DVec3::X, DVec3::Y, DVec3::Z];
-        [0, 1, 2].map(|i| Self { position: positions[i], weights: weights[i] })
-    }
-
-    /// The place on the screen, position divided by w: x and y in −1 to 1.
-    #[must_use]
-    pub fn ndc(&self) -> DVec2 {
-        self.position.xy() / self.position.w
-    }
-}
-
-/// Keeps the part of a convex polygon in front of the eye: w ≥ `relative` × the largest |w| of the polygon.
+/// The part of a convex ring where `value`, an affine function of place, is not negative (Sutherland–Hodgman for one half-space).
 ///
-/// There is no absolute distance in this, so scenes of any scale are treated alike: a vertex at the eye or behind it is
-/// cut off, one at a millionth of the polygon's depth is kept with `relative` = 1e-9. `out` is cleared first, and stays
-/// empty if nothing is in front. New vertices are computed from the nearer to the farther end, so neighbours that
-/// share an edge and a limit get the same ones.
+/// `keep` gets its vertices in the order of the ring. Vertices on the border stay; only an edge with ends strictly on both sides gets
+/// a new one: `crossing` makes it, from both ends with their values. [`share_before_crossing`] says how far from the first end it lies.
+/// Values that are NaN are outside and cross nothing. Cost: one `value` a vertex.
 ///
-/// # Errors
-/// [`DiceError::NotFinite`] for a position or weight that is NaN or infinite.
-pub fn clip_near(polygon: &[ClipVertex], relative: f64, out: &mut Vec<ClipVertex>) -> Result<(), DiceError> {
-    check_finite(polygon)?;
-    let largest = polygon.iter().fold(0.0_f64, |m, v| m.max(v.position.w.abs()));
-    let limit = relative * largest;
-    out.clear();
-    if largest > 0.0 {
-        clip_half_space(polygon, out, |v| v.w - limit);
-        out.retain(|v| v.position.w > 0.0);
-    }
-    Ok(())
-}
-
-/// Keeps the part of a convex polygon with |x| ≤ `guard`·w and |y| ≤ `guard`·w; guard 1 is the viewport itself.
+/// ```
+/// use glam::DVec3;
+/// use pointillist_dice::{clip_ring, share_before_crossing};
 ///
-/// A guard band a few times the viewport keeps cell numbers small and leaves most polygons as they are. `scratch` is
-/// overwritten. Call [`clip_near`] first.
-///
-/// # Errors
-/// [`DiceError::NotFinite`] for a position or weight that is NaN or infinite.
-pub fn clip_guard_band(
-    polygon: &mut Vec<ClipVertex>,
-    guard: f64,
-    scratch: &mut Vec<ClipVertex>,
-) -> Result<(), DiceError> {
-    check_finite(polygon)?;
-    let sides: [fn(DVec4, f64) -> f64; 4] =
-        [|v, g| g * v.w - v.x, |v, g| g * v.w + v.x, |v, g| g * v.w - v.y, |v, g| g * v.w + v.y];
-    for side in sides {
-        if polygon.iter().all(|v| side(v.position, guard) >= 0.0) {
-            continue;
+/// // The part of a triangle above the plane z = 1.
+/// let ring = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Z * 2.0];
+/// let mut part = vec![];
+/// clip_ring(&ring, |p| p.z - 1.0, |(a, va), (b, vb)| a.lerp(b, share_before_crossing(va, vb)), |p| part.push(p));
+/// assert_eq!(part, [DVec3::Z, DVec3::new(2.0, 0.0, 1.0), DVec3::Z * 2.0]);
+/// ```
+#[inline]
+pub fn clip_ring<V: Copy>(
+    ring: &[V],
+    value: impl Fn(V) -> f64,
+    mut crossing: impl FnMut((V, f64), (V, f64)) -> V,
+    mut keep: impl FnMut(V),
+) {
+    let Some(&(mut a)) = ring.last() else { return };
+    let mut value_a = value(a);
+    for &b in ring {
+        let value_b = value(b);
+        if (value_a < 0.0 && value_b > 0.0) || (value_a > 0.0 && value_b < 0.0) {
+            keep(crossing((a, value_a), (b, value_b)));
         }
-        scratch.clear();
-        clip_half_space(polygon, scratch, |v| side(v, guard));
-        std::mem::swap(polygon, scratch);
-    }
-    Ok(())
-}
-
-fn check_finite(polygon: &[ClipVertex]) -> Result<(), DiceError> {
-    let finite = |v: &ClipVertex| v.position.is_finite() && v.weights.is_finite();
-    match polygon.iter().position(|v| !finite(v)) {
-        Some(index) => Err(DiceError::NotFinite { index }),
-        None => Ok(()),
-    }
-}
-
-/// Sutherland–Hodgman for one plane; `distance` is linear and not negative on the side that stays.
-fn clip_half_space(polygon: &[ClipVertex], out: &mut Vec<ClipVertex>, distance: impl Fn(DVec4) -> f64) {
-    let Some(mut a) = polygon.last() else { return };
-    let mut a_distance = distance(a.position);
-    for b in polygon {
-        let b_distance = distance(b.position);
-        if (a_distance < 0.0) != (b_distance < 0.0) {
-            // Always from the vertex that stays, so that both neighbours of an edge find the same point.
-            out.push(if a_distance < 0.0 {
-                between(b, a, b_distance, a_distance)
-            } else {
-                between(a, b, a_distance, b_distance)
-            });
+        if value_b >= 0.0 {
+            keep(b);
         }
-        if b_distance >= 0.0 {
-            out.push(*b);
-        }
-        (a, a_distance) = (b, b_distance);
+        (a, value_a) = (b, value_b);
     }
 }
 
-/// The point of the edge at distance 0; `inside` ≥ 0 > `outside`.
-fn between(a: &ClipVertex, b: &ClipVertex, inside: f64, outside: f64) -> ClipVertex {
-    // Halved: the difference of two large numbers may be infinite, its half is not.
-    let t = (0.5 * inside) / (0.5 * inside - 0.5 * outside);
-    // Both ends weighted, not a + t·(b − a): exact at both ends, and no overflow.
-    let mix = |a: f64, b: f64| (1.0 - t) * a + t * b;
-    let mix4 = |a: DVec4, b: DVec4| DVec4::new(mix(a.x, b.x), mix(a.y, b.y), mix(a.z, b.z), mix(a.w, b.w));
-    let mix3 = |a: DVec3, b: DVec3| DVec3::new(mix(a.x, b.x), mix(a.y, b.y), mix(a.z, b.z));
-    ClipVertex { position: mix4(a.position, b.position), weights: mix3(a.weights, b.weights) }
+/// Where an affine function with these values of opposite sign at the ends of an edge is 0, from 0 at the first end to 1 at the second.
+#[must_use]
+#[inline]
+pub fn share_before_crossing(value_a: f64, value_b: f64) -> f64 {
+    value_a / (value_a - value_b)
 }

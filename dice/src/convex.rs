@@ -1,5 +1,6 @@
 //! Convex polygons of bounded size on the stack: the currency of every exact visibility test.
 
+use crate::clip::{clip_ring, share_before_crossing};
 use glam::DVec2;
 
 /// A half-plane `{p : normal · (p − anchor) + offset ≥ 0}`.
@@ -154,18 +155,7 @@ impl ConvexPolygon {
     #[inline]
     pub fn clipped(&self, half: &HalfPlane) -> Self {
         let mut inside = Self::EMPTY;
-        let Some(&(mut p)) = self.vertices().last() else { return inside };
-        let mut side_p = half.value(p);
-        for &q in self.vertices() {
-            let side_q = half.value(q);
-            if side_p * side_q < 0.0 {
-                inside.push(p + (q - p) * (side_p / (side_p - side_q)));
-            }
-            if side_q >= 0.0 {
-                inside.push(q);
-            }
-            (p, side_p) = (q, side_q);
-        }
+        clip_ring(self.vertices(), |p| half.value(p), crossing, |p| inside.push(p));
         inside
     }
 
@@ -208,7 +198,7 @@ impl ConvexPolygon {
                 outside.push(p);
             }
             if side[i] * side[j] < 0.0 {
-                let crossing = p + (q - p) * (side[i] / (side[i] - side[j]));
+                let crossing = crossing((p, side[i]), (q, side[j]));
                 inside.push(crossing);
                 outside.push(crossing);
             }
@@ -220,6 +210,12 @@ impl ConvexPolygon {
         self.len = other.len;
         self.vertices[..other.len].copy_from_slice(other.vertices());
     }
+}
+
+/// Where the edge from `p` to `q` meets the border of a half-plane, by the half-plane's values at both.
+#[inline]
+fn crossing((p, value_p): (DVec2, f64), (q, value_q): (DVec2, f64)) -> DVec2 {
+    p + (q - p) * share_before_crossing(value_p, value_q)
 }
 
 /// Signed area `∮ x dy` of a ring, relative to its first vertex.

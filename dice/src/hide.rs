@@ -62,7 +62,13 @@ pub trait Occluders {
 }
 
 /// An occluder and, if it is in front of the polygon in part only, where.
-pub type Blocker = (u32, Option<HalfPlane>);
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blocker {
+    /// The occluder, by the number that [`Occluders`] knows it by.
+    pub number: u32,
+    /// Where it is in front of the polygon; `None` for everywhere.
+    pub front: Option<HalfPlane>,
+}
 
 /// A polygon divided into convex regions, each behind the same set of occluders.
 ///
@@ -114,7 +120,7 @@ impl Regions {
             self.base = self.list.len();
             self.list.push(Region { polygon, transmittance: 1.0 });
             for i in first..end {
-                let (number, front) = self.stack[i];
+                let Blocker { number, front } = self.stack[i];
                 let crowd = count > FEW && !occluders.is_opaque(number);
                 let most = if crowd { MOST_TRANSLUCENT_REGIONS } else { MOST_REGIONS };
                 self.attenuate_up_to(most, occluders.outline(number), front, |p| {
@@ -153,7 +159,7 @@ impl Regions {
     ) -> bool {
         let (low, high) = half.bounds();
         for i in range {
-            let (number, front) = self.stack[i];
+            let Blocker { number, front } = self.stack[i];
             let outline = occluders.outline(number);
             let (olow, ohigh) = convex::bounds(outline);
             if !(olow.cmplt(high).all() && ohigh.cmpgt(low).all())
@@ -164,7 +170,7 @@ impl Regions {
             if front.is_none() && occluders.is_opaque(number) && convex::contains(outline, half.vertices()) {
                 return false;
             }
-            self.stack.push((number, front));
+            self.stack.push(Blocker { number, front });
         }
         true
     }
@@ -329,7 +335,8 @@ mod tests {
                 tiles.push([low + e, low + e + f, low + f]);
             }
         }
-        let blockers: Vec<Blocker> = (0..tiles.len() as u32).map(|i| (i, None)).collect();
+        let blockers: Vec<Blocker> =
+            (0..tiles.len() as u32).map(|number| Blocker { number, front: None }).collect();
         let mut regions = Regions::default();
         let cell = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
         regions.hide(cell, 1e-12, &blockers, &Tiles(tiles));

@@ -22,9 +22,8 @@
 //! # Ok::<(), pointillist_dice::DiceError>(())
 //! ```
 //!
-//! The crate is plain geometry in two dimensions. What else a vertex carries is recovered for each piece from its place:
-//! [`AttributePlane`] for what is affine on the screen, [`PerspectivePlane`] for what is affine in space, and
-//! [`clip_near`] and [`clip_guard_band`] bring a polygon from clip space to where there is a screen.
+//! The crate is plain geometry in two dimensions. [`clip_ring`] clips convex rings of any kind of vertex by a half-space: in three dimensions,
+//! before there is a grid, or with what else a vertex carries.
 //!
 //! # Accuracy and cost
 //!
@@ -77,18 +76,16 @@ pub mod hide;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod outline;
-mod plane;
 mod split;
 
 pub use accumulate::{Accumulator, Run, accumulate, accumulate_filled};
-pub use clip::{ClipVertex, clip_guard_band, clip_near};
+pub use clip::{clip_ring, share_before_crossing};
 pub use code::{Code, CodeKind};
 pub use convex::{ConvexPolygon, HalfPlane};
 pub use cut::{CUT_ERROR, CellWindow, Cut, MAX_CUT_VERTICES, cut};
 pub use error::DiceError;
 pub use fill::FillRule;
 pub use grid::{Grid, MAX_COORDINATE};
-pub use plane::{AttributePlane, PerspectivePlane};
 pub use split::{Piece, split};
 
 /// The largest number of cells that one call visits; a polygon that meets more is refused before the first one.

@@ -14,6 +14,7 @@ use crate::{CONVEXITY_TOLERANCE, Code, DiceError};
 /// A cell with a vertex of the polygon at its left or right edge is cut at the height of that vertex, as in the paper,
 /// so it may hold more than one piece.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Piece<'a> {
     /// The cell.
     pub cell: IVec2,

@@ -1,9 +1,8 @@
 //! The facts of `invariants`, on polygons that aim at trouble.
 
-use glam::{DVec2, DVec4, IVec2, dvec2};
+use glam::{DVec2, IVec2, dvec2};
 use pointillist_dice::{
-    Accumulator, AttributePlane, CellWindow, ClipVertex, Code, CodeKind, Grid, PerspectivePlane, accumulate,
-    clip_guard_band, clip_near, invariants, split,
+    Accumulator, CellWindow, Code, CodeKind, Grid, HalfPlane, accumulate, clip_ring, invariants, split,
 };
 use proptest::prelude::*;
 use testkit::holds;
@@ -264,34 +263,20 @@ proptest! {
     }
 
     #[test]
-    fn planes_and_clipping_never_panic(v in prop::collection::vec(anything(), 12), guard in anything()) {
-        let p = [dvec2(v[0], v[1]), dvec2(v[2], v[3]), dvec2(v[4], v[5])];
-        if let Some(plane) = AttributePlane::from_points(p, [v[6], v[7], v[8]]) {
-            let _ = (plane.at(p[0]), plane.range(&p), plane.relative_to(p[1]));
-        }
-        let _ = PerspectivePlane::from_points(p, [v[6], v[7], v[8]], [v[9], v[10], v[11]]).map(|plane| plane.at(p[2]));
-        let _ = AttributePlane::barycentric(p);
-        let triangle = ClipVertex::triangle([0, 1, 2].map(|i| DVec4::from_slice(&v[4 * i..])));
-        let (mut front, mut scratch) = (vec![], vec![]);
-        if clip_near(&triangle, 1e-9, &mut front).is_ok() {
-            let _ = clip_guard_band(&mut front, guard, &mut scratch);
-        }
+    fn a_clipped_ring_lies_on_one_side_and_the_parts_make_up_the_whole(
+        ring in prop::collection::vec(point(8.0), 3..9),
+        line in (point(8.0), point(8.0)),
+    ) {
+        holds!(invariants::clipping_divides(&ring, &HalfPlane::left_of(line.0, line.1)));
     }
 
     #[test]
-    fn clipped_triangles_keep_their_attributes(v in prop::collection::vec(-4.0..4.0f64, 12)) {
-        let corners = [0, 1, 2].map(|i| DVec4::from_slice(&v[4 * i..]));
-        let (mut out, mut scratch) = (vec![], vec![]);
-        clip_near(&ClipVertex::triangle(corners), 1e-6, &mut out).unwrap();
-        clip_guard_band(&mut out, 2.0, &mut scratch).unwrap();
-        for v in out {
-            let w = v.weights.to_array();
-            let position = corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2];
-            prop_assert!((position - v.position).abs().max_element() < 1e-12);
-            prop_assert!((w.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-            let inside = v.ndc().abs().max_element() <= 2.0 + 1e-9 || v.position.w < 1e-4;
-            prop_assert!(v.position.w > 0.0 && inside, "{v:?}");
-        }
+    fn clipping_never_panics(ring in any_ring(), line in (anything(), anything(), anything())) {
+        let normal = dvec2(line.0, line.1);
+        let mut kept = 0;
+        let middle = |(a, _): (DVec2, f64), (b, _): (DVec2, f64)| 0.5 * (a + b);
+        clip_ring(&ring, |p| normal.dot(p) + line.2, middle, |_| kept += 1);
+        prop_assert!(kept <= 2 * ring.len());
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::geometry::{HiddenSides, Surface, Triangle};
 use crate::lens::{Lens, LensKind, Plane};
 use glam::{DVec2, DVec3};
-use pointillist_dice::convex;
+use pointillist_dice::{clip_ring, convex, share_before_crossing};
 use std::cmp::Ordering;
 
 /// A triangle in the frame of a lens.
@@ -179,7 +179,7 @@ pub struct GridRect {
 
 /// The outline of a face on the grid, in positive order.
 #[derive(Clone, Copy, Debug)]
-pub struct Outline {
+pub(crate) struct Outline {
     vertices: [DVec2; 8],
     len: usize,
 }
@@ -188,7 +188,7 @@ impl Outline {
     /// The vertices; fewer than three if nothing is visible.
     #[must_use]
     #[inline]
-    pub fn vertices(&self) -> &[DVec2] {
+    pub(crate) fn vertices(&self) -> &[DVec2] {
         &self.vertices[..self.len]
     }
 
@@ -230,7 +230,7 @@ pub struct Setup<'a> {
 /// face with its outline. `None` if there is nothing to see.
 #[must_use]
 #[inline]
-pub fn set_up_face(
+pub(crate) fn set_up_face(
     setup: &Setup<'_>,
     triangle: &Triangle,
     source: (u32, u32),
@@ -310,7 +310,7 @@ fn clip_outline(
             3 => side(p, y, rect.low.y - lens.centre.y, 1.0),
             _ => side(p, y, rect.high.y - lens.centre.y, -1.0),
         };
-        (ring, len) = clip_ring(&ring[..len], value);
+        (ring, len) = clipped(&ring[..len], value);
     }
     let mut outline = Outline { vertices: [DVec2::ZERO; 8], len };
     let mut nearness = (f64::INFINITY, f64::NEG_INFINITY);
@@ -328,28 +328,21 @@ fn clip_outline(
     (len >= 3 && area > 0.0).then_some((outline, nearness))
 }
 
-/// Sutherland–Hodgman against one plane; crossings do not depend on the direction of the edge.
-fn clip_ring(ring: &[DVec3], value: impl Fn(DVec3) -> f64) -> ([DVec3; 8], usize) {
+/// The part of a ring on one side of a plane; crossings do not depend on the direction of the edge.
+fn clipped(ring: &[DVec3], value: impl Fn(DVec3) -> f64) -> ([DVec3; 8], usize) {
     let mut out = [DVec3::ZERO; 8];
     let mut len = 0;
-    let mut push = |p: DVec3| {
+    let crossing = |a: (DVec3, f64), b: (DVec3, f64)| {
+        let swap = b.0.to_array() < a.0.to_array();
+        let ((p, vp), (q, vq)) = if swap { (b, a) } else { (a, b) };
+        p + (q - p) * share_before_crossing(vp, vq)
+    };
+    clip_ring(ring, value, crossing, |p| {
         // A convex ring gains one vertex per plane, so eight are enough; rounding may invent another.
         if len < out.len() {
             out[len] = p;
             len += 1;
         }
-    };
-    for (i, &a) in ring.iter().enumerate() {
-        let b = ring[(i + 1) % ring.len()];
-        let (va, vb) = (value(a), value(b));
-        if va >= 0.0 {
-            push(a);
-        }
-        if (va >= 0.0) != (vb >= 0.0) {
-            let swap = (b.x, b.y, b.z) < (a.x, a.y, a.z);
-            let ((p, vp), (q, vq)) = if swap { ((b, vb), (a, va)) } else { ((a, va), (b, vb)) };
-            push(p + (q - p) * (vp / (vp - vq)));
-        }
-    }
+    });
     (out, len)
 }

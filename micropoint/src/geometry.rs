@@ -1,5 +1,6 @@
 //! Triangles prepared once for any number of views and lights.
 
+use crate::bounds::Bounds;
 use crate::closed::{OPEN, Solid, find_solids, solid_angle};
 use crate::error::MicropointError;
 use crate::lens::{Lens, LensKind};
@@ -33,7 +34,7 @@ impl Surface {
 
 /// A prepared triangle; its corners index the vertices of its cluster.
 #[derive(Clone, Copy, Debug)]
-pub struct Triangle {
+pub(crate) struct Triangle {
     /// Corners within the cluster's vertices.
     pub corners: [u8; 3],
     /// Position in the caller's triangle array.
@@ -45,7 +46,7 @@ pub struct Triangle {
 
 /// Up to 64 neighbouring triangles with their own vertices and bounds.
 #[derive(Clone, Debug)]
-pub struct Cluster {
+pub(crate) struct Cluster {
     /// Bounds in the world.
     pub bounds: Bounds,
     first_vertex: u32,
@@ -63,39 +64,6 @@ struct Facing {
     axis: DVec3,
     /// Sine of the cone's half-angle, which is less than a right angle.
     spread: f64,
-}
-
-/// An axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// Smallest coordinates.
-    pub low: DVec3,
-    /// Largest coordinates.
-    pub high: DVec3,
-}
-
-impl Bounds {
-    const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-
-    fn include(&mut self, p: DVec3) {
-        self.low = self.low.min(p);
-        self.high = self.high.max(p);
-    }
-
-    fn union(self, other: Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
-    }
-
-    /// Smallest and largest value of `direction · (p − origin)` over the box, widened by rounding.
-    #[must_use]
-    #[inline]
-    pub fn extent_along(&self, origin: DVec3, direction: DVec3) -> (f64, f64) {
-        let centre = 0.5 * (self.low + self.high) - origin;
-        let half = 0.5 * (self.high - self.low);
-        let middle = direction.dot(centre);
-        let reach = direction.abs().dot(half) + 1e-12 * direction.abs().dot(centre.abs() + half);
-        (middle - reach, middle + reach)
-    }
 }
 
 /// Most triangles in a cluster: small enough that bounds are tight, large enough that refusing one
@@ -275,7 +243,7 @@ impl Geometry {
     /// A cluster's bounds, vertices and triangles.
     #[must_use]
     #[inline]
-    pub fn cluster(&self, index: u32) -> (&Bounds, &[DVec3], &[Triangle]) {
+    pub(crate) fn cluster(&self, index: u32) -> (&Bounds, &[DVec3], &[Triangle]) {
         let c = &self.clusters[index as usize];
         let vertices = &self.vertices[c.first_vertex as usize..][..c.vertex_count as usize];
         let triangles = &self.triangles[c.first_triangle as usize..][..c.triangle_count as usize];
@@ -293,7 +261,7 @@ impl Geometry {
     /// Whether all of a cluster is hidden from a viewer because it is the side of a solid that the viewer
     /// never sees.
     #[must_use]
-    pub fn hides_cluster(&self, cluster: u32, lens: &Lens, hidden: &HiddenSides) -> bool {
+    pub(crate) fn hides_cluster(&self, cluster: u32, lens: &Lens, hidden: &HiddenSides) -> bool {
         let c = &self.clusters[cluster as usize];
         let Some(facing) = c.facing else { return false };
         let side = hidden.0.get(facing.solid as usize).copied().unwrap_or(0);
@@ -365,7 +333,7 @@ impl Geometry {
     /// `bound` returns a lower bound of the distance of anything in the box, or `None` to refuse it
     /// with all its contents; `visit` returns the distance beyond which nothing matters any more.
     /// Returns how many boxes were refused or left unvisited.
-    pub fn visit_near_to_far(
+    pub(crate) fn visit_near_to_far(
         &self,
         queue: &mut ClusterQueue,
         mut bound: impl FnMut(&Bounds) -> Option<f64>,
@@ -409,7 +377,7 @@ impl Geometry {
 
 /// Reusable memory of [`Geometry::visit_near_to_far`].
 #[derive(Debug, Default)]
-pub struct ClusterQueue {
+pub(crate) struct ClusterQueue {
     heap: std::collections::BinaryHeap<Entry>,
 }
 

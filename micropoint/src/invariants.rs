@@ -4,9 +4,10 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::lens::TIE;
 use crate::{
     Geometry, Lens, LensKind, MicropointError, MicropointOptions, PixelRect, PlainOpacity, Renderer, Surface,
-    TIE, Tile, View,
+    Tile, View,
 };
 
 /// Rounding allowed to a sum of weights over a pixel.
@@ -361,7 +362,7 @@ impl Bounded {
 /// The share of each surface in each pixel by another way: exact integration of the arrangement of all edges and
 /// crossings, without dicing, tiles, culling or polygons. For few triangles: time grows with the sixth power.
 ///
-/// Surfaces closer than [`TIE`] of their nearness coincide; the one with the lower number is in front.
+/// Surfaces closer than `TIE` of their nearness coincide; the one with the lower number is in front.
 #[must_use]
 pub fn shares_by_arrangement(soup: &Soup, view: &View) -> Vec<Vec<f64>> {
     let lens = Lens::of_view(view, 1);

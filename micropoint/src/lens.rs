@@ -1,6 +1,6 @@
 //! From the world to a grid of cells and back: one kind of lens for cameras and for lights.
 
-use crate::geometry::Bounds;
+use crate::bounds::Bounds;
 use glam::{DVec2, DVec3};
 use pointillist_view::{Projection, View};
 
@@ -210,7 +210,7 @@ impl Lens {
 }
 
 /// Relative difference of nearness up to which two surfaces coincide (see [`Lens::tie`]).
-pub const TIE: f64 = 1e-10;
+pub(crate) const TIE: f64 = 1e-10;
 
 /// Rounding of grid positions in cells, with a margin: 1e5 cells × 2⁻⁵² × 4.
 const GRID_ROUNDING: f64 = 1e-10;

@@ -1,6 +1,6 @@
 //! Triangles to visible micropoints: exact coverage and exact occlusion in every cell.
 //!
-//! An observer of a pixel sees Coverage × Alpha × Colour, so coverage can be moved into opacity and no
+//! An observer of a pixel sees Coverage × Alpha × Color, so coverage can be moved into opacity and no
 //! sample is needed, nor missed (\[1\], §3). This crate cuts triangles by the cells of the pixel grid,
 //! finds out what is visible of each piece, and hands out *micropoints*: a weight, a place on a
 //! triangle, and the visible outline, for anyone to shade.
@@ -25,7 +25,7 @@
 //! # Accuracy and cost
 //! Geometry is f64 relative to the eye. Areas are exact up to rounding; where several parts meet in one
 //! cell they are clipped against each other, so that what a pixel shows is the exact area integral of
-//! piecewise constant colours. Surfaces whose depths differ by less than 1e-10 (relative) coincide.
+//! piecewise constant colors. Surfaces whose depths differ by less than 1e-10 (relative) coincide.
 //! Cost grows with the visible outline, not with hidden or covered area: closed cells refuse what lies
 //! behind them, whole clusters at a time, and covered cells are never cut.
 //!
@@ -38,6 +38,7 @@
 //! 3. L. Carpenter: *The A-buffer, an antialiased hidden surface method*, SIGGRAPH 1984.
 #![forbid(unsafe_code)]
 
+mod bounds;
 mod closed;
 mod error;
 mod face;
@@ -50,18 +51,18 @@ mod render;
 mod resolve;
 mod texel;
 mod tile;
+mod visit;
 mod volume;
 
+pub use bounds::Bounds;
 pub use error::MicropointError;
-pub use face::{
-    Face, GridRect, Outline, PlainOpacity, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity, set_up_face,
-};
+pub use face::{Face, GridRect, PlainOpacity, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity};
 pub use front::{Front, Layer, in_front};
-pub use geometry::{Bounds, Cluster, ClusterQueue, Geometry, HiddenSides, Surface, Triangle};
-pub use lens::{Lens, LensKind, Plane, TIE};
-pub use pointillist_view::{PixelRect, Projected, Projection, Ray, View, ViewError};
+pub use geometry::{Geometry, HiddenSides, Surface};
+pub use lens::{Lens, LensKind, Plane};
+pub use pointillist_view::{PixelRect, Projection, View, ViewError};
 pub use render::{Fragment, Micropoint, MicropointOptions, Renderer, Tile};
 pub use resolve::Occlusion;
 pub use texel::{TexelCorner, TexelSums, TexelWrap};
 pub use tile::TileCounts;
-pub use volume::ViewVolume;
+pub use visit::{FaceVisitor, VisitCounts, VisitMemory};

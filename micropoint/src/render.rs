@@ -70,6 +70,7 @@ pub struct Renderer<'a> {
 
 /// A visible piece of a surface: what a shader shades, once.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Micropoint {
     /// Column of its pixel in the picture.
     pub x: u32,

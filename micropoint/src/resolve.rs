@@ -209,8 +209,8 @@ fn hide(
             Front::Everywhere if other.opacity >= 1.0 && convex::contains(dicer.outline(other), outline) => {
                 return Sight::Hidden;
             }
-            Front::Everywhere => scratch.blockers.push((o, None)),
-            Front::Within(half) => scratch.blockers.push((o, Some(half))),
+            Front::Everywhere => scratch.blockers.push(Blocker { number: o, front: None }),
+            Front::Within(half) => scratch.blockers.push(Blocker { number: o, front: Some(half) }),
         }
     }
     if scratch.blockers.is_empty() {

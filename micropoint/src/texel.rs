@@ -7,7 +7,7 @@
 
 use crate::error::MicropointError;
 use glam::{DVec2, DVec3};
-use pointillist_dice::{CellWindow, ConvexPolygon, Cut, convex, cut};
+use pointillist_dice::{CellWindow, ConvexPolygon, Cut, clip_ring, convex, cut, share_before_crossing};
 
 /// What a texture is outside the unit square.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -500,30 +500,20 @@ struct Band {
 
 /// Divides a polygon where its `rational` equals `border`: the nearer part, then the farther.
 fn divide(corners: &[TexelCorner], border: f64) -> (Vec<TexelCorner>, Vec<TexelCorner>) {
-    let (mut near, mut far) = (Vec::new(), Vec::new());
-    for (i, a) in corners.iter().enumerate() {
-        let b = &corners[(i + 1) % corners.len()];
-        let (va, vb) = (a.rational - border, b.rational - border);
-        if va >= 0.0 {
-            near.push(*a);
-        }
-        if va <= 0.0 {
-            far.push(*a);
-        }
-        if va * vb < 0.0 {
-            let t = va / (va - vb);
-            let rational = a.rational + (b.rational - a.rational) * t;
-            let (ta, tb) = (a.texel * a.rational, b.texel * b.rational);
-            let crossing = TexelCorner {
-                grid: a.grid.lerp(b.grid, t),
-                rational,
-                texel: (ta + (tb - ta) * t) / rational,
-            };
-            near.push(crossing);
-            far.push(crossing);
-        }
-    }
-    (near, far)
+    let part = |sign: f64| {
+        let mut part = Vec::with_capacity(corners.len() + 1);
+        clip_ring(corners, |c| sign * (c.rational - border), crossing, |c| part.push(c));
+        part
+    };
+    (part(1.0), part(-1.0))
+}
+
+/// The corner on the edge from `a` to `b` where a function with these values is 0.
+fn crossing((a, va): (TexelCorner, f64), (b, vb): (TexelCorner, f64)) -> TexelCorner {
+    let t = share_before_crossing(va, vb);
+    let rational = a.rational + (b.rational - a.rational) * t;
+    let (ta, tb) = (a.texel * a.rational, b.texel * b.rational);
+    TexelCorner { grid: a.grid.lerp(b.grid, t), rational, texel: (ta + (tb - ta) * t) / rational }
 }
 
 /// The projective map from texels to the grid, from three corners.

@@ -1,9 +1,10 @@
 //! The bucket of cells that one thread finishes: faces diced into parts, nearest first.
 
-use crate::face::{Face, GridRect, ProjectedVertex, Setup, TexturedOpacity, set_up_face};
-use crate::geometry::{ClusterQueue, Geometry, HiddenSides};
+use crate::bounds::Bounds;
+use crate::face::{Face, GridRect, ProjectedVertex, Setup, TexturedOpacity};
+use crate::geometry::{Geometry, HiddenSides, Surface};
 use crate::lens::{Lens, LensKind};
-use crate::volume::ViewVolume;
+use crate::visit::{FaceVisitor, VisitMemory};
 use glam::{DVec2, IVec2, Vec2};
 use pointillist_dice::{CellWindow, ConvexPolygon, Cut, convex, cut};
 use std::cmp::Ordering;
@@ -96,6 +97,7 @@ const COVERED: f64 = 1e-9;
 
 /// What was done and what was not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct TileCounts {
     /// Clusters that were looked into.
     pub clusters: u64,
@@ -159,8 +161,7 @@ pub(crate) struct Dicer {
     parts: Vec<Part>,
     vertices: Vec<DVec2>,
     pub(crate) faces: Vec<Face>,
-    projected: Vec<ProjectedVertex>,
-    queue: ClusterQueue,
+    memory: VisitMemory,
     order: Vec<u32>,
     pub(crate) counts: TileCounts,
 }
@@ -175,6 +176,32 @@ pub(crate) struct DiceJob<'a> {
     pub(crate) opacity: &'a dyn TexturedOpacity,
 }
 
+/// Dices the faces that it is handed.
+struct DicedFaces<'a> {
+    dicer: &'a mut Dicer,
+    job: &'a DiceJob<'a>,
+}
+
+impl FaceVisitor for DicedFaces<'_> {
+    fn wants(&self, _: &Bounds) -> bool {
+        true
+    }
+
+    #[inline]
+    fn skips(&self, corners: [&ProjectedVertex; 3], _: &Surface) -> bool {
+        self.dicer.outside_window(corners)
+    }
+
+    #[inline]
+    fn visit(&mut self, face: Face, outline: &[DVec2], opacity: Option<f32>) {
+        self.dicer.dice_face(self.job, face, outline, opacity);
+    }
+
+    fn farthest(&self) -> f64 {
+        self.dicer.farthest_visible(self.job.lens)
+    }
+}
+
 impl Dicer {
     /// Dices everything that may be visible in the window.
     pub(crate) fn dice(&mut self, job: &DiceJob<'_>, window: CellWindow) {
@@ -184,18 +211,16 @@ impl Dicer {
         }
         let low = DVec2::new(f64::from(window.x0), f64::from(window.y0));
         let high = DVec2::new(f64::from(window.x1), f64::from(window.y1));
-        let volume = ViewVolume::new(job.lens, &GridRect { low, high });
-        let mut queue = std::mem::take(&mut self.queue);
-        let skipped = job.geometry.visit_near_to_far(
-            &mut queue,
-            |bounds| volume.nearest_depth(bounds),
-            |cluster| {
-                self.dice_cluster(job, cluster);
-                self.farthest_visible(job.lens)
-            },
-        );
-        self.counts.clusters_skipped += skipped;
-        self.queue = queue;
+        let (lens, rect, hidden) = (job.lens, job.rect, job.hidden);
+        let setup = Setup { lens, rect, hidden, keeps_backs: false };
+        let mut memory = std::mem::take(&mut self.memory);
+        let mut faces = DicedFaces { dicer: self, job };
+        let seen =
+            job.geometry.visit_faces(&setup, &GridRect { low, high }, f64::INFINITY, &mut memory, &mut faces);
+        self.memory = memory;
+        self.counts.clusters += seen.clusters;
+        self.counts.clusters_skipped += seen.clusters_skipped;
+        self.counts.triangles_culled += seen.triangles_culled;
     }
 
     fn reset(&mut self, window: CellWindow) {
@@ -225,37 +250,6 @@ impl Dicer {
             LensKind::Orthographic => q.is_nan() || q == f64::NEG_INFINITY,
         };
         if unlimited { f64::INFINITY } else { lens.depth(q) }
-    }
-
-    fn dice_cluster(&mut self, job: &DiceJob<'_>, cluster: u32) {
-        let (_, vertices, triangles) = job.geometry.cluster(cluster);
-        if job.geometry.hides_cluster(cluster, job.lens, job.hidden) {
-            self.counts.clusters_skipped += 1;
-            return;
-        }
-        self.counts.clusters += 1;
-        let (lens, rect, hidden) = (job.lens, job.rect, job.hidden);
-        let setup = Setup { lens, rect, hidden, keeps_backs: false };
-        let mut projected = std::mem::take(&mut self.projected);
-        projected.clear();
-        projected.extend(vertices.iter().map(|&v| ProjectedVertex::new(job.lens, v)));
-        for (i, t) in triangles.iter().enumerate() {
-            let v = t.corners.map(|c| &projected[usize::from(c)]);
-            let surface = &job.geometry.surfaces()[t.surface as usize];
-            let source = (cluster, i as u32);
-            if self.outside_window(v) {
-                self.counts.triangles_culled += 1;
-                continue;
-            }
-            match set_up_face(&setup, t, source, v, surface) {
-                None => self.counts.triangles_culled += 1,
-                Some((face, outline)) => {
-                    let opacity = if surface.textured_opacity { None } else { Some(surface.opacity) };
-                    self.dice_face(job, face, outline.vertices(), opacity);
-                }
-            }
-        }
-        self.projected = projected;
     }
 
     /// Whether a triangle that needs no clipping misses the window: the cheapest and commonest test.

@@ -1,13 +1,13 @@
 //! What can lie behind a rectangle of the grid.
 
+use crate::bounds::Bounds;
 use crate::face::GridRect;
-use crate::geometry::Bounds;
 use crate::lens::{Lens, LensKind};
 use glam::DVec3;
 
 /// The view volume of a rectangle of the grid, as planes through the world.
 #[derive(Clone, Copy, Debug)]
-pub struct ViewVolume {
+pub(crate) struct ViewVolume {
     origin: DVec3,
     forward: DVec3,
     planes: [(DVec3, f64); 4],
@@ -16,7 +16,7 @@ pub struct ViewVolume {
 impl ViewVolume {
     /// The volume behind a rectangle of the grid.
     #[must_use]
-    pub fn new(lens: &Lens, rect: &GridRect) -> Self {
+    pub(crate) fn new(lens: &Lens, rect: &GridRect) -> Self {
         let side = |axis: DVec3, line: f64, sign: f64| match lens.kind {
             LensKind::Perspective => (sign * (axis - lens.forward * line), 0.0),
             LensKind::Orthographic => (sign * axis, -sign * line),
@@ -37,7 +37,7 @@ impl ViewVolume {
     /// Least depth of a box, or `None` if it is outside.
     #[must_use]
     #[inline]
-    pub fn nearest_depth(&self, bounds: &Bounds) -> Option<f64> {
+    pub(crate) fn nearest_depth(&self, bounds: &Bounds) -> Option<f64> {
         for (normal, offset) in &self.planes {
             if bounds.extent_along(self.origin, *normal).1 + offset < 0.0 {
                 return None;

@@ -2,9 +2,9 @@
 
 use glam::{DAffine3, DMat3, DVec2, DVec3, dvec2};
 use pointillist_micropoint::{
-    Bounds, ClusterQueue, Geometry, GridRect, HiddenSides, Lens, MicropointError, MicropointOptions,
+    Bounds, Face, FaceVisitor, Geometry, GridRect, HiddenSides, Lens, MicropointError, MicropointOptions,
     Occlusion, PixelRect, PlainOpacity, ProjectedVertex, Projection, Renderer, Setup, Surface, TexelCorner,
-    TexelSums, TexelWrap, Tile, View, ViewVolume, set_up_face,
+    TexelSums, TexelWrap, Tile, View, VisitMemory,
 };
 use proptest::prelude::*;
 use testkit::numbers::{finite, number, vector};
@@ -116,16 +116,41 @@ proptest! {
         let Ok(view) = View::look_at(eye, target, DVec3::Y, projection, 4, 4) else { return Ok(()) };
         let lens = Lens::of_view(&view, 1);
         let rect = GridRect { low: dvec2(rect[0], rect[1]), high: dvec2(rect[2], rect[3]) };
-        let _ = ViewVolume::new(&lens, &rect).nearest_depth(&Bounds { low: v[0], high: v[1] });
         let Ok(geometry) = Geometry::new(&v, &[[0, 1, 2]], &[0], &[Surface::default()]) else { return Ok(()) };
         let _ = geometry.hidden_sides(&lens);
-        let count = geometry.visit_near_to_far(&mut ClusterQueue::default(), |_| Some(eye.x), |_| target.x);
-        prop_assert_eq!(count, 0);
-        let (_, vertices, triangles) = geometry.cluster(0);
-        let p: Vec<_> = vertices.iter().map(|&v| ProjectedVertex::new(&lens, v)).collect();
-        let corners = triangles[0].corners.map(|c| &p[usize::from(c)]);
         let picture = GridRect { low: DVec2::ZERO, high: DVec2::splat(4.0) };
         let setup = Setup { lens: &lens, rect: &picture, hidden: &HiddenSides::default(), keeps_backs: true };
-        let _ = set_up_face(&setup, &triangles[0], (0, 0), corners, &Surface::default());
+        for farthest in [f64::INFINITY, target.x] {
+            let mut seen = Faces { farthest: eye.x, count: 0 };
+            let counts = geometry.visit_faces(&setup, &rect, farthest, &mut VisitMemory::default(), &mut seen);
+            prop_assert!(counts.clusters + counts.clusters_skipped <= 1 && seen.count <= 1);
+            prop_assert_eq!(counts.clusters, counts.triangles_culled + seen.count);
+        }
+    }
+}
+
+/// Takes every face.
+struct Faces {
+    farthest: f64,
+    count: u64,
+}
+
+impl FaceVisitor for Faces {
+    fn wants(&self, bounds: &Bounds) -> bool {
+        assert!(bounds.low.cmple(bounds.high).all());
+        true
+    }
+
+    fn skips(&self, _: [&ProjectedVertex; 3], _: &Surface) -> bool {
+        false
+    }
+
+    fn visit(&mut self, _: Face, outline: &[DVec2], opacity: Option<f32>) {
+        assert!(outline.len() >= 3 && opacity == Some(1.0));
+        self.count += 1;
+    }
+
+    fn farthest(&self) -> f64 {
+        self.farthest
     }
 }

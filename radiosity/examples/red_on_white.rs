@@ -18,12 +18,12 @@ fn main() -> Result<(), RadiosityError> {
         Surface::new(&sky, [0.0; 3]).emitting([1.0; 3]),
     ];
     let options = SceneOptions::DEFAULT.with_patch(0.125).with_tolerance(Some(0.01));
-    let (transport, direct) = Scene::new(&surfaces, &options)?.transport(&[])?;
-    let solution = transport.gauss_seidel(&direct, &SolveOptions::DEFAULT)?;
+    let transport = Scene::new(&surfaces, &options)?.transport(&[])?;
+    let solution = transport.gauss_seidel(&SolveOptions::DEFAULT)?;
     println!("{} patches, {} links", transport.patch_count(), transport.counts().links);
     for step in 0..8 {
         let at = dvec3(0.05 + 0.25 * f64::from(step), 1.0, 0.0);
-        let light = transport.irradiance(&solution, at, DVec3::Z, true)?;
+        let light = solution.irradiance(at, DVec3::Z, true)?;
         let [r, g, _] = light.map(|e| 0.8 * e);
         println!(
             "{:.2} from the wall: red {r:.3}, green {g:.3}, redder by {:.1} %",

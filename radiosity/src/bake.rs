@@ -10,9 +10,9 @@ use glam::DVec3;
 
 use crate::gather::visible_share;
 use crate::kernel::lambert;
+use crate::rgb::{Rgb, add, times};
 use crate::solve::Solution;
-use crate::surface::Rgb;
-use crate::transport::Transport;
+use crate::transport::{Entry, Transport};
 use crate::tree::ElementId;
 use crate::visible::parts::Pieces;
 use pointillist_parallel as parallel;
@@ -68,31 +68,32 @@ struct Place {
     leaves: Vec<ElementId>,
 }
 
-impl Transport {
-    /// The light at every vertex. `direct` as given to the solver.
+impl Solution<'_> {
+    /// The light at every vertex.
     #[must_use]
-    pub fn bake(&self, solution: &Solution, direct: &[Rgb]) -> Baked {
-        self.bake_with(solution, direct, &|_| ())
+    pub fn bake(&self) -> Baked {
+        self.bake_with(&|_| ())
     }
 
-    /// As [`Transport::bake`], and says for every vertex, from any thread, which share of the work is done.
+    /// As [`Solution::bake`], and says for every vertex, from any thread, which share of the work is done.
     #[must_use]
-    pub fn bake_with(&self, solution: &Solution, direct: &[Rgb], done: &(dyn Fn(f64) + Sync)) -> Baked {
-        let mut mesh = Mesh::new(self);
+    pub fn bake_with(&self, done: &(dyn Fn(f64) + Sync)) -> Baked {
+        let mut mesh = Mesh::new(self.transport);
         mesh.collect();
         let (count, all) = (AtomicUsize::new(0), mesh.places.len() as f64);
         let light = parallel::map_with(mesh.places.len(), Pieces::default, |pieces, i| {
             done(count.fetch_add(1, Ordering::Relaxed) as f64 / all);
-            self.light_at(solution, &mesh.places[i], pieces)
+            self.light_at(&mesh.places[i], pieces)
         });
         let mut light: Vec<Rgb> = light;
         mesh.lift_buried(&mut light);
-        mesh.finish(&light, direct)
+        mesh.finish(&light)
     }
 
     /// Irradiance at one place, the mean of what its leaves' links say.
-    fn light_at(&self, solution: &Solution, place: &Place, pieces: &mut Pieces) -> Rgb {
-        let tree = &self.scene.tree;
+    fn light_at(&self, place: &Place, pieces: &mut Pieces) -> Rgb {
+        let transport = self.transport;
+        let tree = &transport.scene.tree;
         let count = place.leaves.len() as f64;
         let centre = place.leaves.iter().map(|&l| tree.elements[l as usize].polygon.centre()).sum::<DVec3>();
         let point = place.position.lerp(centre / count, INWARD);
@@ -101,26 +102,22 @@ impl Transport {
             let normal = tree.elements[leaf as usize].polygon.normal();
             let mut element = Some(leaf);
             while let Some(id) = element {
-                for entry in self.row(id) {
-                    let share = self.share_of(entry, point, normal, pieces);
-                    let light = solution.of_element[entry.to as usize];
+                for entry in transport.row(id) {
+                    let share = transport.share_of(entry, point, normal, pieces);
+                    let light = self.of_element[entry.to as usize];
                     for (s, l) in sum.iter_mut().zip(light) {
                         *s += share * l / count;
                     }
                 }
-                element = self.parents[id as usize];
+                element = transport.parents[id as usize];
             }
         }
         sum
     }
+}
 
-    fn share_of(
-        &self,
-        entry: &crate::transport::Entry,
-        point: DVec3,
-        normal: DVec3,
-        pieces: &mut Pieces,
-    ) -> f64 {
+impl Transport {
+    fn share_of(&self, entry: &Entry, point: DVec3, normal: DVec3, pieces: &mut Pieces) -> f64 {
         let source = &self.scene.tree.elements[entry.to as usize].polygon;
         if source.height(point) <= 0.0 {
             return 0.0;
@@ -212,7 +209,7 @@ impl<'t> Mesh<'t> {
             for &place in ring.iter().filter(|p| dark[**p as usize]) {
                 for &other in ring.iter().filter(|p| !dark[**p as usize]) {
                     let (total, count) = &mut lifted[place as usize];
-                    *total = crate::solve::add(*total, 1.0, light[other as usize]);
+                    *total = add(*total, 1.0, light[other as usize]);
                     *count += 1.0;
                 }
             }
@@ -224,23 +221,20 @@ impl<'t> Mesh<'t> {
         }
     }
 
-    fn finish(&self, light: &[Rgb], direct: &[Rgb]) -> Baked {
+    fn finish(&self, light: &[Rgb]) -> Baked {
         let scene = &self.transport.scene;
         let mut direct_of = vec![[0.0; 3]; scene.tree.elements.len()];
-        for (&leaf, value) in self.transport.leaves.iter().zip(direct) {
+        for (&leaf, value) in self.transport.leaves.iter().zip(&self.transport.direct) {
             direct_of[leaf as usize] = *value;
         }
         let vertex = |place: &Place, irradiance: Rgb| {
             let element = &scene.tree.elements[place.leaves[0] as usize];
             let side = &scene.sides[element.side as usize];
             let count = place.leaves.len() as f64;
-            let lamps = place
-                .leaves
-                .iter()
-                .fold([0.0; 3], |sum, &l| crate::solve::add(sum, 1.0 / count, direct_of[l as usize]));
-            let arriving = crate::solve::add(irradiance, 1.0, lamps);
-            let radiosity =
-                crate::solve::add(side.emission, 1.0, crate::solve::times(side.reflectance, arriving));
+            let lamps =
+                place.leaves.iter().fold([0.0; 3], |sum, &l| add(sum, 1.0 / count, direct_of[l as usize]));
+            let arriving = add(irradiance, 1.0, lamps);
+            let radiosity = add(side.emission, 1.0, times(side.reflectance, arriving));
             let position = scene.outward(place.position);
             BakedVertex { position, normal: element.polygon.normal(), irradiance, radiosity }
         };

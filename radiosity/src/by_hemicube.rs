@@ -2,11 +2,11 @@
 
 use crate::error::RadiosityError;
 use crate::hemicube::{Hemicube, HemicubeKind};
-use crate::lamp::check_direct;
+use crate::link::Link;
 use crate::polygon::Polygon;
+use crate::rgb::{Rgb, check_direct};
 use crate::scene::Scene;
-use crate::surface::Rgb;
-use crate::transport::{Link, Transport};
+use crate::transport::Transport;
 use pointillist_parallel as parallel;
 
 impl Scene {
@@ -23,7 +23,7 @@ impl Scene {
         kind: HemicubeKind,
         resolution: usize,
         direct: &[Rgb],
-    ) -> Result<(Transport, Vec<Rgb>), RadiosityError> {
+    ) -> Result<Transport, RadiosityError> {
         self.options.tolerance = None;
         let leaves = self.tree.leaves();
         check_direct(leaves.len(), direct)?;
@@ -54,10 +54,6 @@ impl Scene {
                 }
             }
         }
-        let mut of_element = vec![[0.0; 3]; self.tree.elements.len()];
-        for (&leaf, light) in leaves.iter().zip(direct) {
-            of_element[leaf as usize] = *light;
-        }
-        Ok(Transport::of_links(self, links, &of_element))
+        Ok(Transport::of_links(self, links, direct))
     }
 }

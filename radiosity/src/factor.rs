@@ -10,6 +10,7 @@ const SINGLE_DEPTH: u8 = 2;
 
 /// The share of what leaves one polygon that arrives at another.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FormFactor {
     /// Between 0 and 1.
     pub value: f64,

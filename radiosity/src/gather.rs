@@ -5,16 +5,15 @@ use glam::DVec3;
 use crate::error::RadiosityError;
 use crate::kernel::lambert;
 use crate::polygon::Polygon;
+use crate::rgb::Rgb;
 use crate::solve::Solution;
-use crate::surface::Rgb;
-use crate::transport::Transport;
 use crate::tree::ElementId;
 use crate::visible::parts::{Eye, Pieces, Source};
 
 /// Groups of patches whose radius is below this share of their distance count as one.
 const FAR: f64 = 0.15;
 
-impl Transport {
+impl Solution<'_> {
     /// Irradiance at a point with a normal (of any length) from all patches by Lambert's formula, patches far away taken
     /// together with their neighbours. Light of lamps is not in it.
     ///
@@ -22,27 +21,20 @@ impl Transport {
     ///
     /// # Errors
     /// [`RadiosityError::BadPoint`].
-    pub fn irradiance(
-        &self,
-        solution: &Solution,
-        point: DVec3,
-        normal: DVec3,
-        visibility: bool,
-    ) -> Result<Rgb, RadiosityError> {
+    pub fn irradiance(&self, point: DVec3, normal: DVec3, visibility: bool) -> Result<Rgb, RadiosityError> {
         let (Some(normal), true) = (normal.try_normalize(), point.is_finite()) else {
             return Err(RadiosityError::BadPoint);
         };
         let mut gather = Gather {
-            transport: self,
-            solution,
-            point: self.scene.inward(point),
+            solution: self,
+            point: self.transport.scene.inward(point),
             normal,
             visibility,
             sum: [0.0; 3],
             pieces: Pieces::default(),
             near: vec![],
         };
-        for &root in &self.scene.tree.roots {
+        for &root in &self.transport.scene.tree.roots {
             gather.visit(root);
         }
         Ok(gather.sum)
@@ -50,8 +42,7 @@ impl Transport {
 }
 
 struct Gather<'t> {
-    transport: &'t Transport,
-    solution: &'t Solution,
+    solution: &'t Solution<'t>,
     point: DVec3,
     normal: DVec3,
     visibility: bool,
@@ -62,7 +53,7 @@ struct Gather<'t> {
 
 impl Gather<'_> {
     fn visit(&mut self, id: ElementId) {
-        let element = &self.transport.scene.tree.elements[id as usize];
+        let element = &self.solution.transport.scene.tree.elements[id as usize];
         let polygon = &element.polygon;
         if self.solution.of_element[id as usize] == [0.0; 3] || polygon.height(self.point) <= 0.0 {
             return;
@@ -91,8 +82,8 @@ impl Gather<'_> {
             .vertices()
             .iter()
             .fold((self.point, self.point), |(low, high), &v| (low.min(v), high.max(v)));
-        self.transport.boxes.in_box(low, high, &mut self.near);
-        let occluders = &self.transport.scene.occluders;
+        self.solution.transport.boxes.in_box(low, high, &mut self.near);
+        let occluders = &self.solution.transport.scene.occluders;
         let list = self.near.iter().map(|&i| &occluders[i as usize]);
         visible_share(self.point, self.normal, polygon, list, &mut self.pieces)
     }

@@ -6,8 +6,8 @@ use crate::error::RadiosityError;
 use crate::factor;
 use crate::kernel::gauss;
 use crate::polygon::Polygon;
+use crate::rgb::{Rgb, is_light};
 use crate::scene::Scene;
-use crate::surface::{Rgb, is_light};
 use crate::tree::{Element, ElementId};
 use crate::visible::cubature;
 use crate::visible::parts::{Eye, Pieces, Source};
@@ -57,19 +57,6 @@ pub enum Lamp<'l> {
 struct NoLight {
     lamp: usize,
     value: f64,
-}
-
-/// Checks what a caller says of the direct irradiance of patches: none, or one light for each.
-pub(crate) fn check_direct(patches: usize, direct: &[Rgb]) -> Result<(), RadiosityError> {
-    if !direct.is_empty() && direct.len() != patches {
-        return Err(RadiosityError::CountMismatch { patches, given: direct.len() });
-    }
-    for (patch, light) in direct.iter().enumerate() {
-        if let Some(&value) = light.iter().find(|&&l| !is_light(l)) {
-            return Err(RadiosityError::DirectIrradiance { patch, value });
-        }
-    }
-    Ok(())
 }
 
 impl Scene {

@@ -19,7 +19,7 @@
 //! * [`Scene`]: surfaces, checked and divided into patches; [`Scene::direct`] lights them by lamps.
 //! * [`Transport`]: which patches exchange how much, each with each ([`SceneOptions::tolerance`] `None`) or in groups; solved by
 //!   [`Transport::gauss_seidel`] or [`Transport::progressive`] with a bound on the error of the result.
-//! * [`Transport::bake`] and [`Transport::irradiance`]: light at vertices and at free points.
+//! * [`Solution::bake`] and [`Solution::irradiance`]: light at vertices and at free points.
 //! * [`Hemicube`]: the classic method, and the same with exact coverage in its cells.
 //!
 //! # Accuracy and cost
@@ -41,10 +41,12 @@
 //! 4. E. A. Haines, J. R. Wallace: *Shaft culling for efficient ray-cast radiosity*, 1991.
 //! 5. M. Feda, W. Purgathofer: *Accelerating radiosity by overshooting*, Eurographics Workshop on Rendering 1992.
 #![forbid(unsafe_code)]
+mod assemble;
 mod bake;
 mod by_hemicube;
 mod contact;
 mod error;
+mod estimate;
 mod factor;
 mod gather;
 mod hemicube;
@@ -52,7 +54,11 @@ mod hemicube;
 pub mod invariants;
 mod kernel;
 mod lamp;
+mod link;
+mod patches;
 mod polygon;
+mod refine;
+mod rgb;
 mod rows;
 mod scene;
 mod solve;
@@ -66,8 +72,11 @@ pub use error::{PolygonError, RadiosityError};
 pub use factor::{FactorOptions, FormFactor, form_factor};
 pub use hemicube::{Hemicube, HemicubeKind};
 pub use lamp::{Irradiance, Lamp};
+pub use link::{LinkCounts, RuleCounts};
+pub use patches::Patch;
 pub use polygon::{Polygon, SHAPE_TOLERANCE};
+pub use rgb::Rgb;
 pub use scene::{Scene, SceneOptions};
 pub use solve::{Solution, SolveOptions};
-pub use surface::{Rgb, Surface};
-pub use transport::{LinkCounts, Patch, Transport};
+pub use surface::Surface;
+pub use transport::Transport;

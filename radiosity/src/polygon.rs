@@ -1,6 +1,7 @@
 //! Convex planar polygons, checked once.
 
 use glam::DVec3;
+use pointillist_dice::{clip_ring, share_before_crossing};
 
 use crate::error::PolygonError;
 
@@ -182,14 +183,11 @@ pub(crate) fn edges(ring: &[DVec3]) -> impl Iterator<Item = (DVec3, DVec3)> + '_
 /// The part of a convex ring where `value`, an affine function, is not negative.
 pub(crate) fn clipped(ring: &[DVec3], value: impl Fn(DVec3) -> f64) -> Vec<DVec3> {
     let mut kept = Vec::with_capacity(ring.len() + 1);
-    for (a, b) in edges(ring) {
-        let (va, vb) = (value(a), value(b));
-        if (va < 0.0 && vb > 0.0) || (va > 0.0 && vb < 0.0) {
-            kept.push(a + (b - a) * (va / (va - vb)));
-        }
-        if vb >= 0.0 {
-            kept.push(b);
-        }
-    }
+    clip_ring(ring, value, crossing, |p| kept.push(p));
     kept
+}
+
+/// Where the edge from `a` to `b` meets a plane, by heights over it.
+pub(crate) fn crossing((a, value_a): (DVec3, f64), (b, value_b): (DVec3, f64)) -> DVec3 {
+    a + (b - a) * share_before_crossing(value_a, value_b)
 }

@@ -6,7 +6,8 @@ use crate::contact;
 use crate::error::RadiosityError;
 use crate::factor::FactorOptions;
 use crate::polygon::Polygon;
-use crate::surface::{Rgb, Surface};
+use crate::rgb::Rgb;
+use crate::surface::Surface;
 use crate::tree::Tree;
 
 /// How a scene is divided and how accurate exchange is.

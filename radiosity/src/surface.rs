@@ -4,18 +4,7 @@ use glam::DVec3;
 
 use crate::error::RadiosityError;
 use crate::polygon::Polygon;
-
-/// Red, green, blue, or any other three bands.
-pub type Rgb = [f64; 3];
-
-/// Largest emission, irradiance or importance: with areas of up to 1e140, sums of powers stay finite, and a residual that
-/// overflowed would be bounded by nothing.
-const MOST_LIGHT: f64 = 1e100;
-
-/// Whether a value can be light: not NaN, not negative, not so large that sums overflow.
-pub(crate) fn is_light(value: f64) -> bool {
-    (0.0..=MOST_LIGHT).contains(&value)
-}
+use crate::rgb::{Rgb, is_light};
 
 /// A planar convex polygon of one material.
 #[derive(Clone, Debug, PartialEq)]

@@ -85,7 +85,7 @@ fn narrow_occluders_do_not_slip_through_between_samples() {
         let exact = form_factor(&floor, &lamp, std::slice::from_ref(&ribbon), &FactorOptions::DEFAULT).value;
         let surfaces = [&floor, &lamp, &ribbon].map(|p| Surface::new(p.vertices(), [0.5; 3]));
         let scene = Scene::new(&surfaces, &SceneOptions::DEFAULT.with_patch(2.0)).expect("a scene");
-        let (transport, _) = scene.transport(&[]).expect("links");
+        let transport = scene.transport(&[]).expect("links");
         let surface: Vec<usize> = transport.patches().map(|p| p.surface).collect();
         let mut found = 0.0;
         transport.factors(|from, to, factor| {
@@ -103,11 +103,11 @@ fn rows_of_a_closed_box_of_384_patches_add_up_to_1() {
         let options = SceneOptions::DEFAULT.with_patch(0.126).with_factors(EXACT);
         let scene = Scene::new(&room(DVec3::ONE, turn, 0.5, 1.0), &options).expect("a room");
         assert_eq!(scene.patch_count(), 384);
-        let (transport, direct) = scene.transport(&[]).expect("a room");
+        let transport = scene.transport(&[]).expect("a room");
         let worst = transport.row_sums().iter().fold(0.0, |m: f64, s| m.max((s - 1.0).abs()));
         assert!(worst < 1e-12, "a row is off by {worst:e}");
         // Uniform: B = E/(1 − ρ), here 2.
-        let solved = transport.gauss_seidel(&direct, &SolveOptions::DEFAULT).expect("a solution");
+        let solved = transport.gauss_seidel(&SolveOptions::DEFAULT).expect("a solution");
         assert!(solved.radiosity.iter().flatten().all(|b| (b - 2.0).abs() <= solved.bound), "{solved:?}");
         let most = transport.factor_error();
         assert!(most < 1e-9, "bounds of up to {most:e}");
@@ -119,8 +119,8 @@ fn bright_and_thin_closed_boxes_are_solved_within_their_bound() {
     for (size, patch) in [(DVec3::ONE, 0.26), (dvec3(4.0, 0.1, 3.0), 0.51)] {
         let options = SceneOptions::DEFAULT.with_patch(patch);
         let scene = Scene::new(&room(size, DQuat::IDENTITY, 0.999, 1.0), &options).expect("a room");
-        let (transport, direct) = scene.transport(&[]).expect("a room");
-        let solved = transport.gauss_seidel(&direct, &SolveOptions::DEFAULT).expect("a solution");
+        let transport = scene.transport(&[]).expect("a room");
+        let solved = transport.gauss_seidel(&SolveOptions::DEFAULT).expect("a solution");
         assert!(solved.converged && solved.bound < 2e-3, "{solved:?}");
         // The exact solution for these rows is 1000 up to how far rows are from 1, times 1000.
         let rows = transport.row_sums().iter().fold(0.0, |m: f64, s| m.max((s - 1.0).abs()));
@@ -134,10 +134,10 @@ fn bright_and_thin_closed_boxes_are_solved_within_their_bound() {
 fn the_residual_falls_with_every_sweep_by_the_contraction_or_more() {
     let options = SceneOptions::DEFAULT.with_patch(0.26);
     let scene = Scene::new(&cornell(), &options).expect("a room");
-    let (transport, direct) = scene.transport(&[]).expect("a room");
+    let transport = scene.transport(&[]).expect("a room");
     for balance in [false, true] {
         let options = SolveOptions::DEFAULT.with_balance(balance);
-        let solved = transport.gauss_seidel(&direct, &options).expect("a solution");
+        let solved = transport.gauss_seidel(&options).expect("a solution");
         assert!(solved.history.len() > 3);
         for pair in solved.history.windows(2) {
             assert!(pair[1] <= pair[0] * solved.contraction + 1e-12, "{:?}", solved.history);
@@ -148,12 +148,11 @@ fn the_residual_falls_with_every_sweep_by_the_contraction_or_more() {
 #[test]
 fn energy_is_balanced_and_solvers_agree() {
     let scene = Scene::new(&cornell(), &SceneOptions::DEFAULT.with_patch(0.26)).expect("a room");
-    let (transport, direct) = scene.transport(&[]).expect("a room");
-    let solved =
-        transport.gauss_seidel(&direct, &SolveOptions::DEFAULT.with_tolerance(1e-10)).expect("solved");
+    let transport = scene.transport(&[]).expect("a room");
+    let solved = transport.gauss_seidel(&SolveOptions::DEFAULT.with_tolerance(1e-10)).expect("solved");
     for overshoot in [false, true] {
         let options = SolveOptions::DEFAULT.with_overshoot(overshoot);
-        let shot = transport.progressive(&direct, &[], &options).expect("solved");
+        let shot = transport.progressive(&[], &options).expect("solved");
         assert!(shot.converged);
         for (a, b) in solved.radiosity.iter().flatten().zip(shot.radiosity.iter().flatten()) {
             assert!((a - b).abs() <= solved.bound + shot.bound, "{a} {b}");
@@ -163,7 +162,7 @@ fn energy_is_balanced_and_solvers_agree() {
     let rows = transport.row_sums();
     let (mut sent, mut gone) = (0.0, 0.0);
     for ((patch, b), row) in transport.patches().zip(&solved.radiosity).zip(&rows) {
-        let arriving = transport.gathered_by(&solved, patch.index);
+        let arriving = solved.gathered_by(patch.index);
         sent += patch.area * patch.emission[0];
         gone += patch.area * ((1.0 - patch.reflectance[0]) * arriving[0] + b[0] * (1.0 - row));
     }
@@ -183,8 +182,8 @@ fn a_point_light_gives_what_its_solid_angle_says() {
     };
     let lamp = Lamp::Point { position: at, irradiance: &light, shadow: true };
     let direct = scene.direct(&[lamp]).expect("a lamp");
-    let (transport, direct) = scene.transport(&direct).expect("a room");
-    let power: f64 = transport.patches().zip(&direct).map(|(p, e)| p.area * e[0]).sum();
+    let transport = scene.transport(&direct).expect("a room");
+    let power: f64 = transport.patches().zip(transport.direct()).map(|(p, e)| p.area * e[0]).sum();
     assert!((power / (4.0 * PI * 3.0) - 1.0).abs() < 1e-8, "{power}");
 }
 
@@ -206,16 +205,16 @@ fn irradiance_in_a_uniform_room_is_that_of_its_walls() {
     let scene =
         Scene::new(&room(DVec3::ONE, DQuat::IDENTITY, 0.5, 1.0), &SceneOptions::DEFAULT.with_patch(0.26))
             .expect("a room");
-    let (transport, direct) = scene.transport(&[]).expect("a room");
-    let solved = transport.gauss_seidel(&direct, &SolveOptions::DEFAULT).expect("solved");
+    let transport = scene.transport(&[]).expect("a room");
+    let solved = transport.gauss_seidel(&SolveOptions::DEFAULT).expect("solved");
     for (p, n) in [(DVec3::splat(0.3), DVec3::X), (dvec3(0.5, 0.2, 0.9), dvec3(1.0, 2.0, -3.0))] {
         for visibility in [false, true] {
-            let light = transport.irradiance(&solved, p, n, visibility).expect("a point");
+            let light = solved.irradiance(p, n, visibility).expect("a point");
             assert!((light[0] - 2.0).abs() < 1e-6, "{light:?}");
         }
     }
-    assert!(transport.irradiance(&solved, DVec3::NAN, DVec3::X, true).is_err());
-    for vertex in transport.bake(&solved, &direct).vertices {
+    assert!(solved.irradiance(DVec3::NAN, DVec3::X, true).is_err());
+    for vertex in solved.bake().vertices {
         // Gathered beside the room's edges, not on them.
         assert!((vertex.irradiance[0] - 2.0).abs() < 1e-6, "{vertex:?}");
         assert!((vertex.radiosity[0] - 2.0).abs() < 1e-6, "{vertex:?}");
@@ -253,9 +252,8 @@ fn covered_cells_have_no_aliasing() {
 fn groups_of_patches_say_what_single_patches_say() {
     let solve = |tolerance| {
         let options = SceneOptions::DEFAULT.with_patch(0.13).with_tolerance(tolerance);
-        let (transport, direct) =
-            Scene::new(&cornell(), &options).expect("a room").transport(&[]).expect("a room");
-        let solved = transport.gauss_seidel(&direct, &SolveOptions::DEFAULT).expect("solved");
+        let transport = Scene::new(&cornell(), &options).expect("a room").transport(&[]).expect("a room");
+        let solved = transport.gauss_seidel(&SolveOptions::DEFAULT).expect("solved");
         let power: f64 = transport.patches().zip(&solved.radiosity).map(|(p, b)| p.area * b[1]).sum();
         (power, transport.counts().links)
     };
@@ -287,9 +285,9 @@ fn patches_are_divided_at_shadow_edges_only() {
 #[test]
 fn importance_is_the_adjoint_of_light() {
     let scene = Scene::new(&cornell(), &SceneOptions::DEFAULT.with_patch(0.3)).expect("a room");
-    let (transport, direct) = scene.transport(&[]).expect("a room");
+    let transport = scene.transport(&[]).expect("a room");
     let options = SolveOptions::DEFAULT.with_tolerance(1e-10);
-    let solved = transport.gauss_seidel(&direct, &options).expect("solved");
+    let solved = transport.gauss_seidel(&options).expect("solved");
     // Seen: the second box, evenly; grey, so that all bands agree.
     let seen: Vec<f64> = transport.patches().map(|p| f64::from(u8::from(p.surface > 12))).collect();
     let importance = transport.importance(&seen, &options).expect("an importance");
@@ -300,7 +298,7 @@ fn importance_is_the_adjoint_of_light() {
         by_importance += patch.area * importance[i] * mean(patch.emission);
     }
     assert!((by_light / by_importance - 1.0).abs() < 1e-6, "{by_light} and {by_importance}");
-    let shot = transport.progressive(&direct, &importance, &SolveOptions::DEFAULT).expect("solved");
+    let shot = transport.progressive(&importance, &SolveOptions::DEFAULT).expect("solved");
     assert!(shot.converged);
 }
 
@@ -310,10 +308,9 @@ fn any_number_of_threads_gives_the_same_bytes() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
             let options = SceneOptions::DEFAULT.with_patch(0.26).with_tolerance(Some(0.02));
-            let (transport, direct) =
-                Scene::new(&cornell(), &options).expect("a room").transport(&[]).expect("a room");
-            let solved = transport.gauss_seidel(&direct, &SolveOptions::DEFAULT).expect("solved");
-            transport.bake(&solved, &direct)
+            let transport = Scene::new(&cornell(), &options).expect("a room").transport(&[]).expect("a room");
+            let solved = transport.gauss_seidel(&SolveOptions::DEFAULT).expect("solved");
+            solved.bake()
         })
     };
     assert_eq!(of(1), of(3));

@@ -33,8 +33,8 @@ fn far_triangles_get_enough_points() {
 fn overshooting_does_not_brighten() {
     let options = SceneOptions::DEFAULT.with_patch(0.6);
     let scene = Scene::new(&room(DVec3::ONE, DQuat::IDENTITY, 0.5, 1.0), &options).expect("a room");
-    let (transport, direct) = scene.transport(&[]).expect("a room");
-    let solved = transport.progressive(&direct, &[], &SolveOptions::DEFAULT).expect("solved");
+    let transport = scene.transport(&[]).expect("a room");
+    let solved = transport.progressive(&[], &SolveOptions::DEFAULT).expect("solved");
     assert!((solved.radiosity[0][0] - 2.0).abs() <= solved.bound, "{solved:?}");
 }
 
@@ -43,22 +43,21 @@ fn overshooting_does_not_brighten() {
 fn debts_are_not_shot_for_ever() {
     let options = SceneOptions::DEFAULT.with_patch(0.3);
     let surfaces = room(DVec3::ONE, DQuat::IDENTITY, 0.999, 1.0);
-    let (transport, direct) =
-        Scene::new(&surfaces, &options).expect("a room").transport(&[]).expect("a room");
-    let solved = transport.progressive(&direct, &[], &SolveOptions::DEFAULT).expect("solved");
+    let transport = Scene::new(&surfaces, &options).expect("a room").transport(&[]).expect("a room");
+    let solved = transport.progressive(&[], &SolveOptions::DEFAULT).expect("solved");
     assert!(solved.converged, "{} steps for {} patches", solved.steps, transport.patch_count());
 }
 
 /// With importance, overshooting sent the same debt back and forth for ever.
 #[test]
 fn shooting_by_importance_ends() {
-    let (transport, direct) = Scene::new(&cornell(), &SceneOptions::DEFAULT.with_patch(0.6))
+    let transport = Scene::new(&cornell(), &SceneOptions::DEFAULT.with_patch(0.6))
         .expect("a room")
         .transport(&[])
         .expect("a room");
     let mut importance = vec![0.0; transport.patch_count()];
     importance[0] = 1.0;
-    let solved = transport.progressive(&direct, &importance, &SolveOptions::DEFAULT).expect("solved");
+    let solved = transport.progressive(&importance, &SolveOptions::DEFAULT).expect("solved");
     assert!(solved.converged);
 }
 
@@ -117,9 +116,8 @@ fn nothing_less_than_nothing_is_sent() {
 fn a_hierarchy_keeps_its_light() {
     let surfaces = room(DVec3::ONE, DQuat::IDENTITY, 0.9, 1.0);
     let options = SceneOptions::DEFAULT.with_patch(0.1).with_tolerance(Some(0.05));
-    let (transport, direct) =
-        Scene::new(&surfaces, &options).expect("a room").transport(&[]).expect("a room");
-    let solved = transport.gauss_seidel(&direct, &SolveOptions::DEFAULT).expect("solved");
+    let transport = Scene::new(&surfaces, &options).expect("a room").transport(&[]).expect("a room");
+    let solved = transport.gauss_seidel(&SolveOptions::DEFAULT).expect("solved");
     let patches = transport.patches().zip(&solved.radiosity);
     let (power, area) =
         patches.fold((0.0, 0.0), |(p, a), (patch, b)| (p + patch.area * b[0], a + patch.area));
@@ -151,12 +149,12 @@ fn impossible_scenes_are_refused_by_name() {
     assert_eq!(scene.dropped(), 1);
     // A mirror-white closed room keeps all light for ever; an open one lets it out.
     let closed = Scene::new(&room(DVec3::ONE, DQuat::IDENTITY, 1.0, 1.0), &options).expect("a room");
-    let (transport, _) = closed.transport(&[]).expect("a room");
-    let refused = transport.gauss_seidel(&[], &SolveOptions::DEFAULT);
+    let transport = closed.transport(&[]).expect("a room");
+    let refused = transport.gauss_seidel(&SolveOptions::DEFAULT);
     assert!(matches!(refused, Err(RadiosityError::NoEquilibrium { .. })), "{refused:?}");
     let open = room(DVec3::ONE, DQuat::IDENTITY, 1.0, 1.0);
-    let (transport, _) = Scene::new(&open[..4], &options).expect("a room").transport(&[]).expect("a room");
-    let solved = transport.gauss_seidel(&[], &SolveOptions::DEFAULT).expect("light gets out");
+    let transport = Scene::new(&open[..4], &options).expect("a room").transport(&[]).expect("a room");
+    let solved = transport.gauss_seidel(&SolveOptions::DEFAULT).expect("light gets out");
     assert!(solved.converged && solved.contraction < 1.0, "{solved:?}");
 }
 
@@ -185,7 +183,7 @@ fn lamps_that_give_no_light_are_refused_by_lamp_and_patch() {
 #[test]
 fn direct_light_and_importance_that_are_none_are_refused_by_patch() {
     let scene = || Scene::new(&cornell(), &SceneOptions::DEFAULT.with_patch(0.6)).expect("a room");
-    let (transport, direct) = scene().transport(&[]).expect("a room");
+    let mut transport = scene().transport(&[]).expect("a room");
     let options = SolveOptions::DEFAULT;
     for bad in [f64::NAN, f64::INFINITY, -1.0, 1e200] {
         let mut light = vec![[1.0; 3]; transport.patch_count()];
@@ -193,12 +191,12 @@ fn direct_light_and_importance_that_are_none_are_refused_by_patch() {
         let named = |e: RadiosityError| matches!(e, RadiosityError::DirectIrradiance { patch: 3, .. });
         assert!(scene().transport(&light).is_err_and(named));
         assert!(scene().transport_by_hemicubes(HemicubeKind::Exact, 8, &light).is_err_and(named));
-        assert!(transport.gauss_seidel(&light, &options).is_err_and(named));
-        assert!(transport.progressive(&light, &[], &options).is_err_and(named));
+        assert!(transport.set_direct(&light).is_err_and(named));
+        assert!(transport.direct().iter().all(|&light| light == [0.0; 3]), "a refused light was taken");
         let mut weights = vec![1.0; transport.patch_count()];
         weights[5] = bad;
         let named = |e: RadiosityError| matches!(e, RadiosityError::Importance { patch: 5, .. });
-        assert!(transport.progressive(&direct, &weights, &options).is_err_and(named));
+        assert!(transport.progressive(&weights, &options).is_err_and(named));
         assert!(transport.importance(&weights, &options).is_err_and(named));
     }
     let mut bright = cornell();
@@ -207,4 +205,31 @@ fn direct_light_and_importance_that_are_none_are_refused_by_patch() {
         Scene::new(&bright, &SceneOptions::DEFAULT),
         Err(RadiosityError::Emission { surface: 0, .. })
     ));
+}
+
+/// A solver took any list of direct light, and baking any solution: of another transport they gave wrong light or a panic.
+#[test]
+fn a_transport_owns_its_direct_light() {
+    let options = SceneOptions::DEFAULT.with_patch(0.6);
+    let scene = || Scene::new(&cornell(), &options).expect("a room");
+    let lamp =
+        Lamp::Point { position: dvec3(0.5, 0.5, 0.5), irradiance: &|_, _| [1.0, 2.0, 3.0], shadow: true };
+    let mut lit = scene();
+    let light = lit.direct(&[lamp]).expect("a lamp");
+    let built = lit.clone().transport(&light).expect("a room");
+    let mut relit = lit.transport(&[]).expect("a room");
+    let dark = relit.gauss_seidel(&SolveOptions::DEFAULT).expect("solved").radiosity;
+    relit.set_direct(&light).expect("one entry for each patch");
+    assert_eq!(relit.direct(), built.direct());
+    let [a, b] = [&relit, &built].map(|t| t.gauss_seidel(&SolveOptions::DEFAULT).expect("solved"));
+    assert_eq!(a.radiosity, b.radiosity);
+    assert_ne!(a.radiosity, dark);
+    assert_eq!(a.bake(), b.bake());
+    let patches = relit.patch_count();
+    let short = relit.set_direct(&light[1..]);
+    assert_eq!(short, Err(RadiosityError::CountMismatch { patches, given: patches - 1 }));
+    assert_eq!(relit.direct(), light);
+    relit.set_direct(&[]).expect("none");
+    let again = relit.gauss_seidel(&SolveOptions::DEFAULT).expect("solved");
+    assert_eq!(again.radiosity, dark);
 }

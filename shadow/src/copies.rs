@@ -3,7 +3,7 @@
 //! Of n coincident casters every receiver would ask n times, and n coincident receivers n² times. Copies of one opacity α are
 //! one caster of opacity 1 − (1 − α)ⁿ; under the paper's rule, where opacities of a layer add up, they stay apart.
 
-use crate::scratch::Caster;
+use crate::casters::Caster;
 use glam::DVec3;
 
 /// Merges casters that have the same corners and the same opacity into the first of them; the others get opacity 0. `keys` is memory.

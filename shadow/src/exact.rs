@@ -1,9 +1,10 @@
 //! The correlated rule: a receiver minus everything that stands in its light.
 
-use crate::light::{Measure, Query};
-use crate::scratch::{Caster, Nearby, Target, Work};
+use crate::casters::Caster;
+use crate::query::{Measure, Query};
+use crate::target::Target;
 use glam::DVec2;
-use pointillist_dice::hide::Occluders;
+use pointillist_dice::hide::{Blocker, Occluders, Regions};
 use pointillist_dice::{ConvexPolygon, convex};
 use pointillist_micropoint::{Face, Front, Layer, in_front};
 use std::cmp::Ordering;
@@ -11,24 +12,34 @@ use std::cmp::Ordering;
 /// Overlaps below this share of a receiver are rounding.
 const NEGLIGIBLE: f64 = 1e-9;
 
+/// Memory of this rule.
+#[derive(Debug, Default)]
+pub(crate) struct Memory {
+    regions: Regions,
+    blockers: Vec<Blocker>,
+    /// The caster that hid the last target.
+    last_hider: u32,
+    /// Targets that had to be cut.
+    pub(crate) partial: u64,
+}
+
 /// The lit fraction of a target, 0..=1.
 pub(crate) fn lit_fraction(
     query: &Query<'_>,
     target: &Target,
     outline: &[DVec2],
     measure: &Measure<'_>,
-    nearby: &[Nearby],
-    work: &mut Work,
+    work: &mut Memory,
 ) -> f64 {
-    if !find_blockers(query, target, outline, measure.face, nearby, work) {
+    if !find_blockers(query, target, outline, measure.face, work) {
         return 0.0;
     }
     if work.blockers.is_empty() {
         return 1.0;
     }
     // The result must not depend on the order in which casters were found.
-    work.blockers
-        .sort_unstable_by(|a, b| compare(&query.casters[a.0 as usize], &query.casters[b.0 as usize]));
+    let caster = |b: &Blocker| &query.casters[b.number as usize];
+    work.blockers.sort_unstable_by(|a, b| compare(caster(a), caster(b)));
     work.partial += 1;
     let polygon = ConvexPolygon::from_vertices(outline);
     work.regions.hide(polygon, NEGLIGIBLE * target.area, &work.blockers, query);
@@ -50,12 +61,12 @@ fn find_blockers(
     target: &Target,
     outline: &[DVec2],
     face: &Face,
-    nearby: &[Nearby],
-    work: &mut Work,
+    work: &mut Memory,
 ) -> bool {
     work.blockers.clear();
     let (low, high) = target.bounds;
     // What hid the last target often hides the next.
+    let nearby = query.nearby;
     let last = nearby.iter().position(|n| n.index == work.last_hider);
     let rest = nearby.iter().enumerate().filter(|(i, _)| Some(*i) != last).map(|(_, n)| n);
     for near in last.map(|i| &nearby[i]).into_iter().chain(rest) {
@@ -85,8 +96,8 @@ fn find_blockers(
         }
         match front {
             Front::Nowhere => {}
-            Front::Everywhere => work.blockers.push((c, None)),
-            Front::Within(half) => work.blockers.push((c, Some(half))),
+            Front::Everywhere => work.blockers.push(Blocker { number: c, front: None }),
+            Front::Within(half) => work.blockers.push(Blocker { number: c, front: Some(half) }),
         }
     }
     true
@@ -132,8 +143,8 @@ impl Occluders for Query<'_> {
     }
 }
 
-/// Opaque ones first: what they hide, no texture needs to be asked about. Then nearest to the light
-/// first, then by place; the triangle's number only between equals.
+/// A canonical order of casters: opaque ones before textured ones, whose masks need not be asked where opaque ones hide the receiver;
+/// then by nearness to the light, nearest first, then by place. The triangle's number decides only between equals.
 pub(crate) fn compare(a: &Caster, b: &Caster) -> Ordering {
     let key = |c: &Caster| {
         let (low, high) = c.bounds;

@@ -19,19 +19,28 @@
 //! 2. P. Atherton, K. Weiler, D. Greenberg: *Polygon shadow generation*, SIGGRAPH 1978.
 #![forbid(unsafe_code)]
 
+mod casters;
+mod cells;
 mod copies;
+mod counts;
 mod error;
 mod exact;
+mod grid;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod layers;
 mod light;
+mod options;
+mod query;
 mod receiver;
 mod scratch;
 mod screen;
+mod target;
 
+pub use counts::ShadowCounts;
 pub use error::ShadowError;
-pub use light::{Resolution, ShadowLight, ShadowOptions};
+pub use light::ShadowLight;
+pub use options::{Resolution, ShadowOptions};
 pub use receiver::{Receivers, Viewer};
-pub use scratch::{ShadowCounts, ShadowScratch};
+pub use scratch::ShadowScratch;
 pub use screen::Emitter;

@@ -1,55 +1,22 @@
 //! One light and the fractions of it that reach receivers.
 
-use crate::copies;
+use crate::casters::{Caster, Casters, Nearby};
+use crate::cells::LightCells;
 use crate::error::ShadowError;
-use crate::exact;
-use crate::layers::{self, LightCells};
+use crate::grid::LightGrid;
+use crate::options::{Resolution, ShadowOptions};
+use crate::query::{Measure, Query};
 use crate::receiver::{Receivers, Viewer};
-use crate::scratch::{Caster, LitFace, Nearby, ShadowScratch, Side, Sum, Target, Work};
+use crate::scratch::{RuleMemory, ShadowScratch, Side, Sum};
 use crate::screen::{Emitter, Screens};
+use crate::target::{Target, Targets};
+use crate::{copies, exact, layers};
 use glam::{DVec2, DVec3};
-use pointillist_dice::ConvexPolygon;
+use pointillist_dice::{ConvexPolygon, clip_ring, share_before_crossing};
 use pointillist_micropoint::{
-    Face, Geometry, GridRect, Lens, LensKind, Occlusion, ProjectedVertex, Setup, TexturedOpacity, ViewVolume,
-    set_up_face,
+    Bounds, Face, FaceVisitor, Geometry, GridRect, Lens, LensKind, Occlusion, ProjectedVertex, Setup,
+    Surface, TexturedOpacity,
 };
-
-/// How fine the light grid is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Resolution {
-    /// As the receivers need it: a light cell is about as large as a receiver.
-    #[default]
-    Auto,
-    /// This many cells per side of a light screen.
-    Cells(u32),
-}
-
-/// How shadows are found.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct ShadowOptions {
-    /// How casters in one light cell hide a receiver. Default: correlated, that is, exactly.
-    pub occlusion: Occlusion,
-    /// Light cells. Default: chosen from the receivers. Changes the result under the paper's rule
-    /// only; under the correlated rule the grid merely sorts casters.
-    pub resolution: Resolution,
-}
-
-impl ShadowOptions {
-    /// Sets the occlusion rule.
-    #[must_use]
-    pub const fn with_occlusion(mut self, occlusion: Occlusion) -> Self {
-        self.occlusion = occlusion;
-        self
-    }
-
-    /// Sets the resolution of the light grid.
-    #[must_use]
-    pub const fn with_resolution(mut self, resolution: Resolution) -> Self {
-        self.resolution = resolution;
-        self
-    }
-}
 
 /// A light with its screens, ready to be asked from any thread.
 pub struct ShadowLight<'a> {
@@ -106,7 +73,8 @@ impl<'a> ShadowLight<'a> {
         scratch.begin(receivers.len(), viewer.faces.len(), self.light_cells());
         self.collect_targets(viewer, receivers, scratch);
         for screen in 0..self.screens.lenses.len() {
-            if scratch.sort_targets_into_groups(screen, self.options.resolution, self.screens.size) {
+            let targets = &scratch.targets.list;
+            if scratch.grid.sort(targets, screen, self.options.resolution, self.screens.size) {
                 scratch.counts.screens += 1;
                 self.collect_casters(screen, scratch);
                 self.resolve_groups(screen, viewer, scratch);
@@ -150,10 +118,10 @@ impl<'a> ShadowLight<'a> {
             if let Some(screen) = std::iter::once(likely).chain(0..count).find(sees_all) {
                 let lens = &self.screens.lenses[screen];
                 let outline = corners.iter().map(|&c| placed(lens, lens.local_vector(c + offset)));
-                scratch.push_target((index as u32, r.face), screen, false, outline);
+                scratch.targets.push((index as u32, r.face), screen, false, outline);
             } else {
                 for screen in 0..count {
-                    self.push_clipped((index as u32, r.face), screen, corners, offset, scratch);
+                    self.push_clipped((index as u32, r.face), screen, corners, offset, &mut scratch.targets);
                 }
             }
         }
@@ -180,7 +148,7 @@ impl<'a> ShadowLight<'a> {
         screen: usize,
         corners: &[DVec3],
         offset: DVec3,
-        scratch: &mut ShadowScratch,
+        targets: &mut Targets,
     ) {
         let lens = &self.screens.lenses[screen];
         let mut ring: Vec<DVec3> = corners.iter().map(|&c| lens.local_vector(c + offset)).collect();
@@ -192,20 +160,12 @@ impl<'a> ShadowLight<'a> {
         ];
         for normal in sides {
             let mut clipped = Vec::with_capacity(ring.len() + 1);
-            for (i, &a) in ring.iter().enumerate() {
-                let b = ring[(i + 1) % ring.len()];
-                let (va, vb) = (normal.dot(a), normal.dot(b));
-                if va >= 0.0 {
-                    clipped.push(a);
-                }
-                if (va >= 0.0) != (vb >= 0.0) {
-                    clipped.push(a + (b - a) * (va / (va - vb)));
-                }
-            }
+            let crossing = |(a, va): (DVec3, f64), (b, vb)| a + (b - a) * share_before_crossing(va, vb);
+            clip_ring(&ring, |p| normal.dot(p), crossing, |p| clipped.push(p));
             ring = clipped;
         }
         if ring.len() >= 3 && ring.iter().all(|p| p.z > 0.0) {
-            scratch.push_target(receiver, screen, true, ring.iter().map(|&p| placed(lens, p)));
+            targets.push(receiver, screen, true, ring.iter().map(|&p| placed(lens, p)));
         }
     }
 
@@ -227,176 +187,113 @@ impl<'a> ShadowLight<'a> {
     /// may darken.
     fn collect_casters(&self, screen: usize, scratch: &mut ShadowScratch) {
         let lens = &self.screens.lenses[screen];
-        let rect = GridRect { low: scratch.low, high: scratch.high };
-        let volume = ViewVolume::new(lens, &rect);
+        let ShadowScratch { grid, casters, visit, counts, copy_keys, .. } = scratch;
+        casters.clear();
+        let (low, high) = grid.bounds();
         let all = self.options.occlusion == Occlusion::Paper;
-        let farthest = if all { f64::INFINITY } else { lens.depth(scratch.least_nearness) };
-        let mut queue = std::mem::take(&mut scratch.queue);
-        let skipped = self.geometry.visit_near_to_far(
-            &mut queue,
-            |bounds| volume.nearest_depth(bounds).filter(|&d| d <= farthest),
-            |cluster| {
-                self.link_cluster(lens, cluster, scratch);
-                if scratch.open_groups == 0 { f64::NEG_INFINITY } else { farthest }
-            },
-        );
-        scratch.counts.clusters_skipped += skipped;
-        scratch.queue = queue;
+        let farthest = if all { f64::INFINITY } else { lens.depth(grid.least_nearness) };
+        let setup = Setup { lens, rect: &self.screens.rect, hidden: &self.screens.hidden, keeps_backs: true };
+        let mut linker = Linker { lens, farthest, grid, casters, linked: 0, unlinked: 0 };
+        let seen = self.geometry.visit_faces(&setup, &GridRect { low, high }, farthest, visit, &mut linker);
+        counts.clusters += seen.clusters;
+        counts.clusters_skipped += seen.clusters_skipped;
+        counts.casters += linker.linked;
+        counts.casters_culled += seen.triangles_culled + linker.unlinked;
         if self.options.occlusion == Occlusion::Correlated {
-            copies::merge(&mut scratch.casters, &mut scratch.copy_keys);
+            copies::merge(&mut casters.list, copy_keys);
         }
-    }
-
-    fn link_cluster(&self, lens: &Lens, cluster: u32, scratch: &mut ShadowScratch) {
-        let (bounds, vertices, triangles) = self.geometry.cluster(cluster);
-        let hidden = &self.screens.hidden;
-        if self.geometry.hides_cluster(cluster, lens, hidden) || !scratch.concerns_any_group(lens, bounds) {
-            scratch.counts.clusters_skipped += 1;
-            return;
-        }
-        scratch.counts.clusters += 1;
-        let setup = Setup { lens, rect: &self.screens.rect, hidden, keeps_backs: true };
-        let mut projected = std::mem::take(&mut scratch.projected);
-        projected.clear();
-        projected.extend(vertices.iter().map(|&v| ProjectedVertex::new(lens, v)));
-        for (i, t) in triangles.iter().enumerate() {
-            let v = t.corners.map(|c| &projected[usize::from(c)]);
-            let surface = &self.geometry.surfaces()[t.surface as usize];
-            if surface.opacity <= 0.0 || scratch.misses_targets(v) {
-                scratch.counts.casters_culled += 1;
-                continue;
-            }
-            match set_up_face(&setup, t, (cluster, i as u32), v, surface) {
-                None => scratch.counts.casters_culled += 1,
-                Some((face, outline)) => {
-                    let polygon = ConvexPolygon::from_vertices(outline.vertices());
-                    let opacity =
-                        if surface.textured_opacity { None } else { Some(f64::from(surface.opacity)) };
-                    scratch.link(Caster { face, bounds: polygon.bounds(), polygon, opacity });
-                }
-            }
-        }
-        scratch.projected = projected;
     }
 
     fn resolve_groups(&self, screen: usize, viewer: Viewer<'_>, scratch: &mut ShadowScratch) {
-        let mut work = std::mem::take(&mut scratch.work);
-        let mut nearby = std::mem::take(&mut scratch.nearby);
-        for g in 0..scratch.groups.len() {
-            let group = scratch.groups[g];
-            scratch.casters_of(&group, &mut nearby);
-            for t in group.first_target..group.end_target {
-                let target = scratch.targets[scratch.target_order[t as usize] as usize];
-                let settled = if group.dark { Some(0.0) } else { nearby.is_empty().then_some(1.0) };
-                scratch.counts.dark_by_group += u64::from(group.dark);
-                scratch.counts.lit_by_group += u64::from(!group.dark && nearby.is_empty());
-                let (lit, total) = match settled {
+        let ShadowScratch { grid, casters, nearby, targets, lit_faces, rules, counts, sums, .. } = scratch;
+        for group in &grid.groups {
+            casters.of_group(group, nearby);
+            let settled = if group.dark { Some(0.0) } else { nearby.is_empty().then_some(1.0) };
+            let order = &grid.order[group.first_target as usize..group.end_target as usize];
+            counts.dark_by_group += order.len() as u64 * u64::from(group.dark);
+            counts.lit_by_group += order.len() as u64 * u64::from(!group.dark && nearby.is_empty());
+            let query = self.query(screen, &casters.list, nearby);
+            for &t in order {
+                let target = &targets.list[t as usize];
+                let (fraction, total) = match settled {
                     // A receiver on one screen needs no weight, and keeps a plain 0 or 1.
                     Some(fraction) if !target.shared => (fraction, 1.0),
-                    _ => self.resolve((screen, viewer), &target, settled, &nearby, scratch, &mut work),
+                    _ => {
+                        let make = || self.face_on_screen(&viewer.faces[target.face as usize], screen);
+                        let face = lit_faces.get(target.face, screen, make);
+                        let measure = Measure { lens: query.lens, viewer: viewer.lens, face };
+                        let outline = targets.outline(target);
+                        let rule = || self.lit_fraction(&query, target, outline, &measure, rules);
+                        let fraction = settled.unwrap_or_else(rule);
+                        (fraction, if target.shared { measure.area(outline) } else { 1.0 })
+                    }
                 };
-                let sum = &mut scratch.sums[target.receiver as usize];
-                sum.lit += lit;
+                let sum = &mut sums[target.receiver as usize];
+                sum.lit += total * fraction;
                 sum.total += total;
             }
         }
-        scratch.work = work;
-        scratch.nearby = nearby;
+        counts.partial += rules.take_partial();
     }
 
-    /// Lit and whole share of a target; `settled` is its lit fraction if that is known already.
-    fn resolve(
-        &self,
-        (screen, viewer): (usize, Viewer<'_>),
-        target: &Target,
-        settled: Option<f64>,
-        nearby: &[Nearby],
-        scratch: &mut ShadowScratch,
-        work: &mut Work,
-    ) -> (f64, f64) {
+    fn query<'q>(&'q self, screen: usize, casters: &'q [Caster], nearby: &'q [Nearby]) -> Query<'q> {
         let lens = &self.screens.lenses[screen];
-        let index = scratch.lit_face(target.face, screen, || {
-            self.face_on_screen(&viewer.faces[target.face as usize], screen)
-        });
-        let face = &scratch.lit_faces[index as usize].face;
-        let outline = scratch.outline(target);
-        let measure = Measure { lens, viewer: viewer.lens, face };
-        let query = Query { lens, geometry: self.geometry, opacity: self.opacity, casters: &scratch.casters };
-        let fraction = settled.unwrap_or_else(|| match self.light_cells() {
-            None => exact::lit_fraction(&query, target, outline, &measure, nearby, work),
-            Some(cells) => layers::lit_fraction(&query, outline, face, nearby, cells, work),
-        });
-        if !target.shared {
-            return (fraction, 1.0);
+        Query { lens, geometry: self.geometry, opacity: self.opacity, casters, nearby }
+    }
+
+    fn lit_fraction(
+        &self,
+        query: &Query<'_>,
+        target: &Target,
+        outline: &[DVec2],
+        measure: &Measure<'_>,
+        rules: &mut RuleMemory,
+    ) -> f64 {
+        match self.light_cells() {
+            None => exact::lit_fraction(query, target, outline, measure, &mut rules.exact),
+            Some(cells) => layers::lit_fraction(query, outline, measure.face, cells, &mut rules.layers),
         }
-        let total = measure.area(outline);
-        (total * fraction, total)
+    }
+}
+
+/// Links triangles to the groups of targets that they may darken.
+struct Linker<'s> {
+    lens: &'s Lens,
+    farthest: f64,
+    grid: &'s mut LightGrid,
+    casters: &'s mut Casters,
+    linked: u64,
+    unlinked: u64,
+}
+
+impl FaceVisitor for Linker<'_> {
+    #[inline]
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.grid.may_be_darkened_by(self.lens, bounds)
+    }
+
+    #[inline]
+    fn skips(&self, corners: [&ProjectedVertex; 3], surface: &Surface) -> bool {
+        surface.opacity <= 0.0 || self.grid.is_missed_by(corners)
+    }
+
+    #[inline]
+    fn visit(&mut self, face: Face, outline: &[DVec2], opacity: Option<f32>) {
+        let polygon = ConvexPolygon::from_vertices(outline);
+        let caster = Caster { face, bounds: polygon.bounds(), polygon, opacity: opacity.map(f64::from) };
+        if self.casters.link(caster, self.grid) {
+            self.linked += 1;
+        } else {
+            self.unlinked += 1;
+        }
+    }
+
+    fn farthest(&self) -> f64 {
+        if self.grid.open_groups == 0 { f64::NEG_INFINITY } else { self.farthest }
     }
 }
 
 /// A point of a lens's frame on its grid, with its nearness.
 fn placed(lens: &Lens, local: DVec3) -> (DVec2, f64) {
     (lens.project(local), lens.nearness(local.z))
-}
-
-/// What casters are looked up with.
-pub(crate) struct Query<'a> {
-    pub(crate) lens: &'a Lens,
-    pub(crate) geometry: &'a Geometry,
-    pub(crate) opacity: &'a dyn TexturedOpacity,
-    pub(crate) casters: &'a [Caster],
-}
-
-impl Query<'_> {
-    /// Opacity of a caster over a polygon of the light grid.
-    pub(crate) fn opacity(&self, caster: &Caster, polygon: &[DVec2]) -> f64 {
-        caster.opacity.unwrap_or_else(|| {
-            let surface = &self.geometry.surfaces()[caster.face.surface as usize];
-            f64::from(caster.face.mean_opacity(self.lens, surface, self.opacity, DVec2::ZERO, polygon))
-        })
-    }
-}
-
-/// Areas in the viewer's picture of polygons of the light grid, up to a factor that is constant on a face.
-///
-/// Positions in the picture are a projective map of positions in the light grid, whose denominator is the viewer's
-/// depth over the light's. Such a map turns a triangle of area A with denominators a, b, c at its corners into
-/// one of area A / (a b c), up to a constant: exact, however much the depths vary.
-pub(crate) struct Measure<'a> {
-    lens: &'a Lens,
-    viewer: &'a Lens,
-    pub(crate) face: &'a Face,
-}
-
-impl Measure<'_> {
-    /// Area of a polygon in the picture.
-    pub(crate) fn area(&self, polygon: &[DVec2]) -> f64 {
-        let Some((&first, rest)) = polygon.split_first() else { return 0.0 };
-        let at_first = self.denominator(first);
-        let mut sum = 0.0;
-        let mut previous = (DVec2::ZERO, 1.0);
-        for (i, &v) in rest.iter().enumerate() {
-            let next = (v - first, self.denominator(v));
-            if i > 0 {
-                sum += 0.5 * previous.0.perp_dot(next.0) / (at_first * previous.1 * next.1);
-            }
-            previous = next;
-        }
-        sum.abs()
-    }
-
-    fn denominator(&self, p: DVec2) -> f64 {
-        let local = self.lens.unproject(p, self.face.nearness_at(p));
-        let world = self.lens.to_world_axes(local) + (self.lens.origin - self.viewer.origin);
-        let light_depth = if self.lens.kind == LensKind::Perspective { local.z } else { 1.0 };
-        let viewer_depth =
-            if self.viewer.kind == LensKind::Perspective { self.viewer.forward.dot(world) } else { 1.0 };
-        viewer_depth / light_depth
-    }
-}
-
-impl LitFace {
-    pub(crate) fn new(screen: usize, face: Face) -> Self {
-        Self { screen: screen as u8, face }
-    }
 }

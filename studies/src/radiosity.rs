@@ -183,14 +183,14 @@ fn boxes(text: &mut String) -> Outcome {
                 .with_factors(FactorOptions::DEFAULT.with_unoccluded(1e-13));
             let start = Instant::now();
             let scene = Scene::new(&room(size, reflectance, 1.0), &options)?;
-            let (transport, direct) = scene.transport(&[])?;
+            let transport = scene.transport(&[])?;
             let seconds = start.elapsed().as_secs_f64();
             let off = transport.row_sums().iter().fold(0.0, |m: f64, s| m.max((s - 1.0).abs()));
             for method in ["Gauss–Seidel", "progressive"] {
                 let solving = SolveOptions::DEFAULT.with_max_sweeps(200);
                 let (time, solved) = timed(|| match method {
-                    "progressive" => transport.progressive(&direct, &[], &solving),
-                    _ => transport.gauss_seidel(&direct, &solving),
+                    "progressive" => transport.progressive(&[], &solving),
+                    _ => transport.gauss_seidel(&solving),
                 });
                 let solved = solved?;
                 let exact = 1.0 / (1.0 - reflectance);
@@ -227,13 +227,13 @@ fn rooms(text: &mut String) -> Outcome {
     {
         let options = SceneOptions::DEFAULT.with_patch(patch).with_tolerance(tolerance);
         let start = Instant::now();
-        let (transport, direct) = Scene::new(&cornell(), &options)?.transport(&[])?;
+        let transport = Scene::new(&cornell(), &options)?.transport(&[])?;
         let seconds = start.elapsed().as_secs_f64();
-        let (time, solved) = timed(|| transport.gauss_seidel(&direct, &SolveOptions::DEFAULT));
+        let (time, solved) = timed(|| transport.gauss_seidel(&SolveOptions::DEFAULT));
         let solved = solved?;
         let mut light = vec![];
         for &p in &places {
-            light.push(transport.irradiance(&solved, p, DVec3::Y, true)?[1]);
+            light.push(solved.irradiance(p, DVec3::Y, true)?[1]);
         }
         let exact = truth.get_or_insert_with(|| light.clone());
         let mean = exact.iter().sum::<f64>() / exact.len() as f64;

@@ -122,7 +122,7 @@ fn linked(factors: FactorOptions, (open, relative, absolute): (f64, f64, f64)) -
     let factors = factors.with_unoccluded(open).with_occluded(relative).with_absolute(absolute);
     let scene = Scene::new(&cornell(), &SceneOptions::DEFAULT.with_patch(PATCH).with_factors(factors))?;
     let (seconds, found) = timed(|| scene.clone().transport(&[]));
-    Ok((seconds, found?.0))
+    Ok((seconds, found?))
 }
 
 /// Form factors, row by row.

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_delaunay::Hint;
-use pointillist_radiosity::{Scene as Patches, SceneOptions, Solution, SolveOptions, Transport};
+use pointillist_radiosity::{Scene as Patches, SceneOptions, Solution, SolveOptions};
 use pointillist_render::{
     Ambient, CaptureOptions, Lamps, Lightmap, LookOptions, Prepared, Seen, look_all, scene_surfaces,
     with_lamps,
@@ -32,11 +32,11 @@ pub(crate) fn compare(text: &mut String) -> Result<(), Fault> {
     let start = Instant::now();
     let mut patches = Patches::new(&surfaces.surfaces, &SceneOptions::DEFAULT.with_patch(0.25))?;
     let direct = with_lamps(&Lamps::new(&scene), |lamps| patches.direct(lamps))?;
-    let (transport, direct) = patches.transport(&direct)?;
-    let solution = transport.gauss_seidel(&direct, &SolveOptions::DEFAULT)?;
+    let transport = patches.transport(&direct)?;
+    let solution = transport.gauss_seidel(&SolveOptions::DEFAULT)?;
     let seconds = start.elapsed().as_secs_f64();
     let places = place::random(BOX * 0.05, BOX * 0.95, PLACES, 5);
-    let truth = exact(&transport, &solution, &places)?;
+    let truth = exact(&solution, &places)?;
     writeln!(
         text,
         "\n## Probes and radiosity\n\nA closed box of {} × {} × {} with coloured ends and a lamp. Irradiance for 26 normals at {PLACES} places: of probes, of \
@@ -61,8 +61,7 @@ pub(crate) fn compare(text: &mut String) -> Result<(), Fault> {
         }
         seen = look(&prepared, &grid, Ambient::Probes(&field))?;
     }
-    let baked = transport.bake(&solution, &direct);
-    let baked = Lightmap::of_baked(&baked, &surfaces.faces, scene.mesh.triangles.len())?;
+    let baked = Lightmap::of_baked(&solution.bake(), &surfaces.faces, scene.mesh.triangles.len())?;
     let seen = radiance(&look(&prepared, &places, Ambient::Radiosity(&baked))?);
     writeln!(text, "| baked | {:.2} |", 100.0 * error(&truth, |i| Irradiance::new(&seen[i])))?;
     Ok(())
@@ -79,10 +78,10 @@ fn look(prepared: &Prepared<'_>, at: &[DVec3], ambient: Ambient<'_>) -> Result<V
 }
 
 /// For each place and normal.
-fn exact(transport: &Transport, solution: &Solution, places: &[DVec3]) -> Result<Vec<Vec<DVec3>>, Fault> {
+fn exact(solution: &Solution<'_>, places: &[DVec3]) -> Result<Vec<Vec<DVec3>>, Fault> {
     let normals = normals();
     let one = |p: &DVec3, n: &DVec3| {
-        let [r, g, b] = transport.irradiance(solution, *p, *n, false)?;
+        let [r, g, b] = solution.irradiance(*p, *n, false)?;
         Ok(dvec3(r, g, b))
     };
     places.iter().map(|p| normals.iter().map(|n| one(p, n)).collect()).collect()

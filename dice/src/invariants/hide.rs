@@ -54,7 +54,8 @@ pub fn attenuated(sheets: &[Sheet]) -> Regions {
 #[must_use]
 pub fn hidden(sheets: &[Sheet]) -> Regions {
     let mut regions = Regions::default();
-    let blockers: Vec<Blocker> = (0..sheets.len() as u32).map(|number| (number, None)).collect();
+    let blockers: Vec<Blocker> =
+        (0..sheets.len() as u32).map(|number| Blocker { number, front: None }).collect();
     regions.hide(unit(), NEGLIGIBLE, &blockers, &Sheets(sheets));
     regions
 }

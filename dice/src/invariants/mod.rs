@@ -3,9 +3,11 @@
 //! Each takes any input at all. Input that is refused, or that meets so many cells that checking would take long,
 //! satisfies every fact.
 
+mod clip;
 mod cut;
 mod hide;
 
+pub use clip::clipping_divides;
 pub use cut::{
     Part, cut_equals_accumulate, cut_pieces_lie_in_their_cells, cut_shares_edges,
     cut_window_is_part_of_the_whole, parts,

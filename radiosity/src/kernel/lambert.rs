@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::polygon::edges;
+use crate::polygon::crossing;
+use pointillist_dice::clip_ring;
 
 /// Form factor from a surface element to a polygon that lies in front of it and faces it, nothing between.
 ///
@@ -65,22 +66,13 @@ pub(crate) fn share_above_horizon(point: DVec3, normal: DVec3, ring: &[DVec3]) -
     let mut sum = 0.0;
     let mut first: Option<DVec3> = None;
     let mut previous: Option<DVec3> = None;
-    let mut visit = |v: DVec3| {
+    clip_ring(ring, side, crossing, |v| {
         if let Some(p) = previous {
             sum += edge(p - point, v - point, normal);
         }
         first = first.or(Some(v));
         previous = Some(v);
-    };
-    for (a, b) in edges(ring) {
-        let (sa, sb) = (side(a), side(b));
-        if (sa < 0.0 && sb > 0.0) || (sa > 0.0 && sb < 0.0) {
-            visit(a + (b - a) * (sa / (sa - sb)));
-        }
-        if sb >= 0.0 {
-            visit(b);
-        }
-    }
+    });
     if let (Some(first), Some(last)) = (first, previous) {
         sum += edge(last - point, first - point, normal);
     }

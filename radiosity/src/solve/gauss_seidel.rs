@@ -1,25 +1,24 @@
 //! Gauss–Seidel, root by root.
 
-use super::state::{State, add, times};
-use super::{Solution, SolveOptions, check};
+use super::options::SolveOptions;
+use super::solution::Solution;
+use super::state::State;
 use crate::error::RadiosityError;
-use crate::surface::Rgb;
+use crate::rgb::{Rgb, add, times};
 use crate::transport::Transport;
-use crate::tree::ElementId;
 
-pub(super) fn solve(
-    transport: &Transport,
-    direct: &[Rgb],
+pub(super) fn solve<'t>(
+    transport: &'t Transport,
     options: &SolveOptions,
-) -> Result<Solution, RadiosityError> {
-    check(options)?;
-    let mut state = State::new(transport, direct)?;
+) -> Result<Solution<'t>, RadiosityError> {
+    options.check()?;
+    let mut state = State::new(transport, &transport.direct)?;
     let balance = options.balance.then(|| Balance::new(&state));
     let mut history = vec![1.0];
     let (mut bound, mut steps, mut converged) = (0.0, 0, state.power == 0.0);
     while !converged && steps < options.max_sweeps {
         for &root in &transport.scene.tree.roots {
-            sweep(&mut state, root, [0.0; 3]);
+            state.sweep(root, [0.0; 3]);
         }
         let mut residual = state.residual();
         if let Some(balance) = &balance {
@@ -32,22 +31,7 @@ pub(super) fn solve(
     }
     let radiosity = transport.leaves.iter().map(|&leaf| state.radiosity[leaf as usize]).collect();
     let State { radiosity: of_element, contraction, .. } = state;
-    Ok(Solution { of_element, radiosity, bound, contraction, steps, history, converged })
-}
-
-/// Gathers at an element and below, with what its parents' links bring; each value is used as soon as it is known.
-pub(super) fn sweep(state: &mut State<'_>, element: ElementId, from_above: Rgb) {
-    let i = element as usize;
-    let arriving = add(from_above, 1.0, state.gathered(&state.radiosity, element));
-    let children = state.transport.scene.tree.elements[i].children();
-    if children.is_empty() {
-        state.radiosity[i] = add(state.source[i], 1.0, times(state.reflectance(element), arriving));
-        return;
-    }
-    for child in children {
-        sweep(state, child, arriving);
-    }
-    state.radiosity[i] = state.pulled(&state.radiosity, element);
+    Ok(Solution { transport, of_element, radiosity, bound, contraction, steps, history, converged })
 }
 
 /// A correction along v = ρ, which in bright closed rooms is nearly the slowest part of the error: the step after which

@@ -1,9 +1,9 @@
 //! The adjoint: how much what a patch emits adds to what is seen.
 
-use super::state::{State, add, times};
-use super::{SolveOptions, check, check_importance};
+use super::options::SolveOptions;
+use super::state::State;
 use crate::error::RadiosityError;
-use crate::surface::Rgb;
+use crate::rgb::{Rgb, add, is_light, times};
 use crate::transport::Transport;
 
 /// I = S + F ρ I. With J = ρ I this is J = ρ S + ρ F J: light from a scene in which what the camera sees is lit.
@@ -12,7 +12,7 @@ pub(super) fn solve(
     seen: &[f64],
     options: &SolveOptions,
 ) -> Result<Vec<f64>, RadiosityError> {
-    check(options)?;
+    options.check()?;
     check_importance(transport.leaves.len(), seen)?;
     let state = State::new(transport, &[])?;
     let mut along: Vec<Rgb> = vec![[0.0; 3]; state.source.len()];
@@ -44,4 +44,15 @@ pub(super) fn solve(
     }
     let mean = |v: Rgb| v.iter().sum::<f64>() / 3.0;
     Ok(transport.leaves.iter().map(|&leaf| mean(along[leaf as usize])).collect())
+}
+
+/// Checks weights of patches: one for each, all of them usable.
+pub(super) fn check_importance(patches: usize, importance: &[f64]) -> Result<(), RadiosityError> {
+    if importance.len() != patches {
+        return Err(RadiosityError::CountMismatch { patches, given: importance.len() });
+    }
+    match importance.iter().position(|&value| !is_light(value)) {
+        Some(patch) => Err(RadiosityError::Importance { patch, value: importance[patch] }),
+        None => Ok(()),
+    }
 }

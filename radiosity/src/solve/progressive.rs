@@ -1,28 +1,29 @@
 //! Shooting, in the order of unshot power.
 
-use super::state::{State, add, times};
-use super::{Solution, SolveOptions, check, check_importance};
+use super::importance::check_importance;
+use super::options::SolveOptions;
+use super::solution::Solution;
+use super::state::State;
 use crate::error::RadiosityError;
-use crate::surface::Rgb;
+use crate::rgb::{Rgb, add, times};
 use crate::transport::Transport;
 use crate::tree::ElementId;
 
 /// What does not matter is shot later, but not never: its least importance relative to the largest.
 const LEAST_IMPORTANCE: f64 = 1e-3;
 
-pub(super) fn solve(
-    transport: &Transport,
-    direct: &[Rgb],
+pub(super) fn solve<'t>(
+    transport: &'t Transport,
     importance: &[f64],
     options: &SolveOptions,
-) -> Result<Solution, RadiosityError> {
-    check(options)?;
+) -> Result<Solution<'t>, RadiosityError> {
+    options.check()?;
     if !importance.is_empty() {
         check_importance(transport.leaves.len(), importance)?;
     }
     // What matters most would send its debt back and forth while the rest never gets to pay it.
     let overshoot = options.overshoot && importance.is_empty();
-    let mut shooter = Shooter::new(State::new(transport, direct)?, importance, overshoot);
+    let mut shooter = Shooter::new(State::new(transport, &transport.direct)?, importance, overshoot);
     let mut history = vec![1.0];
     let (mut bound, mut steps, mut converged) = (0.0, 0, shooter.state.power == 0.0);
     let units = shooter.units.len();
@@ -41,7 +42,16 @@ pub(super) fn solve(
     let mut of_element = std::mem::take(&mut state.radiosity);
     state.pull_all(&mut of_element);
     let radiosity = transport.leaves.iter().map(|&leaf| of_element[leaf as usize]).collect();
-    Ok(Solution { of_element, radiosity, bound, contraction: state.contraction, steps, history, converged })
+    Ok(Solution {
+        transport,
+        of_element,
+        radiosity,
+        bound,
+        contraction: state.contraction,
+        steps,
+        history,
+        converged,
+    })
 }
 
 struct Shooter<'t> {

@@ -1,25 +1,12 @@
 //! Radiosity on all levels, and the operator.
 
 use crate::error::RadiosityError;
-use crate::lamp::check_direct;
-use crate::surface::Rgb;
+use crate::rgb::{Rgb, add, times};
 use crate::transport::Transport;
 use crate::tree::ElementId;
 
 /// Contractions nearer to 1 bound nothing.
 const MOST: f64 = 1.0 - 1e-12;
-
-/// a + f · b in each band.
-#[inline]
-pub(crate) fn add(a: Rgb, f: f64, b: Rgb) -> Rgb {
-    [a[0] + f * b[0], a[1] + f * b[1], a[2] + f * b[2]]
-}
-
-/// Product of the bands.
-#[inline]
-pub(crate) fn times(a: Rgb, b: Rgb) -> Rgb {
-    [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
-}
 
 /// What one solver works on.
 pub(crate) struct State<'t> {
@@ -38,7 +25,6 @@ pub(crate) struct State<'t> {
 
 impl<'t> State<'t> {
     pub(crate) fn new(transport: &'t Transport, direct: &[Rgb]) -> Result<Self, RadiosityError> {
-        check_direct(transport.leaves.len(), direct)?;
         let mut source = vec![[0.0; 3]; transport.scene.tree.elements.len()];
         let mut reflectance = source.clone();
         let mut contraction = 0.0_f64;
@@ -69,6 +55,22 @@ impl<'t> State<'t> {
 
     pub(crate) fn area(&self, element: ElementId) -> f64 {
         self.transport.scene.tree.elements[element as usize].polygon.area()
+    }
+
+    /// A step of Gauss–Seidel: gathers at an element and below, with what its parents' links bring; each value is used as soon as it is
+    /// known.
+    pub(crate) fn sweep(&mut self, element: ElementId, from_above: Rgb) {
+        let i = element as usize;
+        let arriving = add(from_above, 1.0, self.gathered(&self.radiosity, element));
+        let children = self.transport.scene.tree.elements[i].children();
+        if children.is_empty() {
+            self.radiosity[i] = add(self.source[i], 1.0, times(self.reflectance(element), arriving));
+            return;
+        }
+        for child in children {
+            self.sweep(child, arriving);
+        }
+        self.radiosity[i] = self.pulled(&self.radiosity, element);
     }
 
     /// What arrives at an element through its own links.
@@ -201,7 +203,7 @@ impl Proof {
         }
         for _ in 0..PROOF_SWEEPS {
             for &root in &transport.scene.tree.roots {
-                super::gauss_seidel::sweep(&mut trial, root, [0.0; 3]);
+                trial.sweep(root, [0.0; 3]);
             }
             // 1 + ρFw − w is 1 − v.
             let residual = trial.residual();

@@ -28,7 +28,7 @@ pub(crate) fn room(size: DVec3, turn: DQuat, reflectance: f64, emission: f64) ->
     faces(DVec3::ZERO, size, turn).into_iter().map(inside).collect()
 }
 
-/// A room with a lamp at its ceiling, coloured walls and two turned boxes.
+/// A room with a lamp at its ceiling, colored walls and two turned boxes.
 pub(crate) fn cornell() -> Vec<Surface> {
     let mut surfaces = room(DVec3::ONE, DQuat::IDENTITY, 0.7, 0.0);
     surfaces[0].reflectance = [0.63, 0.06, 0.05];

@@ -13,7 +13,7 @@ use crate::scene::{self, Overrides, Scene};
 use glam::DVec3;
 use pointillist_radiosity as radiosity;
 use pointillist_radiosity::{
-    Baked, HemicubeKind, RadiosityError, Rgb, SceneOptions, Solution, SolveOptions, Transport,
+    Baked, HemicubeKind, RadiosityError, SceneOptions, Solution, SolveOptions, Transport,
 };
 use pointillist_render::{Lamps, SceneError, SceneSurfaces, fingerprint, scene_surfaces, with_lamps};
 use std::path::Path;
@@ -47,10 +47,11 @@ pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     }
     let bake = Bake { options, report: &report, scene: &scene, surfaces: &surfaces };
     let progress = report.progress();
-    let (transport, direct, solution) = bake.solve(&progress)?;
-    let baked = report.stats.stage("gather", || {
-        transport.bake_with(&solution, &direct, &|share| progress.reach(SOLVED + (1.0 - SOLVED) * share))
-    });
+    let transport = bake.link(&progress)?;
+    let solution = bake.solve(&transport, &progress)?;
+    let baked = report
+        .stats
+        .stage("gather", || solution.bake_with(&|share| progress.reach(SOLVED + (1.0 - SOLVED) * share)));
     progress.finish();
     bake.tell(&transport, &solution);
     bake.write(&transport, &baked, &solution)?;
@@ -105,7 +106,7 @@ struct Bake<'a> {
 }
 
 impl Bake<'_> {
-    fn solve(&self, progress: &Progress) -> Result<(Transport, Vec<Rgb>, Solution), CliError> {
+    fn link(&self, progress: &Progress) -> Result<Transport, CliError> {
         let Self { options, report, .. } = self;
         progress.begin("radiosity", PROGRESS_STEPS);
         let stats = &report.stats;
@@ -123,15 +124,20 @@ impl Bake<'_> {
             None => patches.transport(&direct),
             Some(kind) => patches.transport_by_hemicubes(kind, options.resolution as usize, &direct),
         });
-        let (transport, direct) = linked.map_err(|e| self.refused(&e))?;
+        let transport = linked.map_err(|e| self.refused(&e))?;
         progress.reach(LINKED);
-        let solution = stats.stage("solve", || match options.method {
-            SolveMethod::GaussSeidel => transport.gauss_seidel(&direct, &SolveOptions::DEFAULT),
-            SolveMethod::Progressive => transport.progressive(&direct, &[], &SolveOptions::DEFAULT),
+        Ok(transport)
+    }
+
+    fn solve<'t>(&self, transport: &'t Transport, progress: &Progress) -> Result<Solution<'t>, CliError> {
+        let Self { options, report, .. } = self;
+        let solution = report.stats.stage("solve", || match options.method {
+            SolveMethod::GaussSeidel => transport.gauss_seidel(&SolveOptions::DEFAULT),
+            SolveMethod::Progressive => transport.progressive(&[], &SolveOptions::DEFAULT),
         });
         let solution = solution.map_err(|e| self.refused(&e))?;
         progress.reach(SOLVED);
-        Ok((transport, direct, solution))
+        Ok(solution)
     }
 
     /// The scene in patches, linked as asked.

@@ -1,0 +1,106 @@
+//! From a scene to its transport: links, rows, direct light.
+
+use crate::error::RadiosityError;
+use crate::link::Link;
+use crate::refine::{Found, refine};
+use crate::rgb::{Rgb, check_direct};
+use crate::scene::Scene;
+use crate::transport::{Entry, Transport};
+use crate::visible::boxes::Boxes;
+use crate::visible::shaft::Shaft;
+
+/// Rows above 1 by no more than this stay as they are: errors of single factors, which keep the balance of energy exact.
+const LEAST_EXCESS: f64 = 1e-3;
+
+impl Scene {
+    /// Links what exchanges light. `direct` is the irradiance of each patch that does not come from patches, as
+    /// [`Scene::direct`] gives it, or empty for none; it tells where light will be and so where links must be fine.
+    ///
+    /// Without a tolerance ([`SceneOptions::tolerance`](crate::SceneOptions::tolerance)) every pair of patches gets its link. With one, patches are
+    /// linked as large as it permits (\[3\]), and divided down to the smallest size where it asks for that.
+    ///
+    /// # Errors
+    /// [`RadiosityError::CountMismatch`] and [`RadiosityError::DirectIrradiance`] for `direct`, [`RadiosityError::TooManyPatches`].
+    pub fn transport(mut self, direct: &[Rgb]) -> Result<Transport, RadiosityError> {
+        check_direct(self.tree.leaves().len(), direct)?;
+        let mut of_element = of_elements(&self, direct);
+        let boxes = Boxes::new(&self.occluders);
+        let found = refine(&mut self, &boxes, &mut of_element)?;
+        Ok(Transport::assemble(self, found, boxes, &of_element))
+    }
+}
+
+/// Values of leaves, by element; empty stands for zeros.
+fn of_elements(scene: &Scene, of_leaves: &[Rgb]) -> Vec<Rgb> {
+    let mut of_element = vec![[0.0; 3]; scene.tree.elements.len()];
+    for (&leaf, value) in scene.tree.leaves().iter().zip(of_leaves) {
+        of_element[leaf as usize] = *value;
+    }
+    of_element
+}
+
+/// Where the row of each element starts, and the entries of all rows, each in the order of links.
+fn rows_of(scene: &Scene, links: &[Link]) -> (Vec<usize>, Vec<Entry>) {
+    let count = scene.tree.elements.len();
+    let mut starts = vec![0; count + 1];
+    for link in links {
+        starts[link.a as usize + 1] += 1;
+        starts[link.b as usize + 1] += 1;
+    }
+    for i in 0..count {
+        starts[i + 1] += starts[i];
+    }
+    let mut next = starts.clone();
+    let mut entries = vec![Entry { to: 0, link: 0, factor: 0.0 }; links.len() * 2];
+    for (number, link) in links.iter().enumerate() {
+        for (from, to) in [(link.a, link.b), (link.b, link.a)] {
+            let factor = link.mutual / scene.tree.elements[from as usize].polygon.area();
+            entries[next[from as usize]] = Entry { to, link: number as u32, factor };
+            next[from as usize] += 1;
+        }
+    }
+    (starts, entries)
+}
+
+impl Transport {
+    /// Of links between leaves that were found elsewhere and the direct irradiance of each leaf; what is between is looked up where it is needed.
+    pub(crate) fn of_links(scene: Scene, links: Vec<Link>, direct: &[Rgb]) -> Self {
+        let boxes = Boxes::new(&scene.occluders);
+        let mut found = Found { links, ..Found::default() };
+        found.counts.links = found.links.len();
+        for link in &mut found.links {
+            let [a, b] = [link.a, link.b].map(|e| &scene.tree.elements[e as usize].polygon);
+            let list = boxes.in_shaft(&Shaft::new(a, b).with_planes(), &scene.occluders);
+            let start = found.between.len() as u32;
+            found.between.extend(list);
+            link.between = (start, found.between.len() as u32);
+            found.counts.partly_hidden += usize::from(link.between.1 > start);
+        }
+        let direct = of_elements(&scene, direct);
+        Self::assemble(scene, found, boxes, &direct)
+    }
+
+    /// The matrix of the links; `direct` is the direct irradiance of each element.
+    fn assemble(scene: Scene, found: Found, boxes: Boxes, direct: &[Rgb]) -> Self {
+        let count = scene.tree.elements.len();
+        let (starts, entries) = rows_of(&scene, &found.links);
+        let leaves = scene.tree.leaves();
+        let mut counts = found.counts;
+        counts.left_out = found.lost.iter().copied().fold(0.0, f64::max);
+        let direct = leaves.iter().map(|&leaf| direct[leaf as usize]).collect();
+        let mut parents = vec![None; count];
+        for (i, element) in scene.tree.elements.iter().enumerate() {
+            element.children().for_each(|child| parents[child as usize] = Some(i as u32));
+        }
+        let Found { links, between, .. } = found;
+        let scale = vec![1.0; leaves.len()];
+        let mut transport =
+            Self { scene, links, between, starts, entries, leaves, boxes, parents, scale, direct, counts };
+        let sums = transport.row_sums();
+        transport.counts.row_excess = sums.into_iter().fold(0.0, |m, s| m.max(s - 1.0));
+        if transport.counts.row_excess > LEAST_EXCESS {
+            transport.counts.row_change = transport.even_rows();
+        }
+        transport
+    }
+}

@@ -1,0 +1,113 @@
+//! Triangles that may stand in the light, and the groups of targets that each may darken.
+
+use crate::grid::{Group, LightGrid};
+use glam::DVec2;
+use pointillist_dice::{ConvexPolygon, convex};
+use pointillist_micropoint::Face;
+
+/// A triangle that may stand in the light.
+#[derive(Clone, Debug)]
+pub(crate) struct Caster {
+    pub(crate) face: Face,
+    pub(crate) bounds: (DVec2, DVec2),
+    pub(crate) polygon: ConvexPolygon,
+    /// `None`: textured.
+    pub(crate) opacity: Option<f64>,
+}
+
+/// What decides about most casters of a group, side by side in memory.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearby {
+    pub(crate) bounds: (DVec2, DVec2),
+    /// Largest nearness.
+    pub(crate) nearest: f64,
+    /// The caster's triangle.
+    pub(crate) id: u32,
+    /// Index into [`Casters::list`].
+    pub(crate) index: u32,
+}
+
+/// An element of the list of casters of a group.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    caster: u32,
+    next: Option<u32>,
+}
+
+/// The casters of one screen.
+#[derive(Debug, Default)]
+pub(crate) struct Casters {
+    pub(crate) list: Vec<Caster>,
+    links: Vec<Link>,
+}
+
+impl Casters {
+    /// Removes all casters and keeps the memory.
+    pub(crate) fn clear(&mut self) {
+        self.list.clear();
+        self.links.clear();
+    }
+
+    /// Links a caster to the groups that it may darken, and keeps it if there are any. Returns whether it was kept.
+    pub(crate) fn link(&mut self, caster: Caster, grid: &mut LightGrid) -> bool {
+        let index = self.list.len() as u32;
+        let links = &mut self.links;
+        let first = links.len();
+        grid.darken_near(caster.bounds, caster.face.nearness.1, |group| match covers(&caster, group) {
+            Cover::Nothing => false,
+            Cover::All => true,
+            Cover::Some => {
+                links.push(Link { caster: index, next: group.first_link });
+                group.first_link = Some(links.len() as u32 - 1);
+                false
+            }
+        });
+        let used = self.links.len() > first;
+        if used {
+            self.list.push(caster);
+        }
+        used
+    }
+
+    /// The casters of a group.
+    pub(crate) fn of_group(&self, group: &Group, nearby: &mut Vec<Nearby>) {
+        nearby.clear();
+        let mut link = group.first_link;
+        while let Some(at) = link {
+            let Link { caster: index, next } = self.links[at as usize];
+            let caster = &self.list[index as usize];
+            link = next;
+            // Merged into a copy of itself.
+            if caster.opacity == Some(0.0) {
+                continue;
+            }
+            let (bounds, nearest, id) = (caster.bounds, caster.face.nearness.1, caster.face.id);
+            nearby.push(Nearby { bounds, nearest, id, index });
+        }
+    }
+}
+
+/// What a caster does to a group.
+enum Cover {
+    /// Its outline misses the group's rectangle.
+    Nothing,
+    Some,
+    /// It is opaque and covers the rectangle, in front of all its targets. Then it also covers each
+    /// target alone, and cutting would leave exactly nothing.
+    All,
+}
+
+fn covers(caster: &Caster, group: &Group) -> Cover {
+    let mut all_inside = true;
+    for half in convex::half_planes(caster.polygon.vertices()) {
+        // The corners of the rectangle farthest along the normal, and farthest against it.
+        let along = DVec2::select(half.normal.cmpgt(DVec2::ZERO), group.high, group.low);
+        let against = group.low + group.high - along;
+        if half.value(along) < 0.0 {
+            return Cover::Nothing;
+        }
+        all_inside &= half.value(against) >= 0.0;
+    }
+    let clearly_before = caster.face.nearness.0 > group.nearness.1 + 1e-6 * group.nearness.1.abs();
+    if all_inside && clearly_before && caster.opacity == Some(1.0) { Cover::All } else { Cover::Some }
+}

@@ -1,0 +1,43 @@
+//! How shadows are found.
+
+use pointillist_micropoint::Occlusion;
+
+/// How fine the light grid is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Resolution {
+    /// As the receivers need it: a light cell is about as large as a receiver.
+    #[default]
+    Auto,
+    /// This many cells per side of a light screen, 1..=2²⁰.
+    Cells(u32),
+}
+
+/// How shadows are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct ShadowOptions {
+    /// How casters in one light cell hide a receiver. Default: [`Occlusion::Correlated`], which is exact.
+    pub occlusion: Occlusion,
+    /// Size of the light cells. Default: [`Resolution::Auto`]. It changes the result under [`Occlusion::Paper`] only; under
+    /// the correlated rule the grid merely sorts casters.
+    pub resolution: Resolution,
+}
+
+impl ShadowOptions {
+    /// The defaults, as a constant.
+    pub const DEFAULT: Self = Self { occlusion: Occlusion::Correlated, resolution: Resolution::Auto };
+
+    /// Sets the occlusion rule.
+    #[must_use]
+    pub const fn with_occlusion(mut self, occlusion: Occlusion) -> Self {
+        self.occlusion = occlusion;
+        self
+    }
+
+    /// Sets the resolution of the light grid.
+    #[must_use]
+    pub const fn with_resolution(mut self, resolution: Resolution) -> Self {
+        self.resolution = resolution;
+        self
+    }
+}

@@ -1,0 +1,63 @@
+//! What the occlusion rules look casters up with, and how they measure areas.
+
+use crate::casters::{Caster, Nearby};
+use glam::DVec2;
+use pointillist_micropoint::{Face, Geometry, Lens, LensKind, TexturedOpacity};
+
+/// What casters are looked up with.
+pub(crate) struct Query<'a> {
+    pub(crate) lens: &'a Lens,
+    pub(crate) geometry: &'a Geometry,
+    pub(crate) opacity: &'a dyn TexturedOpacity,
+    pub(crate) casters: &'a [Caster],
+    /// Those of them that may darken the target's group.
+    pub(crate) nearby: &'a [Nearby],
+}
+
+impl Query<'_> {
+    /// Opacity of a caster over a polygon of the light grid.
+    pub(crate) fn opacity(&self, caster: &Caster, polygon: &[DVec2]) -> f64 {
+        caster.opacity.unwrap_or_else(|| {
+            let surface = &self.geometry.surfaces()[caster.face.surface as usize];
+            f64::from(caster.face.mean_opacity(self.lens, surface, self.opacity, DVec2::ZERO, polygon))
+        })
+    }
+}
+
+/// Areas in the viewer's picture of polygons of the light grid, up to a factor that is constant on a face.
+///
+/// Positions in the picture are a projective map of positions in the light grid, whose denominator is the viewer's
+/// depth over the light's. Such a map turns a triangle of area A with denominators a, b, c at its corners into
+/// one of area A / (a b c), up to a constant: exact, however much the depths vary.
+pub(crate) struct Measure<'a> {
+    pub(crate) lens: &'a Lens,
+    pub(crate) viewer: &'a Lens,
+    pub(crate) face: &'a Face,
+}
+
+impl Measure<'_> {
+    /// Area of a polygon in the picture.
+    pub(crate) fn area(&self, polygon: &[DVec2]) -> f64 {
+        let Some((&first, rest)) = polygon.split_first() else { return 0.0 };
+        let at_first = self.denominator(first);
+        let mut sum = 0.0;
+        let mut previous = (DVec2::ZERO, 1.0);
+        for (i, &v) in rest.iter().enumerate() {
+            let next = (v - first, self.denominator(v));
+            if i > 0 {
+                sum += 0.5 * previous.0.perp_dot(next.0) / (at_first * previous.1 * next.1);
+            }
+            previous = next;
+        }
+        sum.abs()
+    }
+
+    fn denominator(&self, p: DVec2) -> f64 {
+        let local = self.lens.unproject(p, self.face.nearness_at(p));
+        let world = self.lens.to_world_axes(local) + (self.lens.origin - self.viewer.origin);
+        let light_depth = if self.lens.kind == LensKind::Perspective { local.z } else { 1.0 };
+        let viewer_depth =
+            if self.viewer.kind == LensKind::Perspective { self.viewer.forward.dot(world) } else { 1.0 };
+        viewer_depth / light_depth
+    }
+}
