@@ -7,12 +7,16 @@ use glam::{DVec3, dvec3};
 use pointillist_micropoint::{MicropointOptions, Occlusion};
 use pointillist_render::Scene;
 
-use crate::picture::Picture;
-use crate::ray_reference::Tree;
-use crate::report::{
+use crate::common::closed_form;
+use crate::common::data;
+use crate::common::draw;
+use crate::common::line_reference;
+use crate::common::picture::Picture;
+use crate::common::point_sampling;
+use crate::common::ray_reference::Tree;
+use crate::common::report::{
     Outcome, Row, chart, machine, on_one_thread, scenes, table, time_ratio, timed, write, write_csv,
 };
-use crate::{closed_form, data, draw, line_reference, point_sampling};
 
 /// Pixels on a side.
 const SIZE: u32 = 256;
@@ -53,21 +57,24 @@ fn cases() -> Vec<Case> {
         let expected = line_reference::render(&scene, LINES);
         Case { name: name.to_owned(), scene, expected, emissive: true, solid }
     };
-    let edge = crate::scenes::lone_edge(SIZE);
+    let edge = crate::common::scenes::lone_edge(SIZE);
     let line = [dvec3(-0.3, -9.0, 0.0), dvec3(0.5, 9.0, 0.0)];
     let expected = closed_form::half_plane(&edge, line, DVec3::X, DVec3::ONE);
     let mut cases = vec![
         Case { name: "lone edge".to_owned(), scene: edge, expected, emissive: true, solid: false },
-        by_lines("quads", crate::scenes::quads(SIZE), false),
-        by_lines("stacked spheres", crate::scenes::spheres(SIZE), true),
-        by_lines("wires", crate::scenes::wires(SIZE), true),
-        by_lines("stripes to the horizon", crate::scenes::stripes(SIZE), false),
-        by_lines("translucent layers", crate::scenes::layers(SIZE), false),
-        Case { emissive: false, ..by_lines("spheres, matt", crate::scenes::lit_spheres(SIZE), false) },
+        by_lines("quads", crate::common::scenes::quads(SIZE), false),
+        by_lines("stacked spheres", crate::common::scenes::spheres(SIZE), true),
+        by_lines("wires", crate::common::scenes::wires(SIZE), true),
+        by_lines("stripes to the horizon", crate::common::scenes::stripes(SIZE), false),
+        by_lines("translucent layers", crate::common::scenes::layers(SIZE), false),
+        Case {
+            emissive: false,
+            ..by_lines("spheres, matt", crate::common::scenes::lit_spheres(SIZE), false)
+        },
         Case {
             name: "checker 512×512".to_owned(),
-            scene: crate::scenes::checker_ground(SIZE, false),
-            expected: line_reference::render(&crate::scenes::checker_ground(SIZE, true), LINES),
+            scene: crate::common::scenes::checker_ground(SIZE, false),
+            expected: line_reference::render(&crate::common::scenes::checker_ground(SIZE, true), LINES),
             emissive: false,
             solid: false,
         },

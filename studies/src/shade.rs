@@ -1,6 +1,6 @@
 //! `shade`: what every reflection model does with the light that it gets, by quadrature, and what an evaluation costs.
 
-use crate::report::{Outcome, machine, write};
+use crate::common::report::{Outcome, machine, write};
 use glam::{DVec3, Vec3, vec3};
 use pointillist_shade::{CubeMap, Environment, Material, MerlTable, Model, coat_albedo, directional_albedo};
 use std::fmt::Write as _;

@@ -7,10 +7,10 @@ use std::process::{Command, Stdio};
 use glam::{DVec3, dvec3};
 use serde_json::Value;
 
-use crate::data;
-use crate::report::{Outcome, machine, write};
-use crate::scenes::Sketch;
-use crate::shadow_scenes::hills;
+use crate::common::casters::hills;
+use crate::common::data;
+use crate::common::report::{Outcome, machine, write};
+use crate::common::scenes::Sketch;
 
 /// A picture to be drawn.
 struct Subject {

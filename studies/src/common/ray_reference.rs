@@ -1,0 +1,259 @@
+//! Reference pictures with shadows: rays through a tree of boxes, many a pixel.
+
+use glam::{DVec2, DVec3, dvec2};
+use pointillist_render::Scene;
+use pointillist_shade::Source;
+use rayon::prelude::*;
+
+use crate::common::picture::Picture;
+use crate::common::point_sampling::Pinhole;
+use crate::common::scenes::{SurfaceSample, corners, opacity, radiance};
+
+/// A tree of boxes over triangles, split at the median.
+pub(crate) struct Tree {
+    nodes: Vec<Node>,
+    triangles: Vec<[DVec3; 3]>,
+    ids: Vec<u32>,
+    opacity: Vec<f64>,
+    opaque: bool,
+}
+
+struct Node {
+    low: DVec3,
+    high: DVec3,
+    /// First triangle of a leaf, or the second child; the first child follows its parent.
+    first: u32,
+    /// 0 for an inner node.
+    count: u32,
+    /// Along which an inner node's first child comes before the second.
+    axis: usize,
+}
+
+/// From a point towards a direction, as far as `end` times its length.
+#[derive(Clone, Copy)]
+struct Ray {
+    origin: DVec3,
+    direction: DVec3,
+    inverse: DVec3,
+    end: f64,
+}
+
+/// Triangles in a leaf.
+const LEAF: usize = 4;
+
+/// Hits closer than this to a ray's start, relative to its length, are the surface it starts on.
+const START: f64 = 1e-9;
+
+impl Tree {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let count = scene.mesh.triangles.len();
+        let mut items: Vec<(u32, [DVec3; 3])> = (0..count).map(|t| (t as u32, corners(scene, t))).collect();
+        let mut nodes = vec![];
+        if count > 0 {
+            build(&mut nodes, &mut items, 0);
+        }
+        let opacity: Vec<f64> = (0..count).map(|t| opacity(scene, t)).collect();
+        let opaque = opacity.iter().all(|&o| o >= 1.0);
+        let (ids, triangles) = items.into_iter().unzip();
+        Self { nodes, triangles, ids, opacity, opaque }
+    }
+
+    /// All hits of a ray; `visit` says up to where to go on.
+    fn hits(&self, mut ray: Ray, mut visit: impl FnMut(u32, f64) -> f64) {
+        let mut stack = [0_u32; 64];
+        let mut depth = usize::from(!self.nodes.is_empty());
+        while depth > 0 {
+            depth -= 1;
+            let index = stack[depth];
+            let node = &self.nodes[index as usize];
+            let (a, b) = ((node.low - ray.origin) * ray.inverse, (node.high - ray.origin) * ray.inverse);
+            let enter = a.min(b).max_element().max(0.0);
+            let leave = a.max(b).min_element().min(ray.end);
+            // A ray within a side's plane gives NaN there; it is kept.
+            if enter > leave * (1.0 + 1e-12) {
+                continue;
+            }
+            if node.count == 0 {
+                // The nearer child is taken first: what it holds often hides the other.
+                let children = [node.first, index + 1];
+                let ahead = usize::from(ray.direction[node.axis] < 0.0);
+                (stack[depth], stack[depth + 1]) = (children[ahead], children[1 - ahead]);
+                depth += 2;
+                continue;
+            }
+            for i in node.first as usize..(node.first + node.count) as usize {
+                if let Some(t) = hit(&ray, &self.triangles[i]) {
+                    ray.end = visit(self.ids[i], t);
+                }
+            }
+        }
+    }
+
+    /// The nearest triangle and how far it is, in lengths of `direction`.
+    pub(crate) fn nearest(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<(u32, f64)> {
+        let mut best = None;
+        let ray = Ray { origin, direction, inverse: direction.recip(), end: f64::INFINITY };
+        let mut end = f64::INFINITY;
+        self.hits(ray, |id, t| {
+            if t > beyond && t < end {
+                (best, end) = (Some((id, t)), t);
+            }
+            end
+        });
+        best
+    }
+
+    /// What is left of light from `source` at a point.
+    pub(crate) fn transmittance(&self, at: &SurfaceSample, source: Source) -> f64 {
+        let (direction, end) = match source {
+            Source::Direction(d) => (-d, f64::INFINITY),
+            Source::Position(p) => (p - at.position, 1.0),
+            _ => unreachable!("light comes from a point or a direction"),
+        };
+        let start = match source {
+            Source::Direction(_) => START * at.position.length().max(at.to_eye.length()) / direction.length(),
+            _ => START,
+        };
+        let mut left = 1.0;
+        let ray = Ray { origin: at.position, direction, inverse: direction.recip(), end };
+        self.hits(ray, |id, t| {
+            if id != at.triangle && t > start && t < end {
+                left *= 1.0 - self.opacity[id as usize];
+            }
+            if left > 0.0 { end } else { -1.0 }
+        });
+        left
+    }
+}
+
+fn build(nodes: &mut Vec<Node>, items: &mut [(u32, [DVec3; 3])], base: u32) {
+    let bounds = |points: &mut dyn Iterator<Item = DVec3>| {
+        points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)))
+    };
+    let (low, high) = bounds(&mut items.iter().flat_map(|(_, c)| *c));
+    let index = nodes.len();
+    let leaf = items.len() <= LEAF;
+    nodes.push(Node { low, high, first: base, count: if leaf { items.len() as u32 } else { 0 }, axis: 0 });
+    if leaf {
+        return;
+    }
+    let centre = |c: &[DVec3; 3]| c[0] + c[1] + c[2];
+    let (low, high) = bounds(&mut items.iter().map(|(_, c)| centre(c)));
+    let extent = high - low;
+    let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);
+    let middle = items.len() / 2;
+    items.select_nth_unstable_by(middle, |a, b| centre(&a.1)[axis].total_cmp(&centre(&b.1)[axis]));
+    let (left, right) = items.split_at_mut(middle);
+    build(nodes, left, base);
+    (nodes[index].first, nodes[index].axis) = (nodes.len() as u32, axis);
+    build(nodes, right, base + middle as u32);
+}
+
+/// Möller and Trumbore's test.
+fn hit(ray: &Ray, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
+    let (u, v) = (*b - *a, *c - *a);
+    let p = ray.direction.cross(v);
+    let det = u.dot(p);
+    if det == 0.0 {
+        return None;
+    }
+    let s = ray.origin - *a;
+    let x = s.dot(p) / det;
+    if !(0.0..=1.0).contains(&x) {
+        return None;
+    }
+    let q = s.cross(u);
+    let y = ray.direction.dot(q) / det;
+    if y < 0.0 || x + y > 1.0 {
+        return None;
+    }
+    let t = v.dot(q) / det;
+    (t > 0.0 && t < ray.end).then_some(t)
+}
+
+/// What a sample of the picture shows.
+pub(crate) type Show<'a> = dyn Fn(&SurfaceSample) -> DVec3 + Sync + 'a;
+
+/// Radiance with shadow rays to every light.
+pub(crate) fn with_shadows<'a>(
+    scene: &'a Scene,
+    tree: &'a Tree,
+) -> impl Fn(&SurfaceSample) -> DVec3 + Sync + 'a {
+    move |at| {
+        let visible = |at: &SurfaceSample, light: usize, sample: u32| {
+            tree.transmittance(at, scene.lights[light].light.source(sample))
+        };
+        radiance(scene, at, &visible)
+    }
+}
+
+/// Stratified samples a side: everywhere, and where these differ.
+const COARSE: u32 = 10;
+
+/// A picture by rays; `fine` × `fine` stratified samples in pixels at edges. `seed` moves the samples.
+pub(crate) fn render(scene: &Scene, tree: &Tree, show: &Show<'_>, fine: u32, seed: u64) -> Picture {
+    let camera = Pinhole::new(scene);
+    let width = scene.image.width as usize;
+    let mut picture = Picture::black(scene.image.width, scene.image.height);
+    let sample = |pixel: DVec2| color(scene, tree, &camera, pixel, show);
+    let coarse: Vec<(DVec3, bool)> = (0..picture.pixels.len())
+        .into_par_iter()
+        .map(|i| {
+            let colors = stratified(i, width, COARSE, seed).map(&sample).collect::<Vec<_>>();
+            let mean = colors.iter().sum::<DVec3>() / colors.len() as f64;
+            let spread = colors.iter().map(|c| (*c - mean).abs().max_element()).fold(0.0, f64::max);
+            (mean, spread > 0.02 * mean.max_element() + 1e-9)
+        })
+        .collect();
+    let near_edge = |i: usize| {
+        let (x, y) = ((i % width) as i64, (i / width) as i64);
+        let rough = |dx: i64, dy: i64| {
+            let (x, y) = (x + dx, y + dy);
+            let inside = x >= 0 && y >= 0 && x < width as i64 && (y as usize) < coarse.len() / width;
+            inside && coarse[y as usize * width + x as usize].1
+        };
+        (-1..=1).any(|dy| (-1..=1).any(|dx| rough(dx, dy)))
+    };
+    picture.pixels.par_iter_mut().enumerate().for_each(|(i, pixel)| {
+        *pixel = if near_edge(i) {
+            stratified(i, width, fine, seed ^ 0x5bd1).map(&sample).sum::<DVec3>() / f64::from(fine * fine)
+        } else {
+            coarse[i].0
+        };
+    });
+    picture
+}
+
+/// `n` × `n` positions in a pixel, one in each stratum.
+fn stratified(i: usize, width: usize, n: u32, seed: u64) -> impl Iterator<Item = DVec2> {
+    let corner = dvec2((i % width) as f64, (i / width) as f64);
+    let mut state = seed.wrapping_add(i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    (0..n * n).map(move |k| {
+        let jitter = dvec2(random(&mut state), random(&mut state));
+        corner + (dvec2(f64::from(k % n), f64::from(k / n)) + jitter) / f64::from(n)
+    })
+}
+
+/// The next number of 0..1 (xorshift64*).
+pub(crate) fn random(state: &mut u64) -> f64 {
+    *state ^= *state >> 12;
+    *state ^= *state << 25;
+    *state ^= *state >> 27;
+    (state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+fn color(scene: &Scene, tree: &Tree, camera: &Pinhole, pixel: DVec2, show: &Show<'_>) -> DVec3 {
+    let ray = camera.direction(pixel);
+    let (mut sum, mut left, mut beyond) = (DVec3::ZERO, 1.0, 0.0);
+    while left > 0.0 {
+        let Some((triangle, t)) = tree.nearest(camera.eye, ray, beyond) else {
+            return sum + left * scene.image.background.as_dvec3();
+        };
+        let opacity = tree.opacity[triangle as usize];
+        let at = SurfaceSample { triangle, position: camera.eye + ray * t, to_eye: -ray };
+        sum += left * opacity * show(&at);
+        left *= if tree.opaque { 0.0 } else { 1.0 - opacity };
+        beyond = t * (1.0 + 1e-12);
+    }
+    sum
+}

@@ -1,0 +1,8 @@
+//! `ibpr`: time against error of raw range scans, against the surface that they measured.
+
+mod scans;
+mod settings;
+mod study;
+mod tables;
+
+pub(crate) use study::run;

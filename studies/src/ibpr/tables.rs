@@ -1,0 +1,199 @@
+//! The tables of the study of range scans, and which goals are reached.
+
+use std::fmt::Write as _;
+
+use pointillist_ibpr::FrameCounts;
+
+use crate::common::frame_error::FrameError;
+use crate::common::report::{Limit, Row, distinct, machine, verdict};
+
+/// A frame of one setting on one set of scans.
+pub(crate) struct Measured {
+    pub(crate) faults: String,
+    pub(crate) group: &'static str,
+    pub(crate) setting: String,
+    pub(crate) counts: FrameCounts,
+    /// Processor time.
+    pub(crate) seconds: f64,
+    pub(crate) error: FrameError,
+}
+
+/// Columns of `ibpr.csv` behind those of all studies.
+pub(crate) const COLUMNS: [&str; 10] = [
+    "scale",
+    "skipped_pct",
+    "normal_mean_deg",
+    "normal_median_deg",
+    "depth_rmse_with_steps",
+    "depth_bias",
+    "depth_p95",
+    "holes_pct",
+    "psnr_db",
+    "spill_pct",
+];
+
+impl Measured {
+    /// Percent of the points that no frame has to look at.
+    fn skipped(&self) -> f64 {
+        let FrameCounts { points, points_skipped, .. } = self.counts;
+        100.0 * points_skipped as f64 / (points + points_skipped) as f64
+    }
+
+    pub(crate) fn row(&self, rmse: fn(&FrameError) -> f64) -> Row {
+        let e = &self.error;
+        let values = [
+            self.counts.scale,
+            self.skipped(),
+            e.normal_mean,
+            e.normal_median,
+            e.depth_rmse_all,
+            e.bias,
+            e.depth_p95,
+            e.holes,
+            e.psnr,
+            e.spill,
+        ];
+        Row {
+            scene: self.faults.clone(),
+            series: self.group.to_owned(),
+            setting: self.setting.replace(',', ""),
+            seconds: self.seconds,
+            rmse: rmse(e),
+            largest: e.depth_p95,
+            more: values.iter().map(|v| format!("{v:.4}")).collect(),
+        }
+    }
+}
+
+/// A figure that must be reached.
+struct Goal {
+    faults: &'static str,
+    what: &'static str,
+    unit: &'static str,
+    limit: Limit,
+    value: fn(&FrameError) -> f64,
+}
+
+const fn goal(
+    faults: &'static str,
+    what: &'static str,
+    limit: Limit,
+    unit: &'static str,
+    value: fn(&FrameError) -> f64,
+) -> Goal {
+    Goal { faults, what, unit, limit, value }
+}
+
+/// What must be reached.
+const GOALS: [Goal; 7] = [
+    goal("σ = 0", "PSNR", Limit::AtLeast(33.0), "dB", |e| e.psnr),
+    goal("σ = 0", "interior holes", Limit::AtMost(0.05), "%", |e| e.holes),
+    goal("σ = 0", "normals, mean", Limit::AtMost(0.7), "°", |e| e.normal_mean),
+    goal("σ = 0.25", "normals, mean", Limit::AtMost(2.5), "°", |e| e.normal_mean),
+    goal("σ = 0.25", "depth RMSE", Limit::AtMost(0.3), "spacings", |e| e.depth_rmse),
+    goal("σ = 0.25", "depth bias, either sign", Limit::AtMost(0.05), "spacings", |e| e.bias.abs()),
+    goal("σ = 0.5", "normals, mean", Limit::AtMost(5.5), "°", |e| e.normal_mean),
+];
+
+impl Goal {
+    fn reached(&self, m: &Measured) -> bool {
+        m.faults == self.faults && self.limit.is_kept_by((self.value)(&m.error))
+    }
+}
+
+fn goals(results: &[Measured]) -> String {
+    let mut text = "| scans | goal | wanted | default | worst of four seeds | | fastest setting below that reaches it |\n\
+                    | --- | --- | ---: | ---: | ---: | --- | --- |\n"
+        .to_owned();
+    for goal in &GOALS {
+        let value = |m: &Measured| (goal.value)(&m.error);
+        let defaults = results.iter().filter(|m| m.faults == goal.faults && m.group == "default");
+        let Some(first) = defaults.clone().next() else { continue };
+        let worst = defaults.clone().map(value).fold(value(first), |a, b| goal.limit.worse(a, b));
+        let fastest = results
+            .iter()
+            .filter(|m| goal.reached(m))
+            .min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+            .map_or("none".to_owned(), |m| {
+                format!("{}: {:.3}, {:.1} ms", m.setting, value(m), 1e3 * m.seconds)
+            });
+        let word = verdict(defaults.clone().all(|m| goal.reached(m)));
+        let (limit, unit, got) = (goal.limit, goal.unit, value(first));
+        let _ = writeln!(
+            text,
+            "| {} | {} | {limit} {unit} | {got:.3} | {worst:.3} | {word} | {fastest} |",
+            goal.faults, goal.what
+        );
+    }
+    text
+}
+
+const HEAD: &str = "| scans | setting | S | skipped % | CPU ms | normals, mean ° | median ° | depth RMSE | with steps | bias | 95 % | holes % | PSNR dB | spill % |\n\
+                    | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+
+fn line(m: &Measured) -> String {
+    let e = &m.error;
+    format!(
+        "| {} | {} | {:.2} | {:.0} | {:.1} | {:.2} | {:.2} | {:.3} | {:.2} | {:+.3} | {:.3} | {:.4} | {:.2} | {:.3} |\n",
+        m.faults,
+        m.setting,
+        m.counts.scale,
+        m.skipped(),
+        1e3 * m.seconds,
+        e.normal_mean,
+        e.normal_median,
+        e.depth_rmse,
+        e.depth_rmse_all,
+        e.bias,
+        e.depth_p95,
+        e.holes,
+        e.psnr,
+        e.spill
+    )
+}
+
+/// The whole report; `setup` says what was drawn.
+pub(crate) fn markdown(setup: &str, results: &[Measured]) -> String {
+    let mut text = format!(
+        "# Raw range scans: time against error\n\n`cargo run --release -p studies -- ibpr` made this ({}). {setup}\n\n\
+         σ is the standard deviation of depth noise along each scan, in spacings of its rays. *CPU ms*: processor time of one \
+         frame on one thread, the fastest of five. Normals and depth are compared at pixel centres with rays cast at the \
+         surface, over pixels more than 2 inside the outline; depth is in spacings, *depth RMSE* leaves out pixels within 2 of \
+         a depth step (there half a pixel decides between two surfaces), *with steps* does not; *bias* is the median, positive \
+         behind the surface. *Holes*: interior pixels without a surface. *PSNR*: sRGB, over the surface's box and 8 pixels around, \
+         against a picture with 4×4 samples at edges. *Spill*: pixels more than 2 outside the outline, per pixel of the surface. \
+         *Skipped*: points that the frame need not look at. *S* is the size of a buffer pixel in picture pixels, *factor* that of `Scale::Auto`.\n\n## Goals\n\n{}",
+        machine(),
+        goals(results)
+    );
+    let mut group = "";
+    for m in results.iter().filter(|m| !m.faults.starts_with('σ')) {
+        if group.is_empty() {
+            let _ = write!(text, "\n## Other faults of scanners, by default\n\n{HEAD}");
+            group = m.group;
+        }
+        text += &line(m);
+    }
+    for name in distinct(results.iter().map(|m| m.group)) {
+        let _ = write!(text, "\n## {}\n\n{HEAD}", title(name));
+        let of_group = |m: &&Measured| m.group == name && m.faults.starts_with('σ');
+        results.iter().filter(of_group).for_each(|m| text += &line(m));
+    }
+    text
+}
+
+fn title(group: &str) -> &str {
+    match group {
+        "default" => "Defaults",
+        "factor" => "Size of buffer pixels",
+        "triangles" => "Normals from eight triangles, as printed",
+        "γ" => "Thickness of a surface (γ)",
+        "passes" => "One pass and two",
+        "weighting" => "Weights of the points of a surface",
+        "outline" => "Reach of outlines",
+        "fill" => "Pull-push",
+        "culling" => "Culling",
+        "together" => "Small buffer pixels with wider gaps filled",
+        other => other,
+    }
+}

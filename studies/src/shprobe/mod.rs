@@ -1,0 +1,20 @@
+//! `shprobe`: light probes: projection, tetrahedra, placement, pictures.
+
+mod canvas;
+mod delaunay;
+mod layouts;
+mod maps;
+mod objects;
+mod paper;
+mod peer;
+mod pictures;
+mod projection;
+mod rays;
+mod site;
+mod streets;
+mod study;
+mod trilinear;
+pub(crate) mod truth;
+mod walk;
+
+pub(crate) use study::{run, run_with};

@@ -1,0 +1,296 @@
+//! `shprobe`: light probes: projection, tetrahedra, placement, pictures.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use crate::common::data;
+use crate::common::report::{Limit, Outcome, Row, chart_along, chart_of, machine, verdict, write, write_csv};
+use crate::shprobe::delaunay;
+use crate::shprobe::layouts::{ADAPTIVE, FITTED, GRID, HEAD, Layout, Survey, TRILINEAR, line};
+use crate::shprobe::maps;
+use crate::shprobe::objects;
+use crate::shprobe::paper;
+use crate::shprobe::pictures;
+use crate::shprobe::projection;
+use crate::shprobe::site::Site;
+
+type Fault = Box<dyn std::error::Error + Send + Sync>;
+
+/// Numbers of probes: in the two rooms, and in Sponza.
+const ROOM_COUNTS: [usize; 6] = [24, 48, 86, 96, 192, 432];
+const HALL_COUNTS: [usize; 4] = [40, 86, 192, 432];
+
+/// Few enough: a fifth of the grid, and what the dark room may need.
+const FEW: usize = 86;
+const DARK_FEW: usize = 96;
+const DARK_LIMIT: f64 = 0.1;
+
+/// What is asked for.
+#[derive(Clone, Debug, Default)]
+struct Wish {
+    quick: bool,
+    /// Where pictures go, if anywhere.
+    pictures: Option<PathBuf>,
+}
+
+/// Measures and writes `shprobe.md`, `shprobe.csv` and charts.
+pub(crate) fn run(out_dir: &Path) -> Outcome {
+    let pictures = std::env::var_os("POINTILLIST_PICTURES").map(PathBuf::from);
+    measure(&Wish { quick: false, pictures }, out_dir)
+}
+
+/// The same with arguments: `quick` for a trial that writes elsewhere, `--pictures DIR` for pictures, or a site to tune placement at.
+pub(crate) fn run_with(out_dir: &Path, arguments: &[&str]) -> Outcome {
+    match arguments {
+        [site @ ("rooms" | "basic" | "sponza" | "sibenik"), more @ ..] => run_site(site, more),
+        ["quick"] => measure(&Wish { quick: true, pictures: None }, &trial_folder()),
+        ["--pictures", folder] => measure(&Wish { quick: false, pictures: Some(folder.into()) }, out_dir),
+        ["quick", "--pictures", folder] => {
+            measure(&Wish { quick: true, pictures: Some(folder.into()) }, &trial_folder())
+        }
+        ["pictures", folder] => pictures::all(Path::new(folder)).map(|text| {
+            print!("{text}");
+            true
+        }),
+        _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe pictures DIR".into()),
+    }
+}
+
+fn trial_folder() -> PathBuf {
+    let folder = std::env::temp_dir().join("pointillist-studies");
+    eprintln!("shprobe: a trial; its tables go to {}", folder.display());
+    folder
+}
+
+/// Prints error against number of probes at one site, for those who tune placement.
+fn run_site(name: &str, arguments: &[&str]) -> Outcome {
+    let site = match name {
+        "rooms" => Some(Site::two_rooms()),
+        "basic" => Some(Site::basic()),
+        "sponza" => Site::sponza(),
+        _ => Site::sibenik(),
+    };
+    let Some(site) = site else {
+        eprintln!("shprobe: {}", data::SKIPPED);
+        return Ok(true);
+    };
+    let mut counts: Vec<usize> = arguments.iter().filter_map(|a| a.parse().ok()).collect();
+    if counts.is_empty() {
+        counts = ROOM_COUNTS.to_vec();
+    }
+    let mut survey = Survey::new(&site)?;
+    if !arguments.contains(&"adaptive") {
+        survey.grids(site.grids)?;
+        survey.blind(&counts)?;
+    }
+    survey.adaptive(&counts)?;
+    print!("{}", survey_table(&survey));
+    Ok(true)
+}
+
+fn measure(wish: &Wish, out_dir: &Path) -> Outcome {
+    let start = Instant::now();
+    std::fs::create_dir_all(out_dir)?;
+    let mut report = Report::default();
+    projection(&mut report, wish, out_dir)?;
+    maps(&mut report, wish)?;
+    points(&mut report, wish)?;
+    placement(&mut report, wish, out_dir)?;
+    if let Some(folder) = &wish.pictures {
+        report.section("Moving through Sponza", &pictures::all(folder)?);
+    }
+    write(out_dir, "shprobe.md", &report.markdown())?;
+    eprintln!("shprobe: {:.0} s", start.elapsed().as_secs_f64());
+    Ok(true)
+}
+
+/// What is written in the end.
+#[derive(Default)]
+struct Report {
+    goals: String,
+    body: String,
+}
+
+impl Report {
+    fn section(&mut self, title: &str, text: &str) {
+        let _ = write!(self.body, "## {title}\n\n{text}\n");
+    }
+
+    fn goal(&mut self, what: &str, limit: Limit, found: f64) {
+        let word = verdict(limit.is_kept_by(found));
+        let _ = writeln!(self.goals, "| {what} | {limit} | {} | {word} |", short(found));
+    }
+
+    fn markdown(&self) -> String {
+        format!(
+            "# `shprobe`: light probes\n\n`cargo run --release -p studies -- shprobe` made this ({}). Times are the fastest of several \
+             runs, on one thread in processor time. Errors are root mean squares over those of what is true.\n\n\
+             ## Goals\n\n| goal | wanted | found | |\n| --- | ---: | ---: | --- |\n{}\n{}",
+            machine(),
+            self.goals,
+            self.body
+        )
+    }
+}
+
+/// With three digits.
+fn short(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-3 { format!("{value:.1e}") } else { format!("{value:.3}") }
+}
+
+fn projection(report: &mut Report, wish: &Wish, out_dir: &Path) -> Result<(), Fault> {
+    eprintln!("shprobe: projection");
+    let rows = projection::rows(if wish.quick { 3 } else { 20 })?;
+    write_csv(out_dir, "shprobe", &[], &rows)?;
+    let charted: Vec<Row> = rows.iter().filter(|r| r.setting.ends_with("order 2")).cloned().collect();
+    chart_of(out_dir, "shprobe", "worst coefficient over L00", &charted)?;
+    if let Some((ms, error)) = projection::at_128(&rows) {
+        report.goal("cube map of 128² to order 2, ms", Limit::AtMost(projection::LIMIT_MS), ms);
+        report.goal("smooth sky at 128², error over L00", Limit::AtMost(projection::LIMIT_ERROR), error);
+    }
+    let text = format!(
+        "Errors of the worst coefficient, over L00 of its colour, by how texels are weighted. The smooth sky is quadratic in the direction; the \
+         other is bright within a cap. All settings are in `shprobe.csv`.\n\n{}",
+        projection::table(&rows)
+    );
+    report.section("From cube maps to coefficients", &text);
+    Ok(())
+}
+
+fn maps(report: &mut Report, wish: &Wish) -> Result<(), Fault> {
+    eprintln!("shprobe: panoramas");
+    let text = match maps::table(if wish.quick { 3 } else { usize::MAX })? {
+        Some(table) => format!(
+            "Errors of irradiance in per cent of what direct integration gives for 200 normals, and in how many of 4000 directions it is negative.\n\n{table}"
+        ),
+        None => data::SKIPPED.to_owned() + "\n",
+    };
+    report.section("Panoramas", &text);
+    Ok(())
+}
+
+fn points(report: &mut Report, wish: &Wish) -> Result<(), Fault> {
+    let [building, goals] = delaunay::build_table(wish.quick)?;
+    report.goals += &goals;
+    let [finding, goals] = delaunay::locate_table(wish.quick)?;
+    report.goals += &goals;
+    let peer = if std::env::var_os("POINTILLIST_CGAL").is_some() {
+        "The peer is CGAL's sequential `Delaunay_triangulation_3`, on the same points in the same run, rounds of both in turn."
+    } else {
+        "The peer was skipped: `POINTILLIST_CGAL` names no program."
+    };
+    report.section("Dividing space", &format!("{peer}\n\n{building}"));
+    let text = "Weights are computed, too; the peer only finds the cell. Queries are in the inner four fifths of the cube.\n\n";
+    report.section("Finding positions", &format!("{text}{finding}"));
+    eprintln!("shprobe: objects");
+    let [objects, goals] = objects::table()?;
+    report.goals += &goals;
+    report.section("Lighting", &objects);
+    Ok(())
+}
+
+fn placement(report: &mut Report, wish: &Wish, out_dir: &Path) -> Result<(), Fault> {
+    let mut rows = vec![];
+    let (mut paper, mut tables) = (paper::HEAD.to_owned(), String::new());
+    let rooms: &[usize] = if wish.quick { &[24, 96] } else { &ROOM_COUNTS };
+    let halls: &[usize] = if wish.quick { &[86] } else { &HALL_COUNTS };
+    let sites = [
+        (Some(Site::two_rooms()), rooms),
+        (Some(Site::basic()), &[][..]),
+        (Site::sponza(), halls),
+        (Site::sibenik(), &[]),
+    ];
+    for (mut site, counts) in sites.into_iter().filter_map(|(s, c)| s.map(|s| (s, c))) {
+        if wish.quick {
+            if site.name == "Sibenik" {
+                continue;
+            }
+            site = site.for_a_trial();
+        }
+        let mut survey = Survey::new(&site)?;
+        survey.grids(site.grids)?;
+        if !counts.is_empty() {
+            survey.blind(counts)?;
+            survey.adaptive(counts)?;
+            goals_of(report, &survey);
+            tables += &survey_table(&survey);
+            rows.extend(survey.layouts.iter().map(|l| row(site.name, l)));
+        }
+        paper += &paper::rows(&survey)?;
+    }
+    if data::folder().is_none() {
+        tables += data::SKIPPED;
+    }
+    chart_along(out_dir, "shprobe-placement", ["probes", "error of irradiance"], &rows)?;
+    report.section("Error against number of probes", &(PLACEMENT.to_owned() + &tables));
+    report.section("The paper's table 3, by measured error", &(PAPER.to_owned() + &paper));
+    Ok(())
+}
+
+const PLACEMENT: &str = "Irradiance for 26 normals at random free positions, against direct integration of what is seen from there. Lights shine once, and what \
+     they shine on is seen: no probe depends on another. In the two rooms, pictures of our own renderer are seen, by probes of 32² and for the \
+     truth of 64²; in Sponza and Sibenik it is rays, 32² and 48² a face, because pictures of so many small triangles take half a second a probe. \
+     *Distances*: a position takes from probes that see it. *Dark room*: over the light there. Adaptive placement chooses with the same \
+     interpolation as is measured; *fitted* probes hold what lights all candidates best, not what they saw.\n\n";
+
+const PAPER: &str = "The fewest adaptive, fitted probes, of those numbers that were tried, that err no more than the paper's grid of tetrahedra without distances.\n\n";
+
+fn survey_table(survey: &Survey<'_>) -> String {
+    let name = survey.ground.site.name;
+    let mut text = HEAD.to_owned();
+    survey.layouts.iter().for_each(|l| text += &(line(name, l) + "\n"));
+    let floor = survey.floor();
+    let dark = floor.dark.map_or(String::new(), |d| format!(", in the dark room {:.2} %", 100.0 * d));
+    let _ = write!(
+        text,
+        "\nOrder 2 itself loses {:.2} %{dark}, at {} positions.\n\n",
+        100.0 * floor.all,
+        survey.truth.positions.len()
+    );
+    text
+}
+
+/// Whether few probes are as good as the grid, and whether light leaks.
+fn goals_of(report: &mut Report, survey: &Survey<'_>) {
+    let name = survey.ground.site.name;
+    let adaptive = |most: usize| {
+        survey
+            .layouts
+            .iter()
+            .filter(move |l| [ADAPTIVE, FITTED].contains(&l.placement) && l.wanted <= most)
+            .map(|l| l.wrong)
+    };
+    let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
+    let few = least(&mut adaptive(FEW).map(|w| w.all));
+    for (what, placement) in [("tetrahedra", GRID), ("trilinear", TRILINEAR)] {
+        for (distances, word) in [(false, "without"), (true, "with")] {
+            let is_grid =
+                |l: &&Layout| l.placement == placement && l.wanted == 432 && l.distances == distances;
+            let Some(grid) = survey.layouts.iter().find(is_grid) else { continue };
+            let what = format!(
+                "{name}: error of at most {FEW} adaptive probes, in that of the grid of 432, {what}, {word} distances"
+            );
+            report.goal(&what, Limit::AtMost(1.0), few / grid.wrong.all);
+        }
+    }
+    let dark = least(&mut adaptive(DARK_FEW).filter_map(|w| w.dark));
+    if dark.is_finite() {
+        let what = format!("{name}: error in the dark room with at most {DARK_FEW} probes");
+        report.goal(&what, Limit::AtMost(DARK_LIMIT), dark);
+    }
+}
+
+/// For the chart: along the axis is the number of probes.
+fn row(scene: &str, l: &Layout) -> Row {
+    let distances = if l.distances { ", distances" } else { "" };
+    Row {
+        scene: scene.to_owned(),
+        series: format!("{}{distances}", l.placement),
+        setting: l.wanted.to_string(),
+        seconds: l.probes as f64,
+        rmse: l.wrong.all,
+        largest: l.wrong.dark.unwrap_or(f64::NAN),
+        more: vec![],
+    }
+}

@@ -1,0 +1,21 @@
+//! What is measured of a frame.
+
+use crate::surfel::layer_error::LayerError;
+
+/// A frame of one setting in one scene.
+pub(crate) struct Measured {
+    pub(crate) scene: String,
+    /// The procedure, or what is compared with it.
+    pub(crate) series: &'static str,
+    pub(crate) setting: String,
+    /// Points drawn, links included.
+    pub(crate) points: usize,
+    /// Processor seconds on one thread, and seconds on all.
+    pub(crate) cpu: f64,
+    pub(crate) wall: f64,
+    /// Processor time over that of the row that the section names; NaN if it names none.
+    pub(crate) ratio: f64,
+    pub(crate) error: LayerError,
+    /// Of the cloud, world units.
+    pub(crate) spacing: f64,
+}

@@ -1,0 +1,162 @@
+//! Frames of point clouds: drawn, timed, and compared with the truth.
+
+use pointillist_surfel::{
+    Cloud, Focus, Frame, FrameCounts, Light, Method, Options, Procedure, Projection, Renderer, SurfelError,
+    View,
+};
+
+use crate::common::picture_layers::PictureLayers;
+use crate::common::report::{Clock, least_seconds, on_one_thread};
+use crate::common::true_surface::Surface;
+use crate::surfel::layer_error::LayerMeasure;
+use crate::surfel::lens_camera::{LensCamera, Matt};
+use crate::surfel::lens_reference::trace;
+use crate::surfel::measured::Measured;
+
+/// Both.
+pub(crate) const PROCEDURES: [Procedure; 2] = [Procedure::Blended, Procedure::Paper];
+
+/// Where the random numbers of the truth begin.
+const SEED: u64 = 1;
+
+/// How much trouble is taken.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Effort {
+    /// Rays per pixel of the truth, without a lens and with one.
+    pub(crate) rays: [u32; 2],
+    /// Least number of runs per time, and seconds for which they go on.
+    pub(crate) runs: usize,
+    pub(crate) together: f64,
+    /// How large clouds are sampled.
+    pub(crate) method: Method,
+    /// Points of the largest cloud.
+    pub(crate) most_points: usize,
+    /// Numbers of views from all over the lens.
+    pub(crate) views: &'static [u32],
+}
+
+impl Effort {
+    pub(crate) const FULL: Self = Self {
+        rays: [64, 256],
+        runs: 5,
+        together: 0.5,
+        method: Method::Poisson,
+        most_points: 1_274_573,
+        views: &[4, 16, 64],
+    };
+    /// Enough to see that all works.
+    pub(crate) const QUICK: Self = Self {
+        rays: [4, 16],
+        runs: 2,
+        together: 0.05,
+        method: Method::Ldi,
+        most_points: 500_000,
+        views: &[4, 16],
+    };
+
+    /// Processor seconds on one thread, and seconds on all.
+    pub(crate) fn times(
+        &self,
+        mut work: impl FnMut() -> Result<(), SurfelError> + Send,
+    ) -> Result<[f64; 2], SurfelError> {
+        let cpu = on_one_thread(|| least_seconds(Clock::Processor, self.runs, self.together, &mut work))?;
+        Ok([cpu, least_seconds(Clock::Wall, self.runs, self.together, work)?])
+    }
+}
+
+/// Something to draw, with its truth.
+pub(crate) struct Stage {
+    pub(crate) name: String,
+    pub(crate) camera: LensCamera,
+    pub(crate) matt: Matt,
+    pub(crate) measure: LayerMeasure,
+    pub(crate) effort: Effort,
+}
+
+impl Stage {
+    pub(crate) fn new(
+        name: &str,
+        surface: &Surface,
+        (camera, matt): (LensCamera, Matt),
+        effort: &Effort,
+    ) -> Self {
+        eprintln!("surfel: {name}: truth");
+        let rays = effort.rays[usize::from(camera.aperture > 0.0)];
+        let truth = trace(surface, &camera, &|p, n| matt.radiance(p, n), rays, SEED);
+        let measure = LayerMeasure::new(truth);
+        Self { name: name.to_owned(), camera, matt, measure, effort: *effort }
+    }
+
+    /// The defaults in the light of this scene, through its lens.
+    pub(crate) fn options(&self, procedure: Procedure) -> Options {
+        options(&self.camera, &self.matt, procedure)
+    }
+
+    /// Draws a frame and says what it costs and how wrong it is.
+    pub(crate) fn measured(
+        &self,
+        cloud: &Cloud,
+        setting: String,
+        options: &Options,
+    ) -> Result<Measured, SurfelError> {
+        let (view, mut renderer, mut frame) = (view(&self.camera), Renderer::new(), Frame::default());
+        let times = self.effort.times(|| renderer.draw(cloud, &view, options, &mut frame))?;
+        let (picture, counts) = drawn(cloud, &self.camera, options)?;
+        let series = name(options.procedure);
+        Ok(self.row(cloud, (series, setting), counts.points, times, &picture))
+    }
+
+    /// What was measured of a picture, as the report has it.
+    pub(crate) fn row(
+        &self,
+        cloud: &Cloud,
+        (series, setting): (&'static str, String),
+        points: usize,
+        [cpu, wall]: [f64; 2],
+        picture: &PictureLayers,
+    ) -> Measured {
+        let error = self.measure.of(picture);
+        let (scene, spacing) = (self.name.clone(), cloud.spacing());
+        Measured { scene, series, setting, points, cpu, wall, ratio: f64::NAN, error, spacing }
+    }
+}
+
+/// What reports call it.
+pub(crate) fn name(procedure: Procedure) -> &'static str {
+    match procedure {
+        Procedure::Blended => "blended",
+        Procedure::Paper => "paper",
+    }
+}
+
+/// The defaults in this light, through this lens; the paper's procedure gets its own parameter.
+pub(crate) fn options(camera: &LensCamera, matt: &Matt, procedure: Procedure) -> Options {
+    let LensCamera { aperture, focus, .. } = *camera;
+    let mut options = Options::default();
+    (options.procedure, options.light) = (procedure, Light::Towards(matt.light));
+    options.ambient = matt.ambient as f32;
+    options.focus = match procedure {
+        _ if aperture == 0.0 => Focus::Everywhere,
+        Procedure::Blended => Focus::Lens { aperture, focus },
+        Procedure::Paper => Focus::Depth { depth: aperture / focus, focus },
+    };
+    options
+}
+
+pub(crate) fn view(camera: &LensCamera) -> View {
+    let projection = Projection::Perspective { fov_y_rad: camera.fov_y_rad };
+    View::from_matrix(camera.view_from_world(), projection, camera.width, camera.height)
+        .expect("the cameras of this study are rigid and of a size that can be drawn")
+}
+
+/// A frame with all its layers.
+pub(crate) fn drawn(
+    cloud: &Cloud,
+    camera: &LensCamera,
+    options: &Options,
+) -> Result<(PictureLayers, FrameCounts), SurfelError> {
+    let (mut options, mut frame) = (*options, Frame::default());
+    options.surface_layers = true;
+    Renderer::new().draw(cloud, &view(camera), &options, &mut frame)?;
+    Ok((PictureLayers::of(&frame), *frame.counts()))
+}

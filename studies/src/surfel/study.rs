@@ -1,0 +1,268 @@
+//! `surfel`: time against error of point clouds, against rays cast at the surface through a thin lens.
+
+use std::path::Path;
+use std::time::Instant;
+
+use glam::DVec3;
+use pointillist_surfel::{Cloud, Method, Points, Procedure, SampleOptions, SurfelError};
+
+use crate::common::data;
+use crate::common::picture_layers::PictureLayers;
+use crate::common::report::{Outcome, chart_of, write, write_csv};
+use crate::common::true_surface::Surface;
+use crate::surfel::coloured_cloud::ColouredCloud;
+use crate::surfel::lens_scenes::{above, front, front_from, lens_name};
+use crate::surfel::measured::Measured;
+use crate::surfel::same::{Same, compare};
+use crate::surfel::stage::{Effort, PROCEDURES, Stage};
+use crate::surfel::tables::{COLUMNS, Section, csv_rows, markdown};
+
+/// Points of the paper's cloud, and of the bunny's own ten scans together.
+const PAPERS_POINTS: usize = 97_000;
+const SCANNED_POINTS: usize = 362_272;
+
+/// Pixels on a side: of the paper's pictures and of ours.
+const PAPERS_SIZE: u32 = 400;
+const SIZE: u32 = 512;
+const LARGE_SIZE: u32 = 1024;
+
+/// Pixels between points, with the default in the middle.
+const LEVELS: [f32; 7] = [0.0, 0.5, 1.0, DEFAULT_LEVEL, 2.0, 3.0, 4.0];
+const DEFAULT_LEVEL: f32 = 1.4;
+
+/// How far away the eye is, in distances of the front view, and how large the object looks then.
+const SIZES: [(f64, &str); 4] = [(1.0, "full size"), (2.0, "1/2 size"), (4.0, "1/4 size"), (8.0, "1/8 size")];
+
+/// Radii of discs, in those that sampling gives.
+const RADII: [f32; 5] = [0.5, 0.75, 1.0, 1.5, 2.0];
+
+/// Largest radius of blur in pixels of the paper's picture, about; the lens of the reference picture blurs by 16.
+const BLURS: [u32; 5] = [0, 2, 6, 16, 32];
+const REFERENCE_BLUR: u32 = 16;
+
+/// What all measurements share.
+struct Bench {
+    surface: Surface,
+    effort: Effort,
+    /// The paper's number of points, and that of the scans.
+    small: ColouredCloud,
+    small_ready: Cloud,
+    large_ready: Cloud,
+    /// What references agree to, in words.
+    notes: Vec<String>,
+}
+
+/// Measures and writes `surfel.csv`, `surfel.md` and `surfel.svg`.
+pub(crate) fn run(out_dir: &Path) -> Outcome {
+    measure(Effort::FULL, out_dir)
+}
+
+/// The same in a minute, with fewer rays and runs, into the temporary folder.
+pub(crate) fn run_quick() -> Outcome {
+    let out_dir = std::env::temp_dir().join("pointillist-studies");
+    eprintln!("surfel: a trial; its tables go to {}", out_dir.display());
+    measure(Effort::QUICK, &out_dir)
+}
+
+fn measure(effort: Effort, out_dir: &Path) -> Outcome {
+    let start = Instant::now();
+    let mut bench = Bench::new(effort)?;
+    let mut sections = vec![];
+    sections.extend(bench.front_sections()?);
+    sections.push(bench.sizes()?);
+    sections.push(bench.speed()?);
+    sections.push(bench.lenses()?);
+    let same = bench.same()?;
+    let rows = csv_rows(&sections);
+    write_csv(out_dir, "surfel", &COLUMNS, &rows)?;
+    chart_of(out_dir, "surfel", "colour, RMSE of sRGB", &rows)?;
+    write(out_dir, "surfel.md", &markdown(&bench.setup(), &sections, &same))?;
+    eprintln!("surfel: {:.0} s", start.elapsed().as_secs_f64());
+    // A picture that depends on threads or on the order of points is a fault, however fast.
+    Ok(same.iter().all(|s| s.same_bytes || s.may_differ))
+}
+
+impl Bench {
+    fn new(effort: Effort) -> Result<Self, SurfelError> {
+        let surface = Surface::coarse_bunny_or_bumpy();
+        let small = sampled(&surface, Method::Poisson, PAPERS_POINTS)?;
+        let small_ready = small.ready()?;
+        let large_ready = sampled(&surface, effort.method, SCANNED_POINTS)?.ready()?;
+        Ok(Self { surface, effort, small, small_ready, large_ready, notes: vec![] })
+    }
+
+    /// What was drawn, in words.
+    fn setup(&self) -> String {
+        let [rays, lens_rays] = self.effort.rays;
+        format!(
+            "Surface: {} ({} triangles), with colours that wave along the axes, a sun, and a tenth of the light from everywhere. \
+             Large clouds are sampled by {:?}. Truth: {rays} rays a pixel, {lens_rays} through a lens. Times are the fastest of {} frames or more. {}",
+            self.surface.name,
+            self.surface.triangle_count(),
+            self.effort.method,
+            self.effort.runs,
+            self.notes.join(" "),
+        )
+    }
+
+    /// Notes how far the truth is from the picture that another program made of the same scene, if it is there.
+    fn note_reference(&mut self, stage: &Stage, file: &str) {
+        let Some(folder) = data::folder() else { return };
+        match PictureLayers::read(&folder.join("reference/points").join(file)) {
+            Ok(picture) => {
+                let error = stage.measure.of(&picture);
+                self.notes.push(format!(
+                    "Of {}, the reference data have a picture by another program: {:.1} dB from our truth, normals {:.3}°.",
+                    stage.name, error.psnr, error.normal_mean
+                ));
+            }
+            Err(error) => eprintln!("surfel: no reference picture: {error}"),
+        }
+    }
+
+    /// Clouds of all kinds and discs of all sizes.
+    fn front_sections(&mut self) -> Result<[Section; 2], SurfelError> {
+        let mut stage = Stage::new("front", &self.surface, front(&self.surface, SIZE), &self.effort);
+        self.note_reference(&stage, "front.exr");
+        let bare = || Points::new(&self.small.positions).with_colors(&self.small.colours);
+        let without_normals = Cloud::new(&bare().with_radii(&self.small.radii))?;
+        let without_radii = Cloud::new(&bare().with_normals(&self.small.normals))?;
+        let ldi = sampled(&self.surface, Method::Ldi, SCANNED_POINTS)?.ready()?;
+        let (mut clouds, mut radii) = (vec![], vec![]);
+        let of_points = |n: usize, what: &str| format!("{n} points{what}");
+        for (name, cloud) in [
+            (of_points(PAPERS_POINTS, ""), &self.small_ready),
+            (of_points(PAPERS_POINTS, " without normals"), &without_normals),
+            (of_points(PAPERS_POINTS, " without radii"), &without_radii),
+            (of_points(SCANNED_POINTS, ""), &self.large_ready),
+            (of_points(ldi.len(), " by rays"), &ldi),
+        ] {
+            clouds.extend(by_both(&stage, cloud, &name)?);
+        }
+        stage.name = "radii".to_owned();
+        for factor in RADII {
+            let cloud = self.small.clone().with_radii_times(factor).ready()?;
+            radii.extend(by_both(&stage, &cloud, &format!("radii × {factor}"))?);
+        }
+        Ok([
+            Section { title: "Clouds, 512×512", ratio: None, rows: clouds },
+            Section { title: "Radii of discs: 97000 points, 512×512", ratio: None, rows: radii },
+        ])
+    }
+
+    /// Levels of detail at all sizes of the object.
+    fn sizes(&self) -> Result<Section, SurfelError> {
+        let mut rows: Vec<Measured> = vec![];
+        for (distances, name) in SIZES {
+            let setting = front_from(&self.surface, LARGE_SIZE, distances);
+            let stage = Stage::new(name, &self.surface, setting, &self.effort);
+            for level in LEVELS {
+                for procedure in procedures_at(level) {
+                    let mut options = stage.options(procedure);
+                    options.level = level;
+                    rows.push(stage.measured(&self.large_ready, format!("level {level}"), &options)?);
+                }
+            }
+        }
+        compare_times(&mut rows, |row, other| {
+            other.scene == SIZES[0].1 && (other.series, &other.setting) == (row.series, &row.setting)
+        });
+        let title = "Levels of detail: 362272 points, 1024×1024";
+        Ok(Section { title, ratio: Some("of the full size by the same level"), rows })
+    }
+
+    /// More points and more pixels.
+    fn speed(&self) -> Result<Section, SurfelError> {
+        let most = sampled(&self.surface, self.effort.method, self.effort.most_points)?.ready()?;
+        let mut rows: Vec<Measured> = vec![];
+        for (size, clouds) in
+            [(PAPERS_SIZE, vec![&self.small_ready]), (LARGE_SIZE, vec![&self.large_ready, &most])]
+        {
+            let stage = Stage::new("speed", &self.surface, front(&self.surface, size), &self.effort);
+            for cloud in clouds {
+                rows.extend(by_both(&stage, cloud, &format!("{} points at {size}²", cloud.len()))?);
+            }
+        }
+        compare_times(&mut rows, |row, other| {
+            other.series == row.series && other.setting.starts_with(&self.large_ready.len().to_string())
+        });
+        Ok(Section { title: "Speed, front", ratio: Some("of 362272 points at 1024²"), rows })
+    }
+
+    /// Depth of field against the mean of views from all over the lens.
+    fn lenses(&mut self) -> Result<Section, SurfelError> {
+        let (mut rows, mut blurs) = (vec![], vec![]);
+        for px in BLURS {
+            let share = f64::from(px) / f64::from(REFERENCE_BLUR);
+            let setting = above(&self.surface, PAPERS_SIZE, share);
+            let stage = Stage::new(&lens_name(px), &self.surface, setting, &self.effort);
+            if px == REFERENCE_BLUR {
+                self.note_reference(&stage, "dof.exr");
+            }
+            blurs.push(format!("{:.1}", largest_blur(&stage, &self.small.positions)));
+            rows.extend(by_both(&stage, &self.small_ready, &format!("{PAPERS_POINTS} points"))?);
+            for views in self.effort.views.iter().filter(|_| px > 0) {
+                eprintln!("surfel: {}: {views} views", stage.name);
+                rows.push(stage.measured_views(&self.small_ready, *views)?);
+            }
+        }
+        self.notes.push(format!("The lenses blur by up to {} px.", blurs.join(", ")));
+        compare_times(&mut rows, |row, other| {
+            let (of_views, sharp) = (row.series == "lens views", other.scene == lens_name(0));
+            if of_views {
+                other.scene == row.scene && other.series == "blended"
+            } else {
+                sharp && other.series == row.series
+            }
+        });
+        let title = "Depth of field: 97000 points, 400×400";
+        let ratio =
+            "of the sharp frame by the same procedure; of lens views: of the blended frame with this lens";
+        Ok(Section { title, ratio: Some(ratio), rows })
+    }
+
+    fn same(&self) -> Result<Vec<Same>, SurfelError> {
+        eprintln!("surfel: place, scale, order and threads");
+        let diagonal = self.surface.diagonal();
+        let mut list = compare(("front", 1.0), &self.small, front(&self.surface, SIZE), diagonal)?;
+        let lens = above(&self.surface, PAPERS_SIZE, 1.0);
+        for scene in [("lens 16 px", 1.0), ("lens 16 px, level 0", 0.0)] {
+            list.extend(compare(scene, &self.small, lens, diagonal)?);
+        }
+        Ok(list)
+    }
+}
+
+fn sampled(surface: &Surface, method: Method, count: usize) -> Result<ColouredCloud, SurfelError> {
+    eprintln!("surfel: {count} points by {method:?}");
+    let options = SampleOptions::DEFAULT.with_method(method).with_count(count);
+    // Colours are the same under every camera.
+    let (_, matt) = front(surface, 1);
+    ColouredCloud::of(surface, &matt, &options)
+}
+
+/// A frame by each procedure, with the defaults.
+fn by_both(stage: &Stage, cloud: &Cloud, setting: &str) -> Result<Vec<Measured>, SurfelError> {
+    eprintln!("surfel: {}: {setting}", stage.name);
+    let row = |procedure| stage.measured(cloud, setting.to_owned(), &stage.options(procedure));
+    PROCEDURES.into_iter().map(row).collect()
+}
+
+/// Levels are of the octree, not of the procedure: one of them has to do, except at the default.
+fn procedures_at(level: f32) -> impl Iterator<Item = Procedure> {
+    PROCEDURES.into_iter().take(if level == DEFAULT_LEVEL { 2 } else { 1 })
+}
+
+/// Sets each row's ratio to the first row that it is compared with.
+fn compare_times(rows: &mut [Measured], is_compared: impl Fn(&Measured, &Measured) -> bool) {
+    let of =
+        |row: &Measured| rows.iter().find(|other| is_compared(row, other)).map(|other| row.cpu / other.cpu);
+    let ratios: Vec<_> = rows.iter().map(of).collect();
+    rows.iter_mut().zip(ratios).for_each(|(row, ratio)| row.ratio = ratio.unwrap_or(f64::NAN));
+}
+
+/// Pixels.
+fn largest_blur(stage: &Stage, positions: &[DVec3]) -> f64 {
+    let depth = |p: &DVec3| (*p - stage.camera.eye).dot(stage.camera.forward);
+    positions.iter().map(|p| stage.camera.blur_px(depth(p))).fold(0.0, f64::max)
+}

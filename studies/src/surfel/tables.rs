@@ -1,0 +1,210 @@
+//! The tables of the study of point clouds, and which goals are reached.
+
+use std::fmt::Write as _;
+
+use crate::common::report::{Limit, Row, machine, verdict};
+use crate::surfel::lens_scenes::lens_name;
+use crate::surfel::measured::Measured;
+use crate::surfel::same::Same;
+
+/// Rows of one table.
+pub(crate) struct Section {
+    pub(crate) title: &'static str,
+    /// What the ratios of times are to.
+    pub(crate) ratio: Option<&'static str>,
+    pub(crate) rows: Vec<Measured>,
+}
+
+/// Columns of `surfel.csv` behind those of all studies.
+pub(crate) const COLUMNS: [&str; 11] = [
+    "points_drawn",
+    "wall_seconds",
+    "cpu_ratio",
+    "psnr_db",
+    "ssim",
+    "holes_pct",
+    "spill_pct",
+    "normal_mean_deg",
+    "normal_median_deg",
+    "depth_rmse",
+    "depth_bias",
+];
+
+pub(crate) fn csv_rows(sections: &[Section]) -> Vec<Row> {
+    sections.iter().flat_map(|s| &s.rows).map(Measured::row).collect()
+}
+
+impl Measured {
+    fn row(&self) -> Row {
+        let e = &self.error;
+        let values = [
+            self.points as f64,
+            self.wall,
+            self.ratio,
+            e.psnr,
+            e.ssim,
+            e.holes,
+            e.spill,
+            e.normal_mean,
+            e.normal_median,
+            e.depth_rmse / self.spacing,
+            e.depth_bias / self.spacing,
+        ];
+        Row {
+            scene: self.scene.clone(),
+            series: self.series.to_owned(),
+            setting: self.setting.clone(),
+            seconds: self.cpu,
+            // PSNR is −20 log₁₀ of it.
+            rmse: 10f64.powf(-e.psnr / 20.0),
+            largest: e.largest,
+            more: values.iter().map(|v| format!("{v:.5}")).collect(),
+        }
+    }
+
+    fn line(&self) -> String {
+        let e = &self.error;
+        let ratio = if self.ratio.is_nan() { "–".to_owned() } else { format!("{:.3}", self.ratio) };
+        format!(
+            "| {} | {} | {} | {} | {:.2} | {:.2} | {ratio} | {:.2} | {:.4} | {:.4} | {:.2} | {:.3} |\n",
+            self.scene,
+            self.series,
+            self.setting,
+            self.points,
+            1e3 * self.cpu,
+            1e3 * self.wall,
+            e.psnr,
+            e.ssim,
+            e.holes,
+            e.normal_mean,
+            e.depth_rmse / self.spacing,
+        )
+    }
+}
+
+const HEAD: &str = "| scene | procedure | setting | points drawn | CPU ms | wall ms | ratio | PSNR dB | SSIM | holes % | normals, mean ° | depth RMSE |\n\
+                    | --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+
+/// A figure that must be reached: the ratio of one row.
+struct Goal {
+    what: &'static str,
+    limit: Limit,
+    scene: &'static str,
+    series: &'static str,
+    setting: &'static str,
+}
+
+const fn goal(what: &'static str, limit: Limit, row: [&'static str; 3]) -> Goal {
+    let [scene, series, setting] = row;
+    Goal { what, limit, scene, series, setting }
+}
+
+/// What must be reached. All are ratios of processor time.
+const GOALS: [Goal; 9] = [
+    goal("object of 1/8 size / full size", Limit::AtMost(0.1), ["1/8 size", "blended", "level 1.4"]),
+    goal("object of 1/8 size / full size", Limit::AtMost(0.1), ["1/8 size", "paper", "level 1.4"]),
+    goal("1274573 points / 362272", Limit::AtMost(2.0), ["speed", "blended", "1274573 points at 1024²"]),
+    goal("1274573 points / 362272", Limit::AtMost(2.0), ["speed", "paper", "1274573 points at 1024²"]),
+    goal("lens of 6 px / sharp", Limit::AtMost(1.14), ["lens 6 px", "blended", "97000 points"]),
+    goal("lens of 6 px / sharp", Limit::AtMost(1.14), ["lens 6 px", "paper", "97000 points"]),
+    goal("lens of 16 px / sharp", Limit::AtMost(1.4), ["lens 16 px", "blended", "97000 points"]),
+    goal("lens of 16 px / sharp", Limit::AtMost(1.4), ["lens 16 px", "paper", "97000 points"]),
+    goal("16 views from the lens / blended", Limit::AtLeast(10.0), ["lens 16 px", "lens views", "16 views"]),
+];
+
+/// Pictures of a scene elsewhere may differ by rounding: so many dB from the unchanged one do not show.
+const ROUNDING: Limit = Limit::AtLeast(60.0);
+
+fn goals(sections: &[Section], same: &[Same]) -> String {
+    let mut text = "| goal | procedure | wanted | found | |\n| --- | --- | ---: | ---: | --- |\n".to_owned();
+    for Goal { what, limit, scene, series, setting } in &GOALS {
+        let is_meant =
+            |m: &&Measured| (m.scene.as_str(), m.series, m.setting.as_str()) == (*scene, *series, *setting);
+        let Some(row) = sections.iter().flat_map(|s| &s.rows).find(is_meant) else { continue };
+        let word = verdict(limit.is_kept_by(row.ratio));
+        let _ = writeln!(text, "| CPU time, {what} | {series} | {limit} | {:.3} | {word} |", row.ratio);
+    }
+    for change in ["moved", "scaled"] {
+        let changed = same.iter().filter(|s| s.change.starts_with(change)).map(|s| s.error.psnr);
+        let least = changed.fold(f64::INFINITY, |a, b| ROUNDING.worse(a, b));
+        let word = verdict(ROUNDING.is_kept_by(least));
+        let _ =
+            writeln!(text, "| scene {change}, dB from unchanged | both | {ROUNDING} | {least:.1} | {word} |");
+    }
+    let bytes: Vec<&Same> = same.iter().filter(|s| !s.may_differ).collect();
+    let (good, all) = (bytes.iter().filter(|s| s.same_bytes).count(), bytes.len());
+    let word = verdict(good == all);
+    let _ = writeln!(
+        text,
+        "| points shuffled, 1 thread, 2: same bytes | both | {all} of {all} | {good} | {word} |"
+    );
+    text
+}
+
+/// Frames a second of the paper's program on a Pentium III of 1.2 GHz, sharp and with depth of field.
+const PAPERS_FPS: [f64; 2] = [0.98, 0.86];
+
+fn paper_table(sections: &[Section]) -> String {
+    let rows = || sections.iter().flat_map(|s| &s.rows);
+    let find = |px: u32, series: &str| rows().find(|m| m.scene == lens_name(px) && m.series == series);
+    let [sharp, deep] = PAPERS_FPS;
+    let mut text = format!(
+        "| 97000 points, 400×400 | sharp, frames/s | depth of field, frames/s | what depth of field costs |\n\
+         | --- | ---: | ---: | ---: |\n\
+         | the paper, Pentium III 1.2 GHz | {sharp} | {deep} | {:+.0} % |\n",
+        100.0 * (sharp / deep - 1.0)
+    );
+    for (series, px) in ["paper", "blended"].into_iter().flat_map(|s| [(s, 6), (s, 16)]) {
+        let (Some(sharp), Some(deep)) = (find(0, series), find(px, series)) else { continue };
+        for (clock, sharp, deep) in
+            [("one thread, CPU time", sharp.cpu, deep.cpu), ("all cores", sharp.wall, deep.wall)]
+        {
+            let (a, b, more) = (1.0 / sharp, 1.0 / deep, 100.0 * (deep / sharp - 1.0));
+            let _ = writeln!(text, "| {series}, {px} px, {clock} | {a:.1} | {b:.1} | {more:+.0} % |");
+        }
+    }
+    text
+}
+
+fn same_table(same: &[Same]) -> String {
+    let mut text =
+        "| scene | procedure | change | bytes | PSNR dB from unchanged | largest difference of 255 |\n\
+                    | --- | --- | --- | --- | ---: | ---: |\n"
+            .to_owned();
+    for s in same {
+        let bytes = match (s.same_bytes, s.may_differ) {
+            (true, _) => "the same",
+            (false, false) => "**differ**",
+            (false, true) => "differ",
+        };
+        let (psnr, largest) = (s.error.psnr, 255.0 * s.error.largest);
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {bytes} | {psnr:.1} | {largest:.3} |",
+            s.scene, s.series, s.change
+        );
+    }
+    text
+}
+
+/// The whole report; `setup` says what was drawn.
+pub(crate) fn markdown(setup: &str, sections: &[Section], same: &[Same]) -> String {
+    let mut text = format!(
+        "# Point clouds: time against error\n\n`cargo run --release -p studies -- surfel` made this ({}). {setup}\n\n\
+         *Blended* is `Procedure::Blended`, *paper* is `Procedure::Paper`. *CPU ms*: processor time of a frame on one thread, *wall \
+         ms*: time of a frame on all cores. *Points drawn* counts links. *PSNR* and \
+         *SSIM*: sRGB, over the surface's box and 8 pixels around. Depth, normals and holes are compared with rays through the pixels' centres, \
+         through the middle of a lens, over pixels more than 2 inside the outline; depth is in spacings of the cloud. \
+         *Holes*: such pixels without a surface. Clouds are blue noise unless the row says otherwise.\n\n## Goals\n\n{}\n\
+         ## Beside the paper\n\n{}",
+        machine(),
+        goals(sections, same),
+        paper_table(sections),
+    );
+    for section in sections {
+        let ratio = section.ratio.map_or(String::new(), |r| format!("*Ratio*: CPU time, in that {r}.\n\n"));
+        let _ = write!(text, "\n## {}\n\n{ratio}{HEAD}", section.title);
+        section.rows.iter().for_each(|m| text += &m.line());
+    }
+    text + "\n## What must not change a picture\n\n97000 points.\n\n" + &same_table(same)
+}
