@@ -49,6 +49,11 @@ fn setting(surface: &Surface, size: u32, to_eye: DVec3, light: DVec3) -> (LensCa
     (camera, Matt { light: light.normalize(), ambient: AMBIENT, period: surface.diagonal() / WAVES })
 }
 
+/// The name of the scene in which a lens blurs by so many pixels.
+pub(crate) fn lens_name(px: u32) -> String {
+    format!("lens {px} px")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,9 +96,4 @@ mod tests {
             assert!((matt.period - 0.010_003_766_569).abs() < 1e-12);
         }
     }
-}
-
-/// The name of the scene in which a lens blurs by so many pixels.
-pub(crate) fn lens_name(px: u32) -> String {
-    format!("lens {px} px")
 }
