@@ -185,6 +185,7 @@ fn with_threads(points: &[DVec3]) -> Partition {
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "one thread is all there is")]
 fn threads_do_not_change_a_byte() {
     // Twice as many as a part has at least: fewer are not divided.
     assert_eq!(with_threads(&scattered(40_000)).dimension(), 3);
@@ -204,6 +205,7 @@ fn a_huge_point_leaves_no_trace() {
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "one thread is all there is")]
 fn most_points_in_one_place_can_be_divided() {
     // The median of these is their least: nothing lies before it.
     let mut points = vec![DVec3::splat(-1.0); 40_000];

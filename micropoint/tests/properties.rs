@@ -331,6 +331,7 @@ fn picture_by_threads(soup: &Soup, view: View, options: MicropointOptions, threa
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "one thread is all there is")]
 fn one_two_and_eight_threads_give_the_same_picture() {
     let mut s = Soup::default();
     let (ball, glass, ground) = (s.surface(1.0), s.surface(0.3), s.surface(1.0));

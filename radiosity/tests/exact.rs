@@ -303,6 +303,7 @@ fn importance_is_the_adjoint_of_light() {
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "one thread is all there is")]
 fn any_number_of_threads_gives_the_same_bytes() {
     let of = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");

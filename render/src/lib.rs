@@ -115,6 +115,11 @@ pub use pointillist_micropoint::{Geometry, MicropointError, Occlusion};
 pub use pointillist_shadow::{Emitter, Resolution, ShadowError};
 pub use pointillist_view::{PixelRect, Projection, View, ViewError};
 
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 /// Draws a scene: colour, depth and the layers that are asked for.
 ///
 /// A pixel's value depends on the scene only: not on the window, on tiles or on the number of threads. For several pictures of one

@@ -157,6 +157,7 @@ proptest! {
     }
 
     #[test]
+    #[cfg_attr(target_family = "wasm", ignore = "one thread is all there is")]
     fn a_picture_does_not_depend_on_threads(s in scene()) {
         let [one, three] = [0, 1].map(|i| POOLS[i].install(|| render(&s, &DrawOptions::DEFAULT, &())));
         match (one, three) {

@@ -349,6 +349,7 @@ fn the_error_of_the_papers_rule_falls_with_the_light_grid() {
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "one thread is all there is")]
 fn one_two_and_eight_threads_give_the_same_shadows() {
     use rayon::prelude::*;
     let mut s = ground();

@@ -147,6 +147,7 @@ proptest! {
     }
 
     #[test]
+    #[cfg_attr(target_family = "wasm", ignore = "one thread is all there is")]
     fn a_frame_does_not_depend_on_threads(p in points(), v in view(), o in options()) {
         let frames: Vec<_> = POOLS.iter().map(|pool| pool.install(|| frame(&p, &v, &o))).collect();
         for other in &frames[1..] {

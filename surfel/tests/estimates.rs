@@ -278,6 +278,7 @@ fn the_two_sides_of_a_sheet_have_areas_of_their_own() {
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "one thread is all there is")]
 fn threads_do_not_change_a_bit() {
     let points = two_scans(1500);
     let by = |threads| {

@@ -116,6 +116,7 @@ fn octrees_of_surfaces_are_sound_and_small() {
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "one thread is all there is")]
 fn threads_do_not_change_an_octree() {
     for points in surfaces() {
         let by = |threads| {

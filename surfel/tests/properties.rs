@@ -250,6 +250,7 @@ fn attributes_are_interpolated() {
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "one thread is all there is")]
 fn threads_do_not_change_a_bit_and_seeds_do() {
     let mesh = sphere(20);
     for options in [NOISE.with_count(3000), RAYS.with_count(3000)] {
