@@ -30,7 +30,7 @@
 //!
 //! * [`Scene`]: plain data, put together by hand ([`Mesh::add`]) or by a reader of files; [`Scene::check`] says what is wrong with it.
 //! * [`render`]: one picture. [`Prepared`]: many pictures of one scene, from other cameras ([`Prepared::draw_view`]), or what a light
-//!   probe sees ([`Prepared::capture`], [`look_all`]).
+//!   probe sees ([`Prepared::capture`], [`look_all`]). [`bake_probes`]: light probes with light sent on; [`Solids`]: where none should be.
 //! * [`Frame`]: colour and depth, and the layers that [`DrawOptions`] asks for (normals, albedo, direct light, …).
 //! * [`Monitor`]: progress, cancelling, times and counts; `()` watches nothing, [`Watch`] takes a function and a flag.
 //! * [`scene_surfaces`], [`Lamps`]: the scene as `pointillist-radiosity` takes it; [`Lightmap`]: baked light as ambient light.
@@ -57,6 +57,7 @@
 
 mod ambient;
 mod background;
+mod bake;
 mod canvas;
 mod capture;
 mod detail;
@@ -82,10 +83,12 @@ mod scene;
 mod set_up;
 mod shader;
 mod shading;
+mod solids;
 mod surfaces;
 mod uvs;
 
 pub use ambient::Ambient;
+pub use bake::{BakeOptions, BakedProbe, ProbeBake, bake_probes};
 pub use capture::{Capture, CaptureOptions};
 pub use draw::DrawOptions;
 pub use error::RenderError;
@@ -102,6 +105,7 @@ pub use scene::{
     MeasuredBrdf, Mesh, NONE, Object, Part, RenderSettings, Scene, SceneError, SkyLight, Surroundings,
     Texels, Texture, Transmission, linear_from_srgb, srgb_from_linear,
 };
+pub use solids::Solids;
 
 pub use glam;
 /// Spherical harmonics: what probes hold.

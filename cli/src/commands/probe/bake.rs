@@ -1,17 +1,17 @@
 //! `probe bake`.
 
-use super::rounds::{Lit, Rounds};
-use super::solids::{Outcome, Solids};
+use super::inside::{self, Outcome};
 use super::{check_output, failed, overrides, write};
 use crate::commands::Report;
 use crate::commands::report::name_of_output;
 use crate::error::CliError;
+use crate::job::Watch;
 use crate::memory;
-use crate::options::{BakeOptions, What};
+use crate::options::{BakeOptions, Inside, What};
 use crate::probe_io::{Distances, ProbeEntry, ProbeFile, read_probes};
 use crate::scene::{self, Scene};
 use glam::DVec3;
-use pointillist_render::{Prepared, fingerprint, fingerprints};
+use pointillist_render::{BakedProbe, Prepared, ProbeBake, Solids, bake_probes, fingerprint, fingerprints};
 use std::hash::Hasher as _;
 use std::ops::Range;
 use std::path::Path;
@@ -37,7 +37,7 @@ pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
     let given = report.stats.stage("load", || read_probes(&options.probes))?;
     check_memory(given.probes.len(), options)?;
     let prepared = Prepared::new(&scene, &report.stats).map_err(failed)?;
-    let solids = Solids::new(&prepared, &scene);
+    let solids = Solids::new(&prepared);
     let (mut file, positions) = settled(&given, &solids, &scene, options, &report)?;
     let bake =
         Bake { prepared: &prepared, solids: &solids, scene: &scene, options, report: &report, positions };
@@ -112,7 +112,7 @@ fn settled(
     let (mut moved, mut dropped) = (0, 0);
     for (i, probe) in given.probes.iter().enumerate().take(range.end).skip(range.start) {
         let mut position = DVec3::from_array(probe.position);
-        match solids.settle(i, position, options.inside)? {
+        match inside::settle(solids, i, position, options.inside)? {
             Outcome::Free | Outcome::Kept => {}
             Outcome::Moved(to) => {
                 moved += 1;
@@ -157,6 +157,22 @@ fn fingerprint(scene: &Scene, options: &BakeOptions) -> u64 {
     hash.write(options.what.name().as_bytes());
     hash.write(env!("CARGO_PKG_VERSION").as_bytes());
     hash.finish()
+}
+
+/// What the renderer is asked for.
+fn look_options(options: &BakeOptions) -> pointillist_render::BakeOptions {
+    let mut look = pointillist_render::BakeOptions::DEFAULT;
+    look.resolution = options.resolution;
+    look.order = options.order.into();
+    look.distances = options.distances as usize;
+    look.bounces = options.bounces;
+    look.until = options.until;
+    look.fit = options.fit as usize;
+    look.emission = options.what == What::Total;
+    look.thorough = options.thorough;
+    look.dering = options.dering;
+    look.keep_buried = options.inside == Inside::Keep;
+    look
 }
 
 /// One run.
@@ -216,6 +232,19 @@ impl Bake<'_> {
         Ok(numbers.into_iter().map(|n| format!("{n:016x}{:02x}{}", settings[0], settings[1])).collect())
     }
 
+    fn look(&self, at: &[DVec3]) -> Result<Vec<BakedProbe>, CliError> {
+        let Self { options, report, .. } = self;
+        let progress = report.progress();
+        let watch = Watch { task: "bake", progress: &progress, stats: &report.stats };
+        let baked = bake_probes(self.prepared, self.solids, at, &look_options(options), &watch);
+        let ProbeBake { probes, changes } = baked.map_err(failed)?;
+        for (change, bounce) in changes.iter().zip(1..) {
+            report.detail(&format!("bounce {bounce}: light changed by {:.2} %", change * 100.0));
+        }
+        progress.finish();
+        Ok(probes)
+    }
+
     /// Bakes what is not kept, bounce after bounce.
     fn fill(
         &self,
@@ -227,8 +256,7 @@ impl Bake<'_> {
         let stats = &self.report.stats;
         let todo: Vec<usize> = (0..self.positions.len()).filter(|&i| !kept[i]).collect();
         let at: Vec<DVec3> = todo.iter().map(|&i| self.positions[i]).collect();
-        let lit =
-            Rounds::new(self.prepared, self.scene, self.options, self.report, &at, self.solids).run()?;
+        let lit = self.look(&at)?;
         stats.count("probes", at.len() as u64);
         stats.skip("probes_unchanged", (self.positions.len() - at.len()) as u64);
         for (i, probe) in file.probes.iter_mut().enumerate() {
@@ -241,7 +269,7 @@ impl Bake<'_> {
         if count > 0 {
             self.report.warn(&format!("{count} probes lie inside of walls, and light nothing"));
         }
-        for (i, Lit { seen, buried }) in todo.into_iter().zip(lit) {
+        for (i, BakedProbe { seen, buried }) in todo.into_iter().zip(lit) {
             let probe = &mut file.probes[i];
             probe.buried = buried.then_some(true);
             probe.sh = Some(seen.radiance.coefficients().iter().map(DVec3::to_array).collect());

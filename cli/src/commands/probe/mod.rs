@@ -1,12 +1,11 @@
 //! `probe` and its commands.
 
 mod bake;
+mod inside;
 mod merge;
 mod place;
 mod project;
 mod query;
-mod rounds;
-mod solids;
 mod tetra;
 
 pub(super) use merge::merge_probes;

@@ -1,6 +1,6 @@
 //! `probe place`.
 
-use super::solids::{Outcome, Solids};
+use super::inside::{self, Outcome};
 use super::{check_output, failed, overrides, write};
 use crate::commands::Report;
 use crate::commands::report::name_of_output;
@@ -14,7 +14,7 @@ use crate::probe_io::ProbeFile;
 use crate::scene::{self, NONE, Scene};
 use glam::DVec3;
 use pointillist_render::{
-    Ambient, CaptureOptions, LookOptions, Prepared, Seen, buried, look_again, look_all,
+    Ambient, CaptureOptions, LookOptions, Prepared, Seen, Solids, buried, look_again, look_all,
 };
 use pointillist_sh::Sh;
 use pointillist_shade::face_normal;
@@ -46,7 +46,7 @@ pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
              --strategy grid, random and cluster place more"
         ));
     }
-    let positions = settle(&positions, &prepared, &scene, options, &report)?;
+    let positions = settle(&positions, &prepared, options, &report)?;
     let positions = match options.strategy {
         Strategy::Cluster => cluster(&prepared, &positions, options, &report)?,
         _ => positions,
@@ -144,14 +144,13 @@ fn lifted_vertices(scene: &Scene, height: f64) -> Vec<DVec3> {
 fn settle(
     positions: &[DVec3],
     prepared: &Prepared<'_>,
-    scene: &Scene,
     options: &PlaceOptions,
     report: &Report<'_>,
 ) -> Result<Vec<DVec3>, CliError> {
-    let solids = Solids::new(prepared, scene);
+    let solids = Solids::new(prepared);
     let (mut free, mut inside) = (vec![], 0);
     for (i, &p) in positions.iter().enumerate() {
-        let outcome = solids.settle(i, p, options.inside)?;
+        let outcome = inside::settle(&solids, i, p, options.inside)?;
         inside += usize::from(matches!(outcome, Outcome::Moved(_) | Outcome::Dropped));
         match outcome {
             Outcome::Free | Outcome::Kept => free.push(p),

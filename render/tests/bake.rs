@@ -1,0 +1,86 @@
+//! Light probes against closed forms.
+
+use glam::{DVec3, Vec3, dvec3};
+use pointillist_render::sh::Irradiance;
+use pointillist_render::shade;
+use pointillist_render::{BakeOptions, Camera, Material, Part, Prepared, Scene, Solids, bake_probes};
+use std::f32::consts::PI;
+
+/// The corners of a box and its triangles, seen from outside, or from inside.
+fn cuboid(low: DVec3, high: DVec3, from_inside: bool) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let corner = |i: u32| {
+        let pick = |axis: usize| if i >> axis & 1 == 1 { high[axis] } else { low[axis] };
+        dvec3(pick(0), pick(1), pick(2))
+    };
+    let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let turned = |[a, b, c]: [u32; 3]| if from_inside { [a, c, b] } else { [a, b, c] };
+    let triangles = faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).map(turned);
+    ((0..8).map(corner).collect(), triangles.collect())
+}
+
+/// Walls that glow with radiance 1 and reflect half of what arrives.
+fn glowing_room() -> Scene {
+    let mut scene = Scene::new(Camera::perspective(DVec3::ONE, DVec3::ZERO, 1.0), [8, 8]);
+    let surface = shade::Material { emission: Vec3::ONE, ..shade::Material::lambert(Vec3::splat(0.5)) };
+    scene.add_material(Material::new("wall", surface));
+    let (positions, triangles) = cuboid(DVec3::splat(-2.0), DVec3::splat(2.0), true);
+    scene.mesh.add(&Part::new("room", &positions, &triangles)).unwrap();
+    scene
+}
+
+fn options(bounces: u32) -> BakeOptions {
+    let mut options = BakeOptions::DEFAULT;
+    (options.resolution, options.bounces, options.until, options.emission) = (16, bounces, 0.0, true);
+    options
+}
+
+#[test]
+fn light_in_a_closed_room_is_a_geometric_series() {
+    let scene = glowing_room();
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    let places = [DVec3::ZERO, dvec3(1.0, 0.5, -1.2), dvec3(-1.0, 1.0, 1.0), dvec3(0.3, -1.3, 0.9)];
+    for bounces in [0, 1, 2, 5] {
+        let bake = bake_probes(&prepared, &Solids::new(&prepared), &places, &options(bounces), &()).unwrap();
+        assert_eq!((bake.probes.len(), bake.changes.len()), (4, bounces as usize));
+        let radiance: f32 = (0..=bounces).map(|k| 0.5_f32.powi(k as i32)).sum();
+        for probe in &bake.probes {
+            let light = Irradiance::new(&probe.seen.radiance);
+            for normal in [Vec3::X, Vec3::NEG_Y, Vec3::Z] {
+                let error = light.at(normal) / (PI * radiance) - Vec3::ONE;
+                assert!(error.abs().max_element() < 2e-3, "{bounces} bounces: {error}");
+            }
+            assert!(!probe.buried && probe.seen.back_share == 0.0);
+        }
+        // Each bounce adds half of what the last one added.
+        for (k, change) in (1..).zip(&bake.changes) {
+            let wanted = f64::from(0.5_f32.powi(k) / (2.0 - 0.5_f32.powi(k)));
+            assert!((change - wanted).abs() < 1e-3, "bounce {k}: {change}, not {wanted}");
+        }
+    }
+}
+
+#[test]
+fn what_glows_bounces_even_if_probes_are_not_to_hold_it() {
+    let scene = glowing_room();
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    let mut options = options(1);
+    options.emission = false;
+    let places = [DVec3::ZERO, DVec3::X];
+    let bake = bake_probes(&prepared, &Solids::new(&prepared), &places, &options, &()).unwrap();
+    let light = Irradiance::new(&bake.probes[0].seen.radiance).at(Vec3::Y);
+    assert!((light / PI - Vec3::splat(0.5)).abs().max_element() < 2e-3, "{light}");
+}
+
+#[test]
+fn matter_is_told_from_rooms_and_has_a_way_out() {
+    let mut scene = glowing_room();
+    let (positions, triangles) = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5), false);
+    scene.mesh.add(&Part::new("block", &positions, &triangles)).unwrap();
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    let solids = Solids::new(&prepared);
+    // The camera is in the room, so the room is none.
+    assert!(solids.is_free(DVec3::ONE) && !solids.is_free(DVec3::ZERO) && !solids.is_free(DVec3::splat(0.4)));
+    let out = solids.nearest_free(dvec3(0.4, 0.0, 0.0)).unwrap();
+    assert!(solids.is_free(out) && out.x > 0.5 && out.abs().max_element() < 2.0, "{out}");
+    assert!(solids.nearest_free(DVec3::ZERO).is_some());
+}
