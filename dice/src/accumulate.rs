@@ -58,7 +58,7 @@ impl Accumulator {
     }
 }
 
-/// An edge on its way down.
+/// An edge that the sweep follows from row to row.
 #[derive(Clone, Copy, Debug)]
 struct Walker {
     edge: Edge,
@@ -71,7 +71,7 @@ struct Walker {
     sign: i8,
 }
 
-/// What one edge does to one cell, and to all cells right of it.
+/// The contribution of one edge to one cell, and to all cells right of it.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     column: i32,

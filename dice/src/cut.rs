@@ -105,10 +105,10 @@ impl Slab {
 /// Cuts a convex polygon (cell units, positive area, at most [`MAX_CUT_VERTICES`] vertices) into one
 /// piece per cell of the window, left to right and top to bottom.
 ///
-/// The caller promises finite coordinates within ±2³⁰; other numbers give cells without meaning. Areas are good to [`CUT_ERROR`]. Crossings with grid lines depend only on the
-/// edge, not on the polygon or the window, so that neighbours share them bit for bit and a window cut
-/// in two gives the same pieces. Pieces without area may be reported where an edge runs along a grid
-/// line; polygons with fewer than three vertices give nothing.
+/// The caller promises finite coordinates within ±2³⁰; other numbers give cells without meaning. Areas are accurate to
+/// [`CUT_ERROR`]. Crossings with grid lines depend only on the edge, not on the polygon or the window, so that neighbours
+/// share them bit for bit and a window cut in two gives the same pieces. Pieces without area may be reported where an
+/// edge runs along a grid line; polygons with fewer than three vertices have no pieces.
 ///
 /// # Panics
 /// If there are more than [`MAX_CUT_VERTICES`] vertices, or a coordinate is NaN.

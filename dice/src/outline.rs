@@ -1,4 +1,4 @@
-//! What both products ask of a polygon before they begin.
+//! Checks and bounds of a polygon, for `split` and `accumulate`.
 
 use glam::DVec2;
 
@@ -68,7 +68,7 @@ impl Extent {
     }
 }
 
-/// Refuses work without end.
+/// Refuses more than [`MAX_CELLS`].
 #[inline]
 pub(crate) fn check_count(count: u64) -> Result<(), DiceError> {
     if count > MAX_CELLS { Err(DiceError::TooManyCells { count }) } else { Ok(()) }

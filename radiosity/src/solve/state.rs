@@ -8,7 +8,7 @@ use crate::tree::ElementId;
 /// Contractions nearer to 1 bound nothing.
 const MOST: f64 = 1.0 - 1e-12;
 
-/// What one solver works on.
+/// The state of a solver.
 pub(crate) struct State<'t> {
     pub(crate) transport: &'t Transport,
     /// Emission and reflected direct light of leaves, by element.
