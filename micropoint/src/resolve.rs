@@ -18,7 +18,7 @@ pub enum Occlusion {
     Paper,
 }
 
-/// What is seen of a part.
+/// The visible share of a part.
 pub(crate) struct Visible<'a> {
     pub(crate) part: u32,
     /// Visible share of the cell: area × transmittance × opacity.

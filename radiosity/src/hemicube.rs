@@ -20,12 +20,12 @@ pub enum HemicubeKind {
     Classic,
 }
 
-/// A hemicube of some resolution, to be used at many points.
+/// A hemicube of a fixed resolution, with its form factors of cells and its memory, for any number of points.
 #[derive(Clone, Debug)]
 pub struct Hemicube {
     kind: HemicubeKind,
     size: usize,
-    /// Shares of the cells of the top, and of the cells of a side, row by row from below.
+    /// Form factors of the cells of the top, and of the cells of a side, row by row from below.
     top: Vec<f64>,
     side: Vec<f64>,
     faces: Vec<Buffer>,
