@@ -6,36 +6,9 @@
 //! [`accumulate`](crate::accumulate) compute in fixed point, and checks nothing that costs time.
 
 use crate::convex::ConvexPolygon;
+use crate::window::CellWindow;
 use glam::{DVec2, IVec2};
 use std::ops::Range;
-
-/// A rectangle of cells: columns `x0..x1`, rows `y0..y1`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct CellWindow {
-    /// First column.
-    pub x0: i32,
-    /// First row.
-    pub y0: i32,
-    /// One past the last column.
-    pub x1: i32,
-    /// One past the last row.
-    pub y1: i32,
-}
-
-impl CellWindow {
-    /// Every cell that has a number.
-    pub const ALL: Self = Self { x0: i32::MIN, y0: i32::MIN, x1: i32::MAX, y1: i32::MAX };
-
-    /// The part of `columns` in the window; empty ranges stay empty.
-    pub(crate) fn clip_columns(&self, columns: Range<i32>) -> Range<i32> {
-        columns.start.max(self.x0)..columns.end.min(self.x1)
-    }
-
-    /// The part of `rows` in the window.
-    pub(crate) fn clip_rows(&self, rows: Range<i32>) -> Range<i32> {
-        rows.start.max(self.y0)..rows.end.min(self.y1)
-    }
-}
 
 /// What [`cut`] reports.
 #[derive(Clone, Copy, Debug)]
@@ -132,10 +105,10 @@ impl Slab {
 /// Cuts a convex polygon (cell units, positive area, at most [`MAX_CUT_VERTICES`] vertices) into one
 /// piece per cell of the window, left to right and top to bottom.
 ///
-/// The caller promises finite coordinates within ±2³⁰; other numbers give cells without meaning. Areas are good to [`CUT_ERROR`]. Crossings with grid lines depend only on the
-/// edge, not on the polygon or the window, so that neighbours share them bit for bit and a window cut
-/// in two gives the same pieces. Pieces without area may be reported where an edge runs along a grid
-/// line; polygons with fewer than three vertices give nothing.
+/// The caller promises finite coordinates within ±2³⁰; other numbers give cells without meaning. Areas are accurate to
+/// [`CUT_ERROR`]. Crossings with grid lines depend only on the edge, not on the polygon or the window, so that neighbours
+/// share them bit for bit and a window cut in two gives the same pieces. Pieces without area may be reported where an
+/// edge runs along a grid line; polygons with fewer than three vertices have no pieces.
 ///
 /// # Panics
 /// If there are more than [`MAX_CUT_VERTICES`] vertices, or a coordinate is NaN.

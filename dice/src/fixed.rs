@@ -1,9 +1,8 @@
 //! Fixed-point cell coordinates: 32 bits of cell number, 96 bits of place within the cell.
 //!
-//! Why not `f64`: a position 2⁻⁹⁶ of a cell apart is told apart everywhere on the grid, so that subtraction, comparison
-//! and "which cell" are exact, sums do not depend on their order, and walking along an edge by adding its slope is as
-//! good as evaluating it afresh. A vertex within ±2³⁰ cells is exact if it is 0 or at least 2⁻⁴³ of a cell from the
-//! grid's origin lines.
+//! Why not `f64`: the resolution is 2⁻⁹⁶ of a cell everywhere on the grid, so that subtraction, comparison and the number of the cell are
+//! exact, sums do not depend on their order, and adding the slope of an edge row by row is as accurate as evaluating it anew.
+//! A vertex within ±2³⁰ cells is exact if it is 0 or at least 2⁻⁴³ of a cell from the grid's origin lines.
 
 /// A coordinate, length or ratio in units of 2⁻⁹⁶ cells.
 pub(crate) type Fixed = i128;

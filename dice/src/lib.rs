@@ -42,14 +42,19 @@
 //!
 //! [`hide`] finds what is left of a polygon behind other polygons, opaque or translucent.
 //!
-//! `split` costs time for each piece, `accumulate` for each cell on the outline and each row. The figures are in the
-//! README, with the commands that give them.
+//! `split` costs time for each piece, `accumulate` for each cell on the outline and each row, both only within the grid's window
+//! ([`Grid::with_window`]). The figures are in the README, with the commands that give them.
+//!
+//! # Maps
+//!
+//! Rasters of maps are [`Grid`]s with a negative cell height (north-up), polygons of GeoJSON and shapefiles the rings of
+//! [`accumulate_filled`], closed or open. The README has an example, the folder `examples` a program (`land_cover`).
 //!
 //! | | polygons | computes in | bad input |
 //! | --- | --- | --- | --- |
 //! | [`split`] | convex | fixed point | a typed error |
 //! | [`accumulate`] | simple | fixed point | a typed error |
-//! | [`accumulate_filled`] | any rings | fixed point | a typed error |
+//! | [`accumulate_filled`] | any rings, holes | fixed point; heights of crossings in `f64` | a typed error |
 //! | [`cut`] | convex, positive order, at most 12 corners, within ±2³⁰ cells | `f64` | a panic for 13 corners and for NaN, no meaning beyond ±2³⁰ |
 //!
 //! # Features
@@ -75,22 +80,27 @@ mod grid;
 pub mod hide;
 #[cfg(feature = "invariants")]
 pub mod invariants;
+mod limits;
+mod meet;
 mod outline;
+mod rule;
+mod slabs;
 mod split;
+mod window;
 
 pub use accumulate::{Accumulator, Run, accumulate, accumulate_filled};
 pub use clip::{clip_ring, share_before_crossing};
 pub use code::{Code, CodeKind};
 pub use convex::{ConvexPolygon, HalfPlane};
-pub use cut::{CUT_ERROR, CellWindow, Cut, MAX_CUT_VERTICES, cut};
+pub use cut::{CUT_ERROR, Cut, MAX_CUT_VERTICES, cut};
 pub use error::DiceError;
-pub use fill::FillRule;
-pub use grid::{Grid, MAX_COORDINATE};
+pub use grid::Grid;
+pub use limits::{CONVEXITY_TOLERANCE, MAX_CELLS, MAX_COORDINATE};
+pub use rule::FillRule;
 pub use split::{Piece, split};
+pub use window::CellWindow;
 
-/// The largest number of cells that one call visits; a polygon that meets more is refused before the first one.
-pub const MAX_CELLS: u64 = 1 << 28;
-
-/// An outline that turns the wrong way by less than this (sine of the angle) still counts as convex in [`split`]:
-/// vertices that were computed are rarely exactly on one line. Such a polygon is cut as its convex rows.
-pub const CONVEXITY_TOLERANCE: f64 = 1e-9;
+/// The README's examples, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

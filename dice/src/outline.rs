@@ -1,10 +1,22 @@
-//! What both products ask of a polygon before they begin.
+//! Checks and bounds of a polygon, for `split` and `accumulate`.
 
 use glam::DVec2;
 
+use crate::error::DiceError;
 use crate::fixed::{self, Fixed};
 use crate::grid::{Grid, Point};
-use crate::{CellWindow, DiceError, MAX_CELLS};
+use crate::limits::MAX_CELLS;
+use crate::window::CellWindow;
+
+/// The ring without corners at its end that repeat its first: closed rings, as in GeoJSON, are what open ones are.
+pub(crate) fn open_ring(mut ring: &[DVec2]) -> &[DVec2] {
+    while let [first, .., last] = ring
+        && first == last
+    {
+        ring = &ring[..ring.len() - 1];
+    }
+    ring
+}
 
 /// The rows and columns that a polygon touches.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +68,7 @@ impl Extent {
     }
 }
 
-/// Refuses work without end.
+/// Refuses more than [`MAX_CELLS`].
 #[inline]
 pub(crate) fn check_count(count: u64) -> Result<(), DiceError> {
     if count > MAX_CELLS { Err(DiceError::TooManyCells { count }) } else { Ok(()) }
@@ -66,4 +78,63 @@ pub(crate) fn check_count(count: u64) -> Result<(), DiceError> {
 #[inline]
 pub(crate) fn next(index: usize, len: usize) -> usize {
     if index + 1 == len { 0 } else { index + 1 }
+}
+
+/// The sign that makes areas right of downward edges positive; `None` if the ring has no area.
+pub(crate) fn orientation(ring: &[DVec2], grid: &Grid) -> Option<i8> {
+    /// `f64` sums of products are certain of their sign above this part of their terms' sizes, for up to 2²⁰ vertices.
+    const CERTAIN: f64 = 1.0 / (1u64 << 32) as f64;
+    let (mut sum, mut size) = (0.0, 0.0);
+    let (&start, rest) = ring.split_first()?;
+    let in_cells = |v: DVec2| (v - start) / grid.cell();
+    let mut a = DVec2::ZERO;
+    for &v in rest {
+        let b = in_cells(v);
+        let (forward, backward) = (a.x * b.y, a.y * b.x);
+        sum += forward - backward;
+        size += forward.abs() + backward.abs();
+        a = b;
+    }
+    if sum.abs() <= CERTAIN * size {
+        let point = |i: usize| grid.point(ring[i], i).expect("every vertex was checked at the door");
+        let first = point(0);
+        sum = precise_area(ring.len(), |i| {
+            let p = point(i);
+            Point { x: p.x - first.x, y: p.y - first.y }
+        })?;
+    }
+    Some(if sum > 0.0 { -1 } else { 1 })
+}
+
+/// The sum of cross products with about 100 bits; `None` if it is zero as far as those tell.
+fn precise_area(len: usize, spoke: impl Fn(usize) -> Point) -> Option<f64> {
+    /// A sum of this part of its terms or less is rounding: 2⁻⁹⁰.
+    const ZERO: f64 = 1.0 / (1u128 << 90) as f64;
+    let (mut high, mut low, mut size) = (0.0, 0.0, 0.0);
+    let mut add = |v: f64| {
+        let sum: f64 = high + v;
+        let v_part = sum - high;
+        low += (high - (sum - v_part)) + (v - v_part);
+        high = sum;
+    };
+    let pair = |x: Fixed| {
+        let head = x as f64;
+        (head, (x - head as Fixed) as f64)
+    };
+    let mut product = |x: Fixed, y: Fixed, sign: f64| {
+        let ((x1, x0), (y1, y0)) = (pair(x), pair(y));
+        let head = x1 * y1;
+        add(sign * head);
+        size += head.abs();
+        add(sign * (fixed::product_error(x1, y1) + (x1 * y0 + x0 * y1)));
+    };
+    let mut a = spoke(0);
+    for i in 1..len {
+        let b = spoke(i);
+        product(a.x, b.y, 1.0);
+        product(a.y, b.x, -1.0);
+        a = b;
+    }
+    let sum = high + low;
+    if sum.abs() <= ZERO * size { None } else { Some(sum) }
 }

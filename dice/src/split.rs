@@ -6,7 +6,7 @@ use crate::code::Corner;
 use crate::edge::Edge;
 use crate::fixed::{self, Fixed, ONE};
 use crate::grid::{Grid, Point};
-use crate::outline::{Extent, check_count, next};
+use crate::outline::{Extent, check_count, next, open_ring};
 use crate::{CONVEXITY_TOLERANCE, Code, DiceError};
 
 /// The part of a polygon that lies in one cell, between two neighbouring bands' lines.
@@ -28,9 +28,9 @@ pub struct Piece<'a> {
     pub code: Code,
 }
 
-/// Cuts a convex polygon, in either orientation, into the pieces that each lie in one cell.
+/// Cuts a convex polygon, in either orientation, open or closed (its last vertex repeats the first), into the pieces that each lie in one cell.
 ///
-/// Pieces come row by row (smaller y first), from left to right within a band. Together they are the polygon: corners
+/// Pieces come row by row, from left to right within a band, by the numbers of the cells. Together they are the polygon: corners
 /// that lie on a line of the grid have exactly its coordinate ([`Grid::corner`]), and the points in which an edge
 /// crosses the grid do not depend on the polygon that it belongs to. Polygons without area have no pieces.
 ///
@@ -44,6 +44,7 @@ pub struct Piece<'a> {
 /// [`DiceError::NotFinite`], [`DiceError::OutOfRange`], [`DiceError::NotConvex`] and [`DiceError::TooManyCells`], all
 /// before the first piece.
 pub fn split(polygon: &[DVec2], grid: &Grid, mut visit: impl FnMut(Piece<'_>)) -> Result<(), DiceError> {
+    let polygon = open_ring(polygon);
     let Some(extent) = Extent::of(polygon, grid)? else { return Ok(()) };
     if polygon.len() > 3 {
         check_convex(polygon, grid)?;

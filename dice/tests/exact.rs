@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, dvec2};
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
-use pointillist_dice::{Accumulator, Grid, accumulate, split};
+use pointillist_dice::{Accumulator, FillRule, Grid, accumulate, accumulate_filled, split};
 
 type Exact = BigRational;
 type Ring = Vec<(Exact, Exact)>;
@@ -140,5 +140,37 @@ fn slivers_keep_their_digits() {
         }
         println!("slivers of {width:e}: split {s:.2e} ulp, accumulate {a:.2e} ulp");
         assert!(s.max(a) * f64::EPSILON < 1e-3 * (1e-12 / width).max(1e-3), "{s} and {a} ulp");
+    }
+}
+
+#[test]
+fn holes_are_as_exact_as_outlines() {
+    for offset in [0.0, 1e3, 1e6, 1e7] {
+        let mut worst = 0.0_f64;
+        for outer in triangles(6.0, offset, 11) {
+            // Around the middle, so that no coordinate is a short number.
+            let middle = (outer[0] + outer[1] + outer[2]) / 3.0;
+            let hole = outer.map(|v| middle + (v - middle) * 0.7);
+            let mut wanted = exact_cells(&outer);
+            for (cell, area) in exact_cells(&hole) {
+                *wanted.get_mut(&cell).expect("the hole lies inside") -= area;
+            }
+            wanted.retain(|_, area| area.is_positive());
+            let mut found = BTreeMap::new();
+            accumulate_filled(
+                &[&outer, &hole],
+                FillRule::EvenOdd,
+                &Grid::UNIT,
+                &mut Accumulator::new(),
+                |run| {
+                    found.extend(run.columns.map(|x| ((x, run.row), run.area)));
+                },
+            )
+            .unwrap();
+            assert!(found.keys().eq(wanted.keys()), "cells missed or invented: {outer:?}");
+            worst = found.iter().map(|(cell, area)| ulps(*area, &wanted[cell])).fold(worst, f64::max);
+        }
+        println!("triangles with holes at {offset:e}: {worst:.2} ulp");
+        assert!(worst <= 0.51, "{worst} ulp at {offset:e}");
     }
 }

@@ -2,9 +2,11 @@
 
 use glam::{DVec2, dvec2};
 use pointillist_dice::{
-    Accumulator, ConvexPolygon, DiceError, FillRule, Grid, HalfPlane, accumulate, accumulate_filled,
+    Accumulator, CellWindow, ConvexPolygon, DiceError, FillRule, Grid, HalfPlane, accumulate,
+    accumulate_filled, invariants,
 };
 use proptest::prelude::*;
+use testkit::holds;
 
 fn area(rings: &[&[DVec2]], rule: FillRule) -> f64 {
     let mut sum = 0.0;
@@ -82,6 +84,62 @@ fn counter_clockwise([a, b, c]: [DVec2; 3]) -> [DVec2; 3] {
     if (b - a).perp_dot(c - a) < 0.0 { [a, c, b] } else { [a, b, c] }
 }
 
+/// Rings that often meet: corners on grid lines, on one another, and anywhere.
+fn rings() -> impl Strategy<Value = Vec<Vec<DVec2>>> {
+    let coordinate = || prop_oneof![(-16_i32..16).prop_map(|i| f64::from(i) / 2.0), -8.0..8.0];
+    let ring = prop::collection::vec((coordinate(), coordinate()).prop_map(|(x, y)| dvec2(x, y)), 0..8);
+    prop::collection::vec(ring, 1..5)
+}
+
+/// Grids with sides of either sign.
+fn grid() -> impl Strategy<Value = Grid> {
+    let side = || prop_oneof![Just(1.0), Just(-1.0), 0.3..3.0, -3.0..-0.3];
+    let any = (-5.0..5.0, -5.0..5.0, side(), side());
+    let grid = any.prop_map(|(x, y, w, h)| Grid::new(dvec2(x, y), dvec2(w, h)).expect("sides are not 0"));
+    prop_oneof![Just(Grid::UNIT), grid]
+}
+
+fn rule() -> impl Strategy<Value = FillRule> {
+    prop_oneof![Just(FillRule::EvenOdd), Just(FillRule::NonZero)]
+}
+
+proptest! {
+    #![proptest_config(testkit::config(512))]
+
+    #[test]
+    fn closed_rings_are_open_ones(rings in rings(), rule in rule(), grid in grid()) {
+        let rings: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
+        holds!(invariants::closed_rings_are_open_ones(&rings, rule, &grid));
+    }
+
+    #[test]
+    fn a_window_is_part_of_the_whole(
+        rings in rings(), rule in rule(), grid in grid(), x0 in -9..9, y0 in -9..9, width in 0..9, height in 0..9,
+    ) {
+        let rings: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
+        let window = CellWindow { x0, y0, x1: x0 + width, y1: y0 + height };
+        holds!(invariants::filled_window_is_part_of_the_whole(&rings, rule, &grid, window));
+    }
+
+    #[test]
+    fn mirrored_grids_mirror_the_cells(rings in rings(), rule in rule(), grid in grid()) {
+        let rings: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
+        holds!(invariants::mirrored_grids_mirror_the_cells(&rings, rule, &grid));
+    }
+
+    #[test]
+    fn rings_within_rings_alternate(
+        radii in prop::collection::vec(2.0..8.0, 4..16), centre in (-3.0..3.0, -3.0..3.0), far in prop_oneof![Just(0.0), -1e6..1e6],
+        shares in prop::collection::vec(0.05..0.95, 1..5), grid in grid(),
+    ) {
+        let centre = dvec2(centre.0 + far, centre.1 - far);
+        let step = std::f64::consts::TAU / radii.len() as f64;
+        let spoke = |(i, r): (usize, &f64)| centre + DVec2::from_angle((i as f64 + 0.3) * step) * *r;
+        let outline: Vec<_> = radii.iter().enumerate().map(spoke).collect();
+        holds!(invariants::nested_rings_alternate(&outline, centre, &shares, &grid));
+    }
+}
+
 proptest! {
     #![proptest_config(testkit::config(256))]
 
@@ -129,5 +187,75 @@ proptest! {
         }
         let [even, nonzero] = areas(&[&ring]);
         prop_assert!(even <= nonzero + 1e-10);
+    }
+}
+
+/// 400 islands in 400 lakes in a ring with 100,000 corners, in windows of 100 × 100 of its 3·10¹⁶ cells.
+#[test]
+fn a_map_of_many_corners_is_cut_in_a_window() {
+    let ring = |centre: DVec2, radius: f64, corners: usize| -> Vec<DVec2> {
+        let corner = |i: usize| {
+            let angle = i as f64 * std::f64::consts::TAU / corners as f64;
+            let wave = 1.0 + 0.1 * (angle * 0.05 * corners as f64).sin() + 0.2 * (angle * 11.0).sin();
+            centre + DVec2::from_angle(angle) * (radius * wave)
+        };
+        (0..corners).map(corner).collect()
+    };
+    let mut rings = vec![ring(DVec2::ZERO, 1e8, 100_000)];
+    for i in 0..400 {
+        let centre = dvec2(f64::from(i % 20) - 9.5, f64::from(i / 20) - 9.5) * 3e6;
+        rings.push(ring(centre, 1e6, 100));
+        rings.push(ring(centre, 5e5, 100));
+    }
+    let rings: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
+    // Wholly in the land around the lakes, on an island, and in a lake.
+    for (x0, y0, share) in [(0, 0, 1.0), (1_500_000, 1_500_000, 1.0), (2_150_000, 1_500_000, 0.0)] {
+        let window = CellWindow { x0, y0, x1: x0 + 100, y1: y0 + 100 };
+        let mut area = 0.0;
+        accumulate_filled(
+            &rings,
+            FillRule::EvenOdd,
+            &Grid::UNIT.with_window(window),
+            &mut Accumulator::new(),
+            |run| {
+                area += run.area * run.columns.len() as f64;
+            },
+        )
+        .expect("the window is small");
+        assert_eq!(area, 10_000.0 * share, "{window:?}");
+    }
+}
+
+#[test]
+fn rings_that_touch_are_handled_as_those_that_cross() {
+    // A hole with a corner on the outline, and one with a side on it.
+    let outer = square(0.0, 3.0);
+    let corner = [dvec2(0.0, 1.0), dvec2(1.0, 0.5), dvec2(1.0, 1.5)];
+    let side = [dvec2(3.0, 1.0), dvec2(3.0, 2.0), dvec2(2.0, 2.0), dvec2(2.0, 1.0)];
+    assert_eq!(areas(&[&outer, &corner])[0], 9.0 - 0.5);
+    assert_eq!(areas(&[&outer, &side])[0], 8.0);
+    assert_eq!(areas(&[&outer, &corner, &side])[0], 7.5);
+    // Two parts with a common side, far away from the other rings.
+    let far = |ring: [DVec2; 4]| ring.map(|v| v + dvec2(100.0, 50.0));
+    let (left, right) = (
+        far(square(0.0, 1.0)),
+        far([(1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0)].map(|(x, y)| dvec2(x, y))),
+    );
+    assert_eq!(areas(&[&outer, &corner, &left, &right])[0], 8.5 + 2.0);
+}
+
+/// Underflow of products made two small rings apart from one another a crossing at a height that is NaN.
+#[test]
+fn tiny_and_huge_cells_change_nothing() {
+    for size in [1e-150, 1e-30, 1e150] {
+        let grid = Grid::new(DVec2::ZERO, DVec2::splat(size)).expect("a normal size");
+        let ring = |low: f64, high: f64| square(low * size, high * size);
+        let (mut area, rings) = (0.0, [ring(0.25, 3.0), ring(1.0, 2.0), ring(2.5, 4.0)]);
+        let rings: Vec<&[DVec2]> = rings.iter().map(|r| &r[..]).collect();
+        accumulate_filled(&rings, FillRule::NonZero, &grid, &mut Accumulator::new(), |run| {
+            area += run.area / grid.cell_area() * run.columns.len() as f64;
+        })
+        .expect("within range");
+        assert!((area - (2.75 * 2.75 + 1.5 * 1.5 - 0.25)).abs() < 1e-12, "{area} for {size:e}");
     }
 }

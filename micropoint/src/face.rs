@@ -26,8 +26,8 @@ pub struct Face {
 }
 
 impl Face {
-    /// Nearness at a grid position, kept within the face's own range: the plane of a face seen almost
-    /// edge-on is steep, and what lies outside the face must not be believed.
+    /// Nearness at a grid position, clamped to the range of the face: the plane of a face seen almost edge-on is steep, so that
+    /// extrapolation beyond the face is useless.
     #[must_use]
     #[inline]
     pub fn nearness_at(&self, p: DVec2) -> f64 {

@@ -9,7 +9,7 @@
 //! use glam::DVec3;
 //! use pointillist_micropoint::*;
 //!
-//! // A triangle that covers the left half of a 2×1 picture, right of the diagonal of the first pixel.
+//! // A triangle that covers half of the first pixel of a 2×1 picture.
 //! let corners = [DVec3::new(-1.0, 0.5, 0.0), DVec3::new(0.0, -0.5, 0.0), DVec3::new(0.0, 0.5, 0.0)];
 //! let geometry = Geometry::new(&corners, &[[0, 1, 2]], &[0], &[Surface::default()])?;
 //! let camera = Projection::Orthographic { height: 1.0 };
@@ -66,3 +66,8 @@ pub use resolve::Occlusion;
 pub use texel::{TexelCorner, TexelSums, TexelWrap};
 pub use tile::TileCounts;
 pub use visit::{FaceVisitor, VisitCounts, VisitMemory};
+
+/// The README's examples, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

@@ -170,7 +170,7 @@ impl Tile {
         self.lens.as_ref().expect("a tile has been rendered")
     }
 
-    /// What was done for this tile.
+    /// Counts of the work for this tile.
     #[must_use]
     pub fn counts(&self) -> TileCounts {
         self.dicer.counts

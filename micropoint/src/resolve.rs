@@ -18,7 +18,7 @@ pub enum Occlusion {
     Paper,
 }
 
-/// What is seen of a part.
+/// The visible share of a part.
 pub(crate) struct Visible<'a> {
     pub(crate) part: u32,
     /// Visible share of the cell: area × transmittance × opacity.
@@ -43,8 +43,8 @@ impl Visible<'_> {
     }
 }
 
-/// Overlaps smaller than this share of a cell are rounding, and stay below what a sum of weights is checked for in a cell of
-/// a hundred parts. Touches of larger rounding are told by the edge that separates them.
+/// Overlaps with an area of at most this, in cells, are taken for rounding. A hundred of them in a cell stay below the tolerance to which sums
+/// of weights are tested. Parts that touch with larger rounding are recognised by an edge that separates them.
 pub(crate) const NEGLIGIBLE_AREA: f64 = 1e-13;
 
 /// A cell in which less than this is still open is finished.

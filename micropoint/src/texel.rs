@@ -62,8 +62,8 @@ const LEAST_WIDTH: f64 = 8.0;
 /// Texels up to which perspective is followed texel by texel.
 const FEW_TEXELS: f64 = 48.0;
 
-/// Extent in texels beyond which an outline is not followed any more: a polygon that sees this many texels, and the
-/// whole texture several times, sees their mean, and following it row by row would take seconds, or years.
+/// Extent in texels beyond which the mean of the whole texture is taken: a polygon of this size holds the texture several times, and time
+/// grows with the rows that its outline crosses.
 const MOST_TEXELS: f64 = (1 << 16) as f64;
 
 /// Ratio of depths over a polygon up to which perspective does not matter: weights then vary by 0.3 %
@@ -289,7 +289,7 @@ impl<const N: usize> TexelSums<N> {
             return coarser.mean_in_texels(&halved[..len]);
         }
         let size = high - low;
-        // A surface seen edge-on: what it shows is a line of texels, of which the middle will do.
+        // A polygon without area in the texture (a surface seen edge-on): the texel in the middle of the line stands for all.
         if area.abs() <= 1e-9 * size.x.max(size.y).powi(2) {
             let middle = ring.iter().sum::<DVec2>() / len as f64;
             return self.texel(middle.x, middle.y);

@@ -15,7 +15,7 @@ const NONE: u32 = u32::MAX;
 /// Cells on a side of the blocks in which closing depths are summed up.
 const BLOCK: usize = 4;
 
-/// What of a face falls into one cell.
+/// The part of a face in one cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part {
     /// The next part of the same cell.
@@ -62,12 +62,12 @@ impl Extent {
 /// Outline of a whole cell.
 const CELL: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
 
-/// State of one cell.
+/// State of one cell of the tile.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     head: u32,
     count: u32,
-    /// Everything at most this near is hidden.
+    /// Parts whose nearness is at most this are hidden.
     closed: f64,
     /// Area of the opaque parts, overlaps counted twice.
     opaque_area: f64,
@@ -95,7 +95,7 @@ impl Cell {
 /// is a thousand times smaller.
 const COVERED: f64 = 1e-9;
 
-/// What was done and what was not.
+/// Counts of work done and of work skipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct TileCounts {

@@ -6,7 +6,7 @@ use crate::geometry::{ClusterQueue, Geometry, Surface};
 use crate::volume::ViewVolume;
 use glam::DVec2;
 
-/// What is done with faces; see [`Geometry::visit_faces`].
+/// A visitor of faces, for [`Geometry::visit_faces`].
 pub trait FaceVisitor {
     /// Whether anything in a cluster with these bounds matters. Asked once for each cluster that is reached.
     fn wants(&self, bounds: &Bounds) -> bool;
@@ -28,7 +28,7 @@ pub struct VisitMemory {
     projected: Vec<ProjectedVertex>,
 }
 
-/// What [`Geometry::visit_faces`] did and what it skipped.
+/// Counts of what [`Geometry::visit_faces`] visited and skipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct VisitCounts {

@@ -9,12 +9,13 @@ use crate::transport::{Entry, Transport};
 use crate::visible::boxes::Boxes;
 use crate::visible::shaft::Shaft;
 
-/// Rows above 1 by no more than this stay as they are: errors of single factors, which keep the balance of energy exact.
+/// Row sums above 1 by at most this are not corrected: they are errors of single form factors, and correcting them would break the
+/// reciprocity on which the balance of energy rests.
 const LEAST_EXCESS: f64 = 1e-3;
 
 impl Scene {
-    /// Links what exchanges light. `direct` is the irradiance of each patch that does not come from patches, as
-    /// [`Scene::direct`] gives it, or empty for none; it tells where light will be and so where links must be fine.
+    /// Finds the links between patches. `direct` is the irradiance of each patch by lamps, as [`Scene::direct`] gives it, or empty for none;
+    /// links are finer where it is high.
     ///
     /// Without a tolerance ([`SceneOptions::tolerance`](crate::SceneOptions::tolerance)) every pair of patches gets its link. With one, patches are
     /// linked as large as it permits (\[3\]), and divided down to the smallest size where it asks for that.
@@ -63,7 +64,8 @@ fn rows_of(scene: &Scene, links: &[Link]) -> (Vec<usize>, Vec<Entry>) {
 }
 
 impl Transport {
-    /// Of links between leaves that were found elsewhere and the direct irradiance of each leaf; what is between is looked up where it is needed.
+    /// The transport of given links between leaves and the direct irradiance of each leaf. The occluders between the ends
+    /// of each link are looked up here.
     pub(crate) fn of_links(scene: Scene, links: Vec<Link>, direct: &[Rgb]) -> Self {
         let boxes = Boxes::new(&scene.occluders);
         let mut found = Found { links, ..Found::default() };

@@ -1,7 +1,8 @@
-//! Light per vertex, for drawing.
+//! Irradiance and radiosity per vertex, for drawing (final gather).
 //!
-//! A patch's mean is good enough as a source of light for others, but seen itself it shows its borders. So the light at each vertex is
-//! gathered once more: from the patches that its own patches are linked with, by Lambert's formula and exact clipping.
+//! The mean radiosity of a patch is accurate enough as a source for other patches, but drawn directly it shows the borders of the patches. So
+//! the irradiance at each vertex is gathered from the elements that the patches around it are linked with: Lambert's formula for the
+//! parts of each source that occluders leave, which are cut exactly.
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -17,12 +18,12 @@ use crate::tree::ElementId;
 use crate::visible::parts::Pieces;
 use pointillist_parallel as parallel;
 
-/// Where light is gathered for a vertex on the rim of a surface: this share of the way to its patches' centres. On the rim itself
-/// the share of a wall that begins there is not defined.
+/// Irradiance is gathered at a point moved from the vertex by this share of the way to the mean centre of its patches. On an edge that two
+/// surfaces share, the share of the other surface is discontinuous and has no value.
 const INWARD: f64 = 0.02;
-/// Below this share of the largest irradiance a vertex is in the dark for good, such as the floor under a box.
+/// A vertex whose irradiance is below this share of the largest counts as covered, such as one of the floor under a box.
 const BURIED: f64 = 1e-9;
-/// Normals that agree to this many parts share vertices.
+/// Normals are rounded to multiples of 1 over this before they are compared; sides with equal normals share vertices.
 const NORMAL_STEPS: f64 = 1e6;
 
 /// Light at a vertex of one side of a surface.
@@ -32,16 +33,16 @@ pub struct BakedVertex {
     pub position: DVec3,
     /// Unit normal of the side.
     pub normal: DVec3,
-    /// What arrives from patches, that is, without the lamps' direct light: power per area.
+    /// Irradiance from patches, without the direct light of lamps: power per area.
     pub irradiance: Rgb,
-    /// What leaves: emission and all that is reflected, direct light included.
+    /// Emitted and reflected power per area, direct light of lamps included.
     pub radiosity: Rgb,
 }
 
 /// A triangle between baked vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BakedTriangle {
-    /// Counter-clockwise seen from its side.
+    /// Indices into [`Baked::vertices`], counter-clockwise seen from its side.
     pub vertices: [u32; 3],
     /// Index of the surface it is a part of.
     pub surface: u32,
@@ -49,8 +50,8 @@ pub struct BakedTriangle {
     pub back: bool,
 }
 
-/// A scene's light, per vertex. Vertices are shared between patches of one plane and material, and split where the
-/// surface bends or changes; patches next to smaller ones use their vertices too, so that there are no cracks.
+/// Light per vertex, with the triangles between the vertices. Patches share a vertex if their normals, materials and parts of the surface
+/// are the same. The outline of a patch includes the vertices of smaller neighbours on its edges, so that there are no T-junctions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Baked {
     /// Vertices, in the order in which triangles first use them.
@@ -59,23 +60,23 @@ pub struct Baked {
     pub triangles: Vec<BakedTriangle>,
 }
 
-/// Plane and material, as bits.
+/// Number of a combination of normal, material and part of a surface; vertices are shared within one.
 type Group = u32;
 
 struct Place {
     position: DVec3,
-    /// Leaves that meet here.
+    /// Leaves that have this vertex on their outline.
     leaves: Vec<ElementId>,
 }
 
 impl Solution<'_> {
-    /// The light at every vertex.
+    /// Irradiance and radiosity at every vertex. Cost: for each vertex, the links of the patches around it.
     #[must_use]
     pub fn bake(&self) -> Baked {
         self.bake_with(&|_| ())
     }
 
-    /// As [`Solution::bake`], and says for every vertex, from any thread, which share of the work is done.
+    /// As [`Solution::bake`]; `done` is called for every vertex, from any thread, with the share of the work that is done (0 to 1).
     #[must_use]
     pub fn bake_with(&self, done: &(dyn Fn(f64) + Sync)) -> Baked {
         let mut mesh = Mesh::new(self.transport);
@@ -90,7 +91,7 @@ impl Solution<'_> {
         mesh.finish(&light)
     }
 
-    /// Irradiance at one place, the mean of what its leaves' links say.
+    /// Irradiance at one place: the mean over its leaves of what arrives along the links of the leaf and of the elements above it.
     fn light_at(&self, place: &Place, pieces: &mut Pieces) -> Rgb {
         let transport = self.transport;
         let tree = &transport.scene.tree;
@@ -138,7 +139,7 @@ struct Mesh<'t> {
     groups: Vec<Group>,
     keys: HashMap<(u32, Group), u32>,
     places: Vec<Place>,
-    /// Ring of places of each leaf, and the place in its middle if it is drawn as a fan.
+    /// For each leaf the places on its outline, and the place in its middle if it is drawn as a fan around it.
     rings: Vec<(ElementId, Vec<u32>, Option<u32>)>,
 }
 
@@ -188,7 +189,7 @@ impl<'t> Mesh<'t> {
         }
     }
 
-    /// Vertices of smaller neighbours on an edge.
+    /// Appends the vertices of smaller neighbours between two corners of a leaf, in order.
     fn between(&mut self, a: u32, b: u32, group: Group, leaf: ElementId, ring: &mut Vec<u32>) {
         let Some(middle) = self.transport.scene.tree.known_middle(a, b) else { return };
         let Some(&place) = self.keys.get(&(middle, group)) else { return };
@@ -198,8 +199,8 @@ impl<'t> Mesh<'t> {
         self.between(middle, b, group, leaf, ring);
     }
 
-    /// Gives vertices that no light reaches the mean of their neighbours that some reaches, or the dark under a box would spread over the
-    /// patches that reach under it.
+    /// Gives covered vertices ([`BURIED`]) the mean irradiance of those of their neighbours that are not covered. Otherwise interpolation would
+    /// spread the dark from under a box over the visible part of the patches that extend under it.
     fn lift_buried(&self, light: &mut [Rgb]) {
         let sum = |v: Rgb| v.iter().sum::<f64>();
         let largest = light.iter().map(|&v| sum(v)).fold(0.0, f64::max);
@@ -243,7 +244,7 @@ impl<'t> Mesh<'t> {
         for (leaf, ring, middle) in &self.rings {
             let side = &scene.sides[scene.tree.elements[*leaf as usize].side as usize];
             let mut push = |vertices: [u32; 3]| {
-                // An edge too short to be divided has its middle at one of its ends.
+                // The middle of an edge too short to be divided rounds to one of its ends: no triangle.
                 let [a, b, c] = vertices;
                 if a == b || b == c || c == a {
                     return;

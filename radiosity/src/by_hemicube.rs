@@ -12,9 +12,9 @@ use pointillist_parallel as parallel;
 impl Scene {
     /// As [`Scene::transport`] without a tolerance, with a hemicube of `resolution` cells at each patch's centre.
     ///
-    /// One point stands for a whole patch, which for neighbours is far from the truth however fine the hemicube is: form factors from
-    /// both ends are averaged, which helps a little and makes them reciprocal. The errors of links are unknown and given as half
-    /// of the difference between both ends.
+    /// One point is sampled for a whole patch, which is inaccurate for neighbouring patches at any resolution. Form factors from both ends are
+    /// averaged, which reduces the error a little and makes them reciprocal. The error of a link is unknown; half of the difference
+    /// between both ends is given for it.
     ///
     /// # Errors
     /// [`RadiosityError::CountMismatch`] and [`RadiosityError::DirectIrradiance`] for `direct`, [`RadiosityError::Option`] for a resolution outside 1 to 4096.

@@ -1,22 +1,23 @@
-//! Surfaces cut along the lines where others stand on them.
+//! Surfaces cut along the contact lines of other surfaces that stand on them.
 //!
-//! Light jumps there: the floor under a box is dark, beside it is not. A patch with both would be of a mean brightness that is
-//! nowhere, and would give that to the foot of the box.
+//! Radiosity is discontinuous there: the floor is dark under a box and lit beside it (discontinuity meshing of order 0). A patch on both
+//! sides of the line would have the mean of both radiosities, and would light the foot of the box with it.
 
 use glam::DVec3;
 
 use crate::polygon::{Polygon, clipped, edges};
 
-/// Edges this near to a surface, relative to it, stand on it.
+/// An edge stands on a surface if the distance of both its ends to the plane is at most this, times the radius of the surface.
 const STANDING: f64 = 1e-7;
-/// Parts of a surface on one side of a cut that reach less far, relative to it, are none.
+/// A cut is left out if one of its sides extends less far from the cut than this, or if the contact line within the part is shorter, times
+/// the radius of the part.
 const LEAST_PART: f64 = 1e-6;
-/// Planes whose normals agree this well are parallel.
+/// Planes are parallel if the sine of the angle between their normals is below this.
 const PARALLEL: f64 = 1e-6;
-/// Most parts of one surface; further contacts are left to the patches' size.
+/// Most parts of one surface. Further contact lines are not cut along; patches there are only limited by the patch size.
 const MAX_PARTS: usize = 256;
 
-/// The parts of a surface between the edges of `others` that stand on it; one if there are none.
+/// The parts into which the edges of `others` that stand on a surface divide it; the surface itself if there are none.
 pub(crate) fn parts(polygon: &Polygon, others: &[Polygon]) -> Vec<Polygon> {
     let mut list = vec![polygon.clone()];
     let standing = STANDING * polygon.radius();
@@ -35,7 +36,7 @@ pub(crate) fn parts(polygon: &Polygon, others: &[Polygon]) -> Vec<Polygon> {
     list
 }
 
-/// Both sides of a plane if the contact runs through the part, else the part.
+/// The part divided by the plane of `other`, if the contact line from `a` to `b` runs through it; else the part as it is.
 fn divided(part: &Polygon, other: &Polygon, (a, b): (DVec3, DVec3)) -> Vec<Polygon> {
     let least = LEAST_PART * part.radius();
     let (low, high) = other.heights_of(part.vertices());
@@ -49,7 +50,7 @@ fn divided(part: &Polygon, other: &Polygon, (a, b): (DVec3, DVec3)) -> Vec<Polyg
     }
 }
 
-/// Whether a piece of the segment is inside.
+/// Whether the segment has a piece inside the part that is longer than [`LEAST_PART`].
 fn runs_through(part: &Polygon, a: DVec3, b: DVec3) -> bool {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for (p, q) in edges(part.vertices()) {

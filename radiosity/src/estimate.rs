@@ -1,19 +1,19 @@
-//! The radiosity to expect before the scene is solved: it tells where links must be fine.
+//! An estimate of the radiosity before the scene is solved, by which refinement weighs the errors of links.
 
 use crate::rgb::Rgb;
 use crate::scene::Scene;
 
-/// What radiosity to expect, before any is known.
+/// Estimated radiosity of each side and the resulting tolerance of links.
 #[derive(Debug)]
 pub(crate) struct Estimate {
-    /// Of each side, the largest band.
+    /// Estimated radiosity of each side: its largest band, power per area.
     pub(crate) of_side: Vec<f64>,
-    /// What a link may be off.
+    /// Tolerance of a link, power per area.
     pub(crate) allowed: f64,
 }
 
 impl Estimate {
-    /// Emission, reflected direct light, and an even ambient of all that was reflected before (\[2\], eq. 8).
+    /// Emission, reflected direct light, and a uniform ambient term for all further reflections (\[2\], eq. 8).
     pub(crate) fn new(scene: &Scene, direct: &[Rgb]) -> Self {
         let largest = |v: Rgb| v.into_iter().fold(0.0, f64::max);
         let mut first = vec![0.0_f64; scene.sides.len()];

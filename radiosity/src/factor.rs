@@ -5,10 +5,10 @@ use crate::kernel::pair::{self, Mutual};
 use crate::visible::cubature::{self, Goal};
 use crate::visible::parts::Pieces;
 
-/// Cells of a single pair are halved at least so often: two levels that agree by chance would end the search.
+/// Least depth of the cells of a single pair: with fewer levels, two that agree by chance would end refinement.
 const SINGLE_DEPTH: u8 = 2;
 
-/// The share of what leaves one polygon that arrives at another.
+/// The share of the power that leaves one polygon diffusely and arrives at another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FormFactor {
@@ -27,9 +27,10 @@ pub struct FactorOptions {
     pub unoccluded: f64,
     /// Relative error where something is. Default: 1e-5.
     pub occluded: f64,
-    /// Absolute error that is good enough where something is between: what is nearly hidden needs few digits. Default: 1e-9.
+    /// Absolute error that is accepted past occluders, whatever the relative error: a pair that is nearly hidden needs few digits.
+    /// Default: 1e-9.
     pub absolute: f64,
-    /// Most cells that one pair is sampled in; if they do not suffice, the error says so. Default: 20,000.
+    /// Most cells that are sampled for one pair. If they do not suffice, [`FormFactor::error`] is above what was asked for. Default: 20,000.
     pub max_cells: usize,
 }
 
@@ -85,7 +86,7 @@ impl Default for FactorOptions {
 
 /// The form factor from the front of `from` to the front of `to`, past `occluders`, which hide from both sides.
 ///
-/// What `occluders` hold beside, behind or in the plane of the two is skipped. Coordinates are moved and scaled first, so that
+/// Parts of `occluders` beside, behind or in the plane of the two polygons are ignored. Coordinates are moved and scaled first, so that
 /// neither a distant origin nor the unit of length matters.
 ///
 /// Where nothing is between, the error is about that of [`FactorOptions::unoccluded`], also for polygons that touch.

@@ -1,4 +1,4 @@
-//! Light at free points: exact irradiance from the patches' polygons.
+//! Irradiance at free points, by Lambert's formula for the visible parts of patches.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use crate::solve::Solution;
 use crate::tree::ElementId;
 use crate::visible::parts::{Eye, Pieces, Source};
 
-/// Groups of patches whose radius is below this share of their distance count as one.
+/// Elements whose radius is below this share of their distance are not divided into their children.
 const FAR: f64 = 0.15;
 
 impl Solution<'_> {

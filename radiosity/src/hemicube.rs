@@ -1,8 +1,8 @@
 //! Form factors of a point by hemicube: five faces of cells, each of which takes a known share of the hemisphere \[2\].
 //!
-//! Two kinds. The *classic* one asks in the middle of each cell which polygon is nearest, and gives it the whole cell. The
-//! *exact* one cuts what is visible of each polygon by the cells and gives it the covered share of each: nothing falls between samples, so there
-//! is no aliasing, and what is left is that a cell's share is taken to be spread evenly over it.
+//! Two kinds. The *classic* one samples the middle of each cell and assigns the cell to the nearest polygon there. The *exact* one cuts the
+//! visible part of each polygon by the cells and assigns it the covered share of each. That has no aliasing; the remaining error is that the
+//! form factor of a cell is taken as uniform over the cell.
 
 use glam::{DVec2, DVec3};
 use pointillist_dice::{Accumulator, Grid, accumulate};
@@ -11,21 +11,21 @@ use crate::kernel::lambert;
 use crate::polygon::{Polygon, clipped};
 use crate::visible::parts::{Eye, Pieces, Source};
 
-/// What a cell says.
+/// How cells are assigned to polygons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HemicubeKind {
-    /// The share of it that each polygon covers.
+    /// By the share of the cell that each polygon covers.
     Exact,
-    /// Which polygon is in its middle.
+    /// To the polygon that is visible in its middle.
     Classic,
 }
 
-/// A hemicube of some resolution, to be used at many points.
+/// A hemicube of a fixed resolution, with its form factors of cells and its memory, for any number of points.
 #[derive(Clone, Debug)]
 pub struct Hemicube {
     kind: HemicubeKind,
     size: usize,
-    /// Shares of the cells of the top, and of the cells of a side, row by row from below.
+    /// Form factors of the cells of the top, and of the cells of a side, row by row from below.
     top: Vec<f64>,
     side: Vec<f64>,
     faces: Vec<Buffer>,
@@ -137,7 +137,7 @@ impl Hemicube {
         let (size, shares) = (self.size, if face.is_top { &self.top } else { &self.side });
         let mut sum = 0.0;
         let result = accumulate(&flat, &Grid::UNIT, &mut self.accumulator, |run| {
-            // Rounding may put a corner of the ring a hair outside of the face.
+            // Rounding may put a corner of the ring outside of the face by an ulp.
             if run.row < 0 {
                 return;
             }

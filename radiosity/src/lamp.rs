@@ -1,4 +1,4 @@
-//! Light that comes from outside of the patches: points, directions, and areas that are no surface of the scene.
+//! Direct light of lamps: points, directions, and areas that are not surfaces of the scene.
 
 use glam::DVec3;
 
@@ -13,27 +13,27 @@ use crate::visible::cubature;
 use crate::visible::parts::{Eye, Pieces, Source};
 use pointillist_parallel as parallel;
 
-/// Gauss points along each side of a visible piece.
+/// Gauss points along each side of a visible piece of a patch.
 const ORDER: usize = 4;
-/// The same where the lamp is within two sizes of the patch.
+/// The same where the lamp is nearer than twice the size of the patch.
 const NEAR_ORDER: usize = 10;
 
 /// Irradiance at an unshadowed point with this unit normal.
 pub type Irradiance<'l> = &'l (dyn Fn(DVec3, DVec3) -> Rgb + Sync);
 
-/// A light that is no surface.
+/// A light source that is not a surface of the scene.
 #[derive(Clone, Copy)]
 pub enum Lamp<'l> {
-    /// In one point.
+    /// A point source.
     Point {
-        /// Where.
+        /// Position, in the scene's coordinates.
         position: DVec3,
         /// What it gives where nothing shadows it.
         irradiance: Irradiance<'l>,
         /// Whether surfaces shadow it.
         shadow: bool,
     },
-    /// Far away.
+    /// A directional source.
     Directional {
         /// The way the light travels.
         direction: DVec3,
@@ -42,11 +42,11 @@ pub enum Lamp<'l> {
         /// Whether surfaces shadow it.
         shadow: bool,
     },
-    /// A polygon that shines to its front and hides nothing.
+    /// A polygon that emits diffusely from its front and hides nothing.
     Area {
         /// Its outline.
         polygon: &'l Polygon,
-        /// Power per area.
+        /// Exitance: power per area.
         exitance: Rgb,
         /// Whether surfaces shadow it.
         shadow: bool,
@@ -102,7 +102,7 @@ impl Scene {
         Ok(self.tree.leaves().into_iter().map(of).collect())
     }
 
-    /// Names the patch that a lamp gives no light but a number that is none.
+    /// The error for a lamp whose irradiance on a patch is NaN, negative or too large.
     fn not_lit(&self, leaf: ElementId, problem: NoLight) -> RadiosityError {
         let patch = self.tree.leaves().iter().position(|&l| l == leaf).unwrap_or_default();
         let centre = self.outward(self.tree.elements[leaf as usize].polygon.centre()).to_array();
@@ -158,7 +158,7 @@ impl Scene {
         let source = Source::new(polygon);
         let between = if shadow { &self.occluders[..] } else { &[] };
         let towards = |o: &&Polygon| match eye {
-            // What is in front of the eye, seen from the patch, only.
+            // Only occluders between the patch and the point of the lamp.
             Eye::Point(p) => {
                 (polygon.centre() - o.centre()).length()
                     < (p - polygon.centre()).length() + o.radius() + polygon.radius()

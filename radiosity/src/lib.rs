@@ -80,3 +80,8 @@ pub use scene::{Scene, SceneOptions};
 pub use solve::{Solution, SolveOptions};
 pub use surface::Surface;
 pub use transport::Transport;
+
+/// The README's examples, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

@@ -27,23 +27,23 @@ pub struct RuleCounts {
     pub contours: usize,
 }
 
-/// What was skipped and why, and what was done.
+/// Counts of links by kind, of pairs that were skipped by reason, and of errors by cause.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct LinkCounts {
     /// Links: pairs of patches, or of groups of them, that exchange light.
     pub links: usize,
-    /// Of them, with something between.
+    /// Links with occluders between their elements.
     pub partly_hidden: usize,
     /// Unoccluded links, by the rule that computed them.
     pub by_rule: RuleCounts,
-    /// Pairs that face apart.
+    /// Pairs skipped because no part of one is in front of the other.
     pub facing_apart: usize,
-    /// Pairs of which one neither emits nor reflects.
+    /// Pairs skipped because one neither emits nor reflects.
     pub black: usize,
-    /// Pairs hidden from each other by a single surface.
+    /// Pairs skipped because a single surface hides one from the other entirely.
     pub hidden: usize,
-    /// Pairs whose form factors are below the bound.
+    /// Pairs skipped because their form factors are below the bound of the options.
     pub below_bound: usize,
     /// The largest sum of form factors that any patch lost to that bound.
     pub left_out: f64,

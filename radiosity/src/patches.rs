@@ -5,13 +5,13 @@ use crate::transport::Transport;
 use crate::tree::ElementId;
 use glam::DVec3;
 
-/// What one patch is.
+/// One patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Patch {
-    /// Its place in all lists about patches.
+    /// Its index in all lists about patches.
     pub index: usize,
-    /// Which surface it is a part of.
+    /// Index of the surface that it is a part of.
     pub surface: usize,
     /// Whether it is on the surface's back.
     pub back: bool,

@@ -16,17 +16,18 @@ use crate::visible::parts::{Eye, Pieces, Source};
 use crate::visible::shaft::Shaft;
 use pointillist_parallel as parallel;
 
-/// How far towards the centre corners are moved when the light on them is compared: on an edge that two walls share, the share of
-/// the other wall jumps.
+/// The irradiance at corners is evaluated at points moved towards the centre by this share of the way: on an edge that two walls share,
+/// the share of the other wall is discontinuous.
 const INWARD: f64 = 0.1;
-/// Of what a link is allowed to be off, the share that its form factor may be.
+/// Share of a link's tolerance that the error of its form factor may use up.
 const FACTOR_SHARE: f64 = 0.1;
-/// How uneven a source's radiosity is taken to be, as a share of it.
+/// Assumed variation of the radiosity over a source, as a share of its mean.
 const UNEVEN: f64 = 0.05;
-/// Where the share of the other varies by more than this, light or no light, a link is too rough: rows would add up to too much.
+/// A link is too coarse, whatever its radiosity, if the share of the hemisphere that one element takes varies over the other by more than
+/// this: sums of rows would exceed 1 by too much.
 const ROUGHEST: f64 = 0.15;
 
-/// All links.
+/// The result of refinement: all links.
 #[derive(Debug, Default)]
 pub(crate) struct Found {
     pub(crate) links: Vec<Link>,
@@ -57,7 +58,7 @@ struct Task {
 }
 
 impl Found {
-    /// Appends what a task found; gives back the pairs that it put aside.
+    /// Appends the links and counts of a task; returns the pairs that it put aside.
     fn take(&mut self, task: Task) -> Vec<Wanted> {
         let shift = self.between.len() as u32;
         let moved = |l: Link| Link { between: (l.between.0 + shift, l.between.1 + shift), ..l };
@@ -110,7 +111,7 @@ pub(crate) fn refine(
         round = parallel::map_with(wanted.len(), Pieces::default, |pieces, i| {
             let mut task = Task::default();
             let Wanted { pair, which, between } = &wanted[i];
-            // What cannot be divided any further is linked as it is.
+            // Elements that cannot be divided any further are linked as they are.
             let last = !divided || scene.tree.elements[*which as usize].is_leaf();
             refiner.visit(*pair, between, last, &mut task, pieces);
             task
@@ -182,7 +183,7 @@ impl Refiner<'_> {
         }
         let mut shaft = Shaft::new(&a.polygon, &b.polygon);
         let of = |i: u32| &self.scene.occluders[i as usize];
-        // Most is told by the box already.
+        // The box decides most cases, at less cost than the planes.
         let mut between: Vec<u32> = list.iter().copied().filter(|&i| shaft.may_hold(of(i))).collect();
         if !between.is_empty() {
             shaft = shaft.with_planes();
@@ -234,7 +235,7 @@ impl Refiner<'_> {
             let gap = (receiver.polygon.centre() - source.polygon.centre()).length()
                 - receiver.polygon.radius()
                 - source.polygon.radius();
-            // At most this much of the hemisphere.
+            // Upper bound on the share of the hemisphere.
             let most = source.polygon.area() / (std::f64::consts::PI * gap * gap);
             if gap > 0.0 && radiosity * most < allowed && most < ROUGHEST {
                 return false;
@@ -318,7 +319,7 @@ impl Refiner<'_> {
         });
     }
 
-    /// In a hierarchy form factors need not be better than links.
+    /// In a hierarchy form factors need no smaller error than the tolerance of links.
     fn accuracy(&self, a: &Element, b: &Element) -> FactorOptions {
         let options = self.scene.options.factors;
         if self.scene.options.tolerance.is_none() {

@@ -1,9 +1,10 @@
-//! Rows of the matrix: what a patch sees, all told.
+//! Row sums of the matrix of form factors, and their correction to at most 1.
 
 use crate::transport::Transport;
 
 impl Transport {
-    /// Sum of the form factors of each patch, those of the patches that it is part of included: 1 in a closed scene.
+    /// Sum of the form factors of each patch, in the order of the patches. Links of the elements that contain the patch are included. In a
+    /// closed scene the exact sum is 1 (\[2\]). Cost: every link and every element once.
     #[must_use]
     pub fn row_sums(&self) -> Vec<f64> {
         let mut of_element = vec![0.0; self.scene.tree.elements.len()];
@@ -12,20 +13,22 @@ impl Transport {
         }
         for (i, element) in self.scene.tree.elements.iter().enumerate() {
             for child in element.children() {
-                // Children come after their parents, so each is complete before it is handed on.
+                // Children have larger indices than their parents, so a parent's sum is complete here.
                 of_element[child as usize] += of_element[i];
             }
         }
         self.leaves.iter().zip(&self.scale).map(|(&leaf, scale)| of_element[leaf as usize] * scale).collect()
     }
 
-    /// Scales rows so that none adds up to more than 1, and gives the largest relative change
+    /// Scales rows so that no sum exceeds 1, and returns the largest relative change of a row
     /// ([`LinkCounts::row_change`](crate::LinkCounts::row_change)).
     ///
-    /// A link of groups is a mean: too much for a patch in a corner, too little for its neighbours. What a whole surface sees is
-    /// right, and no patch sees more than all. So what rows have above 1 goes to the surface's others, each getting the same share of
-    /// what it lacks: the surface's sum stays, and where that is all there is to see every row becomes 1, as it must be. Only
-    /// what a surface has above 1 on the whole, by errors of its factors, is lost.
+    /// A link between groups holds the mean form factor of its patches. It is too large for a patch in a corner and too small for the
+    /// patch's neighbours, while the area-weighted sum over the whole surface is right. For each surface:
+    ///
+    /// 1. Rows with a sum above 1 are scaled to 1. `above` is the area times the excess, summed over these rows.
+    /// 2. `above` is given to the rows with sums between 0 and 1, in proportion to what each lacks to 1. The surface's sum stays the same.
+    /// 3. If the rows lack less than `above` in total, all become 1 and the rest of the excess, an error of the factors, is dropped.
     pub(crate) fn even_rows(&mut self) -> f64 {
         let sums = self.row_sums();
         let (mut first, mut most) = (0, 0.0_f64);

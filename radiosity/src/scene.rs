@@ -18,7 +18,7 @@ pub struct SceneOptions {
     pub patch: f64,
     /// Where light changes fast, patches are divided down to this longest edge. Default: infinite, that is, never.
     pub smallest_patch: f64,
-    /// What one link between patches of a hierarchy may be off, as a share of the scene's mean radiosity; `None` links every
+    /// Tolerance of one link of a hierarchy, as a share of the scene's mean radiosity; `None` links every
     /// patch with every other one (the full matrix). Default: `None`.
     pub tolerance: Option<f64>,
     /// Most patches and patches of patches. Default: 4 million.
@@ -119,12 +119,12 @@ pub(crate) struct Side {
     pub(crate) back: bool,
     pub(crate) reflectance: Rgb,
     pub(crate) emission: Rgb,
-    /// 0, or different for each part of a surface that others stand on: light jumps between parts.
+    /// 0, or different for each part of a surface that others stand on: radiosity is discontinuous between parts.
     pub(crate) part: u32,
 }
 
 impl Side {
-    /// Whether it gives no light whatever it gets.
+    /// Whether it neither reflects nor emits.
     pub(crate) fn is_black(&self) -> bool {
         self.reflectance == [0.0; 3] && self.emission == [0.0; 3]
     }
@@ -135,10 +135,10 @@ impl Side {
 pub struct Scene {
     pub(crate) tree: Tree,
     pub(crate) sides: Vec<Side>,
-    /// Surfaces as what hides; also those that are black.
+    /// All surfaces, black ones included, as occluders.
     pub(crate) occluders: Vec<Polygon>,
     pub(crate) options: SceneOptions,
-    /// Scene coordinates are `(p + by) · scale`.
+    /// Internal coordinates are `(p + by) · scale`, for `p` in the caller's (the scene's) coordinates.
     pub(crate) by: DVec3,
     pub(crate) scale: f64,
     dropped: usize,
@@ -216,12 +216,12 @@ impl Scene {
         self.tree.elements.iter().filter(|e| e.is_leaf()).count()
     }
 
-    /// To scene coordinates.
+    /// From the caller's to internal coordinates.
     pub(crate) fn inward(&self, p: DVec3) -> DVec3 {
         (p + self.by) * self.scale
     }
 
-    /// From scene coordinates.
+    /// From internal to the caller's coordinates.
     pub(crate) fn outward(&self, p: DVec3) -> DVec3 {
         p / self.scale - self.by
     }

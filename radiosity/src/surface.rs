@@ -1,4 +1,4 @@
-//! What a scene is made of.
+//! Surfaces, the input of a scene.
 
 use glam::DVec3;
 
@@ -11,7 +11,7 @@ use crate::rgb::{Rgb, is_light};
 pub struct Surface {
     /// Corners, counter-clockwise seen from the front.
     pub vertices: Vec<DVec3>,
-    /// Share of the arriving light that leaves again, evenly in all directions: 0 to 1.
+    /// Diffuse reflectance per band, 0 to 1.
     pub reflectance: Rgb,
     /// Exitance of its own, power per area: π times the radiance of a diffuse emitter.
     pub emission: Rgb,

@@ -19,9 +19,9 @@ pub struct Transport {
     pub(crate) entries: Vec<Entry>,
     pub(crate) leaves: Vec<ElementId>,
     pub(crate) boxes: Boxes,
-    /// What each element is a quarter of.
+    /// Parent of each element; `None` for roots.
     pub(crate) parents: Vec<Option<ElementId>>,
-    /// What the row of each patch is multiplied by.
+    /// Factor on the row of each patch, by `even_rows`.
     pub(crate) scale: Vec<f64>,
     /// Irradiance of each patch that does not come from patches.
     pub(crate) direct: Vec<Rgb>,
@@ -55,8 +55,8 @@ impl Transport {
         &self.direct
     }
 
-    /// Replaces the direct light: the irradiance of each patch, in their order, or empty for none. Links stay as they are, as fine as
-    /// the light that they were made for asks. Solutions borrow the transport, so none can be left over from before:
+    /// Replaces the direct light: the irradiance of each patch, in their order, or empty for none. Links stay as they are, refined
+    /// for the direct light that they were made with. Solutions borrow the transport, so none can be left over from before:
     ///
     /// ```compile_fail,E0502
     /// # use pointillist_radiosity::{SolveOptions, Transport};
@@ -80,8 +80,8 @@ impl Transport {
         &self.entries[self.starts[element as usize]..self.starts[element as usize + 1]]
     }
 
-    /// Calls `f` with patch, other patch and form factor between them: what links of groups say is handed to their
-    /// parts in proportion to area.
+    /// Calls `f` with patch, other patch and form factor from the first to the second. A link of groups is distributed over their patches in
+    /// proportion to area.
     pub fn factors(&self, mut f: impl FnMut(usize, usize, f64)) {
         let tree = &self.scene.tree;
         let mut number = vec![0; tree.elements.len()];

@@ -1,4 +1,4 @@
-//! Patches within patches: each polygon divided in four, again and again.
+//! The hierarchy of patches: quadtrees over the sides of surfaces. Each element is a polygon; its four children make it up.
 
 use std::collections::HashMap;
 
@@ -9,17 +9,17 @@ use crate::polygon::Polygon;
 /// Index of an element of the tree.
 pub(crate) type ElementId = u32;
 
-/// A patch of some level.
+/// A patch on some level of the hierarchy.
 #[derive(Clone, Debug)]
 pub(crate) struct Element {
     pub(crate) polygon: Polygon,
-    /// Corners in the list of vertices, as many as the polygon has.
+    /// Indices of the corners in [`Tree::vertices`]; the first three or four, as many as the polygon has.
     pub(crate) corners: [u32; 4],
-    /// The first of four children; 0 for none, which is always a root.
+    /// Index of the first of four children; 0 for a leaf (element 0 is a root, never a child).
     pub(crate) first_child: ElementId,
-    /// Which side of which surface.
+    /// Index of the side in `Scene::sides`.
     pub(crate) side: u32,
-    /// Longest edge.
+    /// Length of the longest edge, in scaled units.
     pub(crate) size: f64,
 }
 
@@ -44,13 +44,13 @@ pub(crate) struct Tree {
     pub(crate) elements: Vec<Element>,
     pub(crate) roots: Vec<ElementId>,
     pub(crate) vertices: Vec<DVec3>,
-    /// Vertices by the bits of their coordinates.
+    /// Index of each vertex by the bits of its coordinates.
     places: HashMap<[u64; 3], u32>,
-    /// What was put between two vertices.
+    /// Index of the vertex in the middle of two others, by their indices, the smaller first.
     middles: HashMap<(u32, u32), u32>,
 }
 
-/// Longest side over shortest from which a quadrangle is divided into a row of squarer ones first.
+/// Quadrangles whose length is more than this times their width are divided into a row of squarer ones before the quadtree begins.
 const ASPECT: f64 = 1.5;
 /// Most quadrangles of such a row.
 const MAX_ROW: usize = 64;
@@ -78,7 +78,7 @@ impl Tree {
     }
 
     fn vertex(&mut self, p: DVec3) -> u32 {
-        // Adding 0 makes −0 and 0 one place.
+        // −0.0 + 0.0 is 0.0: both zeros have the same key.
         let key = [p.x + 0.0, p.y + 0.0, p.z + 0.0].map(f64::to_bits);
         let next = self.vertices.len() as u32;
         let id = *self.places.entry(key).or_insert(next);
@@ -98,7 +98,8 @@ impl Tree {
         id
     }
 
-    /// The vertex between two others, if there is one. Of two that are neighbours in f64 the middle is one of themselves: that is none.
+    /// The vertex in the middle of two others, if an edge between them was divided. `None` also if the two are so near that their middle
+    /// rounds to one of them.
     pub(crate) fn known_middle(&self, a: u32, b: u32) -> Option<u32> {
         self.middles.get(&(a.min(b), a.max(b))).copied().filter(|&middle| middle != a && middle != b)
     }
@@ -113,7 +114,7 @@ impl Tree {
         Some(Element { polygon, corners, first_child: 0, side, size })
     }
 
-    /// Divides a leaf in four; false if its parts would have no area.
+    /// Divides a leaf in four; false, without a change, if one of the parts would have no area.
     pub(crate) fn divide(&mut self, id: ElementId) -> bool {
         let (corners, side) =
             (self.elements[id as usize].corners().to_vec(), self.elements[id as usize].side);
@@ -135,9 +136,10 @@ impl Tree {
         true
     }
 
-    /// Divides until no edge is longer than `size`; false if that takes more than `limit` elements.
+    /// Divides until no edge is longer than `size` (scaled units); false if that takes more than `limit` elements.
     pub(crate) fn divide_all(&mut self, size: f64, limit: usize) -> bool {
-        // No patch has more area than the square of its longest edge: what is too much at once is refused at once.
+        // A patch has at most the area of the square of its longest edge, so at least this many are needed: an impossible size is refused
+        // before any work.
         let least = self.elements.iter().map(|e| e.polygon.area()).sum::<f64>() / (size * size);
         if least > limit as f64 {
             return false;
@@ -145,7 +147,7 @@ impl Tree {
         let mut next = 0;
         while next < self.elements.len() {
             if self.elements[next].size > size && !self.divide(next as u32) {
-                // Too small for its parts to have an area in f64: stays as it is.
+                // Its parts would have no area in `f64`: it stays a leaf.
                 self.elements[next].size = size;
             }
             if self.elements.len() > limit {
@@ -177,7 +179,7 @@ impl Tree {
     }
 }
 
-/// A long quadrangle as a row of squarer ones.
+/// A long quadrangle as a row of at most [`MAX_ROW`] squarer ones; as it is if its sides differ by less than [`ASPECT`].
 fn squarer([a, b, c, d]: [DVec3; 4]) -> Vec<[DVec3; 4]> {
     let length = 0.5 * ((b - a).length() + (c - d).length());
     let width = 0.5 * ((d - a).length() + (c - b).length());
@@ -189,7 +191,7 @@ fn squarer([a, b, c, d]: [DVec3; 4]) -> Vec<[DVec3; 4]> {
     }
     let count = ((length / width).round() as usize).clamp(1, MAX_ROW);
     let along = |p: DVec3, q: DVec3, i: usize| {
-        // The ends are the corners bit for bit, so that neighbours share them.
+        // The ends are the corners bit for bit: quadrangles that share corners then share vertices.
         if i == 0 {
             p
         } else if i == count {

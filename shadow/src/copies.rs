@@ -1,7 +1,8 @@
 //! Copies of a triangle among the casters of a screen, taken together.
 //!
-//! Of n coincident casters every receiver would ask n times, and n coincident receivers n² times. Copies of one opacity α are
-//! one caster of opacity 1 − (1 − α)ⁿ; under the paper's rule, where opacities of a layer add up, they stay apart.
+//! Otherwise every receiver would be compared with each of n coincident casters, and n coincident receivers would need
+//! n² comparisons. Copies of one opacity α are one caster of opacity 1 − (1 − α)ⁿ. Under the paper's rule, where the
+//! opacities of a layer add up, they stay apart.
 
 use crate::casters::Caster;
 use glam::DVec3;

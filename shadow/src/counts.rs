@@ -1,6 +1,6 @@
-//! What was done and what was skipped.
+//! Counts of work done and of work skipped.
 
-/// What was done and what was skipped, summed over calls.
+/// Counts of work done and of work skipped, summed over calls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ShadowCounts {

@@ -1,4 +1,4 @@
-//! The correlated rule: a receiver minus everything that stands in its light.
+//! The correlated rule: the area of a receiver that is left when all casters in front of it are subtracted.
 
 use crate::casters::Caster;
 use crate::query::{Measure, Query};
@@ -9,7 +9,7 @@ use pointillist_dice::{ConvexPolygon, convex};
 use pointillist_micropoint::{Face, Front, Layer, in_front};
 use std::cmp::Ordering;
 
-/// Overlaps below this share of a receiver are rounding.
+/// Overlaps with an area below this, times that of the receiver, are taken for rounding.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// Memory of this rule.
@@ -65,7 +65,7 @@ fn find_blockers(
 ) -> bool {
     work.blockers.clear();
     let (low, high) = target.bounds;
-    // What hid the last target often hides the next.
+    // The caster that hid the last target often hides the next one.
     let nearby = query.nearby;
     let last = nearby.iter().position(|n| n.index == work.last_hider);
     let rest = nearby.iter().enumerate().filter(|(i, _)| Some(*i) != last).map(|(_, n)| n);
@@ -84,7 +84,7 @@ fn find_blockers(
         let lower = Layer { face, outline, nearness: target.nearness };
         let front = in_front(query.lens, DVec2::ZERO, upper, lower, false);
         if front == Front::Everywhere && place == Place::Over {
-            // A receiver is small, so a mask mostly shows it nothing but holes or nothing but leaf.
+            // Receivers are small: over most of them a mask is 0 or 1 throughout.
             let opacity = query.opacity(caster, outline);
             if opacity >= 1.0 {
                 work.last_hider = c;

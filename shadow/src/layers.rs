@@ -13,10 +13,10 @@ struct Cast {
     opacity: f64,
 }
 
-/// Depth ranges closer than this, relative to their nearness, touch.
+/// Depth ranges whose gap is at most this, times their nearness, touch and belong to one layer.
 const TOUCH: f64 = 1e-7;
 
-/// Memory of this rule.
+/// Reusable memory of the paper's rule.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
     casts: Vec<Cast>,
@@ -67,7 +67,7 @@ fn cut_by_cells(polygon: &[DVec2], size: f64, mut visit: impl FnMut(IVec2, &Conv
     });
 }
 
-/// What reaches a shadow micropoint through the layers before it in its cell.
+/// Transmittance of the layers between the light and a shadow micropoint, in its cell.
 fn transmittance(
     query: &Query<'_>,
     face: &Face,

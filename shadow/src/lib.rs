@@ -44,3 +44,8 @@ pub use options::{Resolution, ShadowOptions};
 pub use receiver::{Receivers, Viewer};
 pub use scratch::ShadowScratch;
 pub use screen::Emitter;
+
+/// The README's examples, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

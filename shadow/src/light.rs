@@ -135,7 +135,7 @@ impl<'a> ShadowLight<'a> {
             Emitter::Directional { direction } => -direction,
         };
         let slope = normal.normalize_or_zero().dot(towards.normalize_or_zero());
-        // Edge-on to the light: no area to compare, and nothing to gain.
+        // Edge-on to the light: its area on the screen is rounding, and so is the light that it gets.
         let towards = if slope.abs() > EDGE_ON { slope } else { 0.0 };
         if (face.front && towards > 0.0) || (!face.front && towards < 0.0) { Side::Lit } else { Side::Dark }
     }

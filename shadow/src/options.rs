@@ -1,4 +1,4 @@
-//! How shadows are found.
+//! Options of a light.
 
 use pointillist_micropoint::Occlusion;
 
@@ -12,7 +12,7 @@ pub enum Resolution {
     Cells(u32),
 }
 
-/// How shadows are found.
+/// Options of a light: the occlusion rule, and the resolution of its grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ShadowOptions {

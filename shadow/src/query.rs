@@ -1,10 +1,10 @@
-//! What the occlusion rules look casters up with, and how they measure areas.
+//! What both occlusion rules use: the casters of a target's group with their opacity, and the measure of areas.
 
 use crate::casters::{Caster, Nearby};
 use glam::DVec2;
 use pointillist_micropoint::{Face, Geometry, Lens, LensKind, TexturedOpacity};
 
-/// What casters are looked up with.
+/// A target with the casters that may darken it.
 pub(crate) struct Query<'a> {
     pub(crate) lens: &'a Lens,
     pub(crate) geometry: &'a Geometry,

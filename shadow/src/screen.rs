@@ -1,4 +1,4 @@
-//! Light screens: what a camera is to the eye, a light screen is to a light.
+//! Light screens: the image planes onto which receivers and casters are projected from a light.
 
 use crate::error::ShadowError;
 use glam::{DVec2, DVec3};

@@ -5,6 +5,7 @@
 
 mod clip;
 mod cut;
+mod filled;
 mod hide;
 
 pub use clip::clipping_divides;
@@ -12,7 +13,10 @@ pub use cut::{
     Part, cut_equals_accumulate, cut_pieces_lie_in_their_cells, cut_shares_edges,
     cut_window_is_part_of_the_whole, parts,
 };
-
+pub use filled::{
+    closed_rings_are_open_ones, filled_cells, filled_window_is_part_of_the_whole,
+    mirrored_grids_mirror_the_cells, nested_rings_alternate,
+};
 pub use hide::{
     Rectangle, Sheet, attenuated, hidden, order_of_occluders_does_not_matter,
     rectangles_take_what_they_cover, regions_make_up_the_polygon,
@@ -91,7 +95,7 @@ impl<'a> Input<'a> {
         let (&first, _) = polygon.split_first()?;
         let low = polygon.iter().fold(first, |m, v| m.min(*v));
         let high = polygon.iter().fold(first, |m, v| m.max(*v));
-        let extent = (high - low) / grid.cell();
+        let extent = ((high - low) / grid.cell()).abs();
         if !polygon.iter().all(|v| v.is_finite())
             || extent.max_element().is_nan()
             || extent.max_element() > MAX_SIDE
@@ -100,12 +104,12 @@ impl<'a> Input<'a> {
         }
         // Cells whose own lines cannot be told apart after rounding to input coordinates are not checked.
         let magnitude = high.abs().max(low.abs()).max(grid.origin().abs());
-        let slack = magnitude * (4.0 * f64::EPSILON) + grid.cell() * SLOW_ERROR;
-        if (slack / grid.cell()).max_element() > 1e-4 {
+        let slack = magnitude * (4.0 * f64::EPSILON) + grid.cell().abs() * SLOW_ERROR;
+        if (slack / grid.cell().abs()).max_element() > 1e-4 {
             return None;
         }
         // Input coordinates are rounded by `slack`, which moves an outline of this length.
-        let position = (slack / grid.cell()).max_element();
+        let position = (slack / grid.cell().abs()).max_element();
         let vertices = polygon.len() as f64;
         let tolerance = (extent.max_element() + 1.0) * (SLOW_ERROR + position) * vertices * grid.cell_area();
         Some(Self { polygon, grid, first, tolerance, slack })

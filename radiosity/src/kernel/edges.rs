@@ -1,4 +1,4 @@
-//! ∬ ln r over two straight edges: what the contour form of a form factor is made of.
+//! ∬ ln r over two straight edges, the terms of the contour form of a form factor (\[1\]).
 //!
 //! Edges that are parallel, or that touch, are integrated in closed form; so nothing that is left has a singularity, and
 //! Gauss–Legendre quadrature of the analytic inner integral converges geometrically, at a rate that the gap between

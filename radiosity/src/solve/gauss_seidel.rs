@@ -34,8 +34,8 @@ pub(super) fn solve<'t>(
     Ok(Solution { transport, of_element, radiosity, bound, contraction, steps, history, converged })
 }
 
-/// A correction along v = ρ, which in bright closed rooms is nearly the slowest part of the error: the step after which
-/// the residual's power, with its signs, is 0.
+/// A correction along v = ρ, which in bright closed rooms is close to the slowest mode of the error. The step is the one after which the
+/// signed sum of the residual's power is 0.
 struct Balance {
     /// v, on all levels.
     along: Vec<Rgb>,

@@ -1,4 +1,4 @@
-//! The adjoint: how much what a patch emits adds to what is seen.
+//! Importance: the adjoint of radiosity, how much the emission of a patch contributes to what the camera sees.
 
 use super::options::SolveOptions;
 use super::state::State;

@@ -1,4 +1,4 @@
-//! Solving B = E + ρ (H + F B), with a bound on what is still missing.
+//! Solvers of B = E + ρ (H + F B) for the radiosity B, with a bound on the error by the residual.
 
 mod gauss_seidel;
 mod importance;

@@ -1,8 +1,8 @@
-//! How to solve, and how far.
+//! Options of the solvers.
 
 use crate::error::RadiosityError;
 
-/// How to solve, and how far.
+/// Options of the solvers: when to stop, and which accelerations to use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SolveOptions {
@@ -11,8 +11,8 @@ pub struct SolveOptions {
     pub tolerance: f64,
     /// Most sweeps over all patches, or as many shots as that many sweeps would be. Default: 10,000.
     pub max_sweeps: usize,
-    /// Gauss–Seidel: whether each sweep ends with an even correction that balances the energy of the whole scene. It takes most of
-    /// the work out of bright closed rooms, and is taken only where it lowers the residual. Default: true.
+    /// Gauss–Seidel: whether each sweep ends with a uniform correction that balances the energy of the whole scene. It saves most of the
+    /// sweeps in bright closed rooms, and is applied only where it lowers the residual. Default: true.
     pub balance: bool,
     /// Progressive: whether a shot also sends what the patch is expected to receive later (\[5\]). Without importance only. Default: true.
     pub overshoot: bool,

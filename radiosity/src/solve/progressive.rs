@@ -9,7 +9,7 @@ use crate::rgb::{Rgb, add, times};
 use crate::transport::Transport;
 use crate::tree::ElementId;
 
-/// What does not matter is shot later, but not never: its least importance relative to the largest.
+/// Least importance of a patch, relative to the largest: patches of no importance are shot last, but are shot.
 const LEAST_IMPORTANCE: f64 = 1e-3;
 
 pub(super) fn solve<'t>(
@@ -21,7 +21,7 @@ pub(super) fn solve<'t>(
     if !importance.is_empty() {
         check_importance(transport.leaves.len(), importance)?;
     }
-    // What matters most would send its debt back and forth while the rest never gets to pay it.
+    // With importance, the most important patches would exchange their overshot (negative) power while the others are never shot.
     let overshoot = options.overshoot && importance.is_empty();
     let mut shooter = Shooter::new(State::new(transport, &transport.direct)?, importance, overshoot);
     let mut history = vec![1.0];
@@ -56,9 +56,9 @@ pub(super) fn solve<'t>(
 
 struct Shooter<'t> {
     state: State<'t>,
-    /// Residual of every leaf, exactly: what it has not yet sent.
+    /// Residual of every leaf: its unshot radiosity, negative after overshooting.
     unshot: Vec<Rgb>,
-    /// What is shot at once: leaves, or roots of a hierarchy.
+    /// Units of one shot: leaves, or roots of a hierarchy.
     units: Vec<ElementId>,
     weight: Vec<f64>,
     /// Reflectance averaged over area, and area.
@@ -92,13 +92,13 @@ impl<'t> Shooter<'t> {
         Self { state, unshot, units, weight: of_leaf, mean_reflectance, area, overshoot, flat }
     }
 
-    /// What a leaf sends when it is shot: what it has not sent yet, and what it will have to send of light that is still to come.
+    /// What a leaf sends when it is shot: its unshot radiosity, and the estimate of what it will receive and reflect later (overshooting).
     fn light(&self, leaf: ElementId, ambient: Rgb) -> Rgb {
         add(self.unshot[leaf as usize], 1.0, times(self.state.reflectance(leaf), ambient))
     }
 
-    /// The power that a unit sends, weighted by importance. Debts count as far as they would be paid now: a patch that has just sent
-    /// ahead owes what it would send ahead again, and by its debt alone would be shot for ever.
+    /// The power that a unit sends, weighted by importance. Negative residuals count only as far as the new estimate does not cancel them:
+    /// a patch that has just overshot would otherwise be chosen again and again for its negative residual.
     fn power_below(&self, unit: ElementId, ambient: Rgb) -> f64 {
         let mut power = 0.0;
         self.state.transport.scene.tree.leaves_below(unit, &mut |leaf| {
@@ -120,7 +120,7 @@ impl<'t> Shooter<'t> {
         best.0
     }
 
-    /// Even ambient radiosity that is still to come, if it is sent ahead: unshot power, reflected on and on (\[2\], eq. 8).
+    /// Uniform ambient radiosity that is still to come, for overshooting: unshot power after all further reflections (\[2\], eq. 8).
     fn ambient(&self) -> Rgb {
         if !self.overshoot {
             return [0.0; 3];
@@ -142,7 +142,7 @@ impl<'t> Shooter<'t> {
         let mut sent = vec![];
         tree.leaves_below(unit, &mut |leaf| {
             sent.push((leaf, self.light(leaf, ambient)));
-            // Sending more than there is leaves a debt, which what arrives later pays.
+            // Overshooting leaves a negative residual, which light that arrives later cancels.
             self.unshot[leaf as usize] = times(self.state.reflectance(leaf), ambient).map(|e| -e);
         });
         if self.flat {

@@ -11,16 +11,16 @@ use crate::transport::Transport;
 pub struct Solution<'t> {
     /// What was solved.
     pub(crate) transport: &'t Transport,
-    /// Of every element of the tree.
+    /// Radiosity of every element of the tree.
     pub(crate) of_element: Vec<Rgb>,
     /// Radiosity of each patch, power per area.
     pub radiosity: Vec<Rgb>,
     /// Bound on the error of any patch's radiosity, for the given form factors: ‖r‖∞ / (1 − max ρ·row sum), or where rows add
     /// up to more than 1, max w · max |r|/v for a w > 0 with v = (I − ρF) w > 0.
     pub bound: f64,
-    /// Largest reflectance times row sum: what is left of light after each reflection, at most.
+    /// Largest product of reflectance and row sum: a bound on the share of the light that remains after each reflection.
     pub contraction: f64,
-    /// Sweeps, or shots.
+    /// Number of sweeps (Gauss–Seidel) or of shots (progressive).
     pub steps: usize,
     /// Power that is not accounted for, over the power put in: before the first sweep (or shot of each patch) and after each.
     pub history: Vec<f64>,
@@ -29,7 +29,7 @@ pub struct Solution<'t> {
 }
 
 impl std::fmt::Debug for Solution<'_> {
-    /// Without the transport and its links.
+    /// Without the transport and its links, which are long.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Solution")
             .field("radiosity", &self.radiosity)

@@ -1,4 +1,4 @@
-//! Radiosity on all levels, and the operator.
+//! The state of a solver: radiosity on all levels of the tree, and the operator ρF.
 
 use crate::error::RadiosityError;
 use crate::rgb::{Rgb, add, times};
@@ -8,7 +8,7 @@ use crate::tree::ElementId;
 /// Contractions nearer to 1 bound nothing.
 const MOST: f64 = 1.0 - 1e-12;
 
-/// What one solver works on.
+/// The state of a solver.
 pub(crate) struct State<'t> {
     pub(crate) transport: &'t Transport,
     /// Emission and reflected direct light of leaves, by element.
@@ -19,7 +19,7 @@ pub(crate) struct State<'t> {
     pub(crate) reflectance: Vec<Rgb>,
     pub(crate) contraction: f64,
     proof: Proof,
-    /// Power of all sources.
+    /// Power of all sources: Σ area · (E + ρH) over leaves and bands.
     pub(crate) power: f64,
 }
 
@@ -57,8 +57,8 @@ impl<'t> State<'t> {
         self.transport.scene.tree.elements[element as usize].polygon.area()
     }
 
-    /// A step of Gauss–Seidel: gathers at an element and below, with what its parents' links bring; each value is used as soon as it is
-    /// known.
+    /// A step of Gauss–Seidel: gathers at an element and at all below it, added to what arrives by the links of its parents. New values are
+    /// used at once.
     pub(crate) fn sweep(&mut self, element: ElementId, from_above: Rgb) {
         let i = element as usize;
         let arriving = add(from_above, 1.0, self.gathered(&self.radiosity, element));
@@ -73,7 +73,7 @@ impl<'t> State<'t> {
         self.radiosity[i] = self.pulled(&self.radiosity, element);
     }
 
-    /// What arrives at an element through its own links.
+    /// Irradiance of an element by its own links.
     #[inline]
     pub(crate) fn gathered(&self, radiosity: &[Rgb], element: ElementId) -> Rgb {
         let row = self.transport.row(element);
@@ -179,9 +179,9 @@ pub(crate) enum Proof {
     },
 }
 
-/// Sweeps after which there is no proof.
+/// Most sweeps in which a proof is looked for.
 const PROOF_SWEEPS: usize = 2000;
-/// v that is good enough; the exact solution has 1.
+/// Least v with which the proof is accepted; the exact solution has v = 1.
 const PROVEN: f64 = 0.5;
 
 impl Proof {

@@ -19,7 +19,7 @@ struct Node {
     second: u32,
 }
 
-/// Finds the occluders near a shaft without asking all.
+/// A hierarchy of boxes by which the occluders near a shaft are found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Boxes {
     nodes: Vec<Node>,

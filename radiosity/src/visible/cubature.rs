@@ -1,10 +1,14 @@
-//! Exchange of two polygons with others between them.
+//! Mutual exchange A₁F₁₂ of two polygons with occluders between them, by adaptive cubature of the hidden part.
 //!
-//! What they would exchange with nothing between is exact (the unoccluded rules); what is hidden of it is taken off. For that the
-//! smaller polygon is divided into cells. From a cell before which nothing stands nothing is hidden, from one that is shut off by a
-//! single occluder exactly all is; in the others the hidden share is sampled, itself exact, by Gauss points. Cells are halved both ways,
-//! the worst first, until what halving changes is below the tolerance: so work gathers where the hidden part changes its kind. Near edges,
-//! where the share of the whole source is anything but a polynomial, what little is hidden of it costs little accuracy.
+//! 1. The unoccluded exchange is computed by the rules of [`pair`]. What occluders hide is computed apart and subtracted.
+//! 2. The smaller polygon, the receiver, is divided into quadrangular cells, along the planes of occluders that stand on it.
+//! 3. A cell whose shaft to the source holds no occluder hides nothing; a cell whose shaft is blocked by a single occluder hides all of its
+//!    unoccluded exchange. Both are exact ("settled").
+//! 4. In other cells the hidden share of the source is integrated by [`ORDER`]² Gauss points. At each point it is exact: Lambert's formula for
+//!    the parts of the source that occluders hide.
+//! 5. Cells with the largest error estimates are quartered until the sum of the estimates is within the [`Goal`]. The estimate of a quarter is
+//!    what quartering changed, so that cells become small where the hidden share is not smooth. Near a common edge of receiver and
+//!    source the unoccluded share is far from a polynomial, but only the hidden part, small there, is integrated numerically.
 
 use std::borrow::Cow;
 use std::collections::BinaryHeap;
@@ -19,21 +23,23 @@ use crate::polygon::{Polygon, clipped};
 
 /// Gauss points along each side of a cell.
 const ORDER: usize = 3;
-/// Cells that were halved less often are looked at from their corners, too.
+/// Cells of a lower depth than this are also sampled near their corners, to find occluders that hide something there only.
 const LOOKED_AT_CORNERS: u8 = 1;
-/// Cells that were halved less often are halved while a narrow occluder is between that was before no sample.
+/// Cells of a lower depth than this have an error for each narrow occluder in their shaft that hid the source from no sample.
 const SEARCHED: u8 = 3;
-/// Samples are apart by less than this share of a cell's diagonal.
+/// Distance between neighbouring samples, at most, as a share of the cell's diagonal.
 const SLIPS_THROUGH: f64 = 0.5;
-/// How far towards the centre a corner is looked from: on the line where an occluder stands nothing is hidden.
+/// Corner samples are moved towards the cell's centre by this share of the way: on a contact line the occluder is seen edge on and hides
+/// nothing.
 const INWARD: f64 = 1e-3;
-/// What Gauss points may be off where the hidden share jumps, as a share of what it varies by: a step between two of three points is
-/// a fifth off at worst.
+/// Error estimate of the Gauss rule for a discontinuous hidden share, as a share of the difference between its largest and smallest sample.
+/// A step anywhere between two of three Gauss points is integrated with an error of at most 2/9 of its height; this is about half of that.
 const SPREAD: f64 = 1.0 / 8.0;
-/// What halving changed, over what the halves are taken to be still off. A kink across a cell would allow four; two levels that agree
-/// by chance ask for less.
+/// The error that quarters are taken to have left is what quartering changed, divided by this. For a kink across a cell 4 would do; 2 allows
+/// for levels that agree by chance.
 const GAIN: f64 = 2.0;
-/// Occluders that stand on the receiver cut it, so that the jump of light at their foot lies on borders of cells; at most so many.
+/// Most occluders along whose planes the receiver is cut where they stand on it, so that the discontinuity at their foot lies on borders
+/// of cells.
 const MAX_CUTS: usize = 8;
 
 /// When to stop.
@@ -43,11 +49,11 @@ pub(crate) struct Goal {
     pub(crate) unoccluded: f64,
     /// Error relative to the result.
     pub(crate) relative: f64,
-    /// Error that is always good enough, in units of area.
+    /// Absolute error that is accepted whatever the result, in units of area.
     pub(crate) absolute: f64,
-    /// Most cells of one pair; beyond, the bound says how far it got.
+    /// Most cells that are sampled for one pair. If they do not suffice, the result has a larger error bound.
     pub(crate) max_cells: usize,
-    /// Cells are halved at least so often.
+    /// Cells are quartered down to at least this depth.
     pub(crate) least_depth: u8,
 }
 
@@ -62,11 +68,11 @@ struct Cell {
     quad: [DVec3; 4],
     occluders: Vec<u32>,
     hidden: f64,
-    /// What the samples' differences let it be off.
+    /// Error estimate by [`SPREAD`], from the differences of the samples.
     spread: f64,
     error: f64,
     depth: u8,
-    /// Rounding and quadrature of what is exact, which halving does not improve.
+    /// Whether it is exact but for rounding and the unoccluded rule, which smaller cells do not improve.
     settled: bool,
 }
 
@@ -87,7 +93,7 @@ impl Ord for Cell {
     }
 }
 
-/// Exchange A₁F₁₂ past the occluders, in any order, which may hold polygons that are not between at all.
+/// Exchange A₁F₁₂ past the occluders. They may come in any order, and may lie outside of the shaft between the polygons.
 pub(crate) fn mutual(
     a: &Polygon,
     b: &Polygon,
@@ -107,7 +113,7 @@ pub(crate) fn mutual(
     past(&a, &b, &between, goal, pieces)
 }
 
-/// As [`mutual`], of occluders that the shaft of the whole polygons may hold and none of which hides all.
+/// As [`mutual`], for occluders that were tested already: all may lie in the shaft of the whole polygons, and none blocks it alone.
 pub(crate) fn mutual_in_shaft(
     a: &Polygon,
     b: &Polygon,
@@ -117,7 +123,7 @@ pub(crate) fn mutual_in_shaft(
 ) -> (Mutual, Work) {
     match facing_parts(a, b) {
         Some((Cow::Borrowed(a), Cow::Borrowed(b))) => past(a, b, occluders, goal, pieces),
-        // Parts have a smaller shaft.
+        // The parts that face one another have a smaller shaft, which must be tested.
         _ => mutual(a, b, occluders, goal, pieces),
     }
 }
@@ -154,16 +160,16 @@ impl Cubature<'_> {
             }
         }
         loop {
-            // Summed anew each time it matters would be quadratic; the running sums are renewed at the end.
+            // Formed anew, not kept up to date: a running sum would collect rounding. Batches keep the cost linear in the cells.
             let (hidden, error) = sums(&heap, settled);
-            // What exact rules leave of a pair that is hidden altogether is their rounding.
+            // For a pair that is hidden completely the difference of exact rules is their rounding.
             let value = if open.value - hidden > settled.1 { open.value - hidden } else { 0.0 };
             let enough = self.goal.absolute.max(self.goal.relative * value);
-            // Without open cells what is left is the error of exact rules.
+            // Without cells in the heap only the error of the exact rules is left.
             if error <= enough || self.work.cells >= self.goal.max_cells || heap.is_empty() {
                 return (Mutual { value, error, rule: Rule::Points }, self.work);
             }
-            // A batch of the worst, so that the sums are not formed for each.
+            // A batch of the cells with the largest errors for each sum.
             for _ in 0..(heap.len() / 4).max(1) {
                 let Some(cell) = heap.pop() else { break };
                 self.divide(&cell, &mut heap, &mut settled);
@@ -171,7 +177,7 @@ impl Cubature<'_> {
         }
     }
 
-    /// The receiver, cut where occluders meet it.
+    /// The receiver in quadrangles, cut along the planes of occluders that stand on it.
     fn roots(&self) -> Vec<[DVec3; 4]> {
         let slack = 1e-12 * self.receiver.radius();
         let mut parts = vec![self.receiver.clone()];
@@ -195,7 +201,7 @@ impl Cubature<'_> {
         parts.iter().flat_map(|p| p.quads().collect::<Vec<_>>()).collect()
     }
 
-    /// Replaces a cell by its quarters.
+    /// Replaces a cell by its quarters; a settled cell is added to the sums `settled` (hidden, error).
     fn divide(&mut self, cell: &Cell, heap: &mut BinaryHeap<Cell>, settled: &mut (f64, f64)) {
         if cell.settled {
             settled.0 += cell.hidden;
@@ -228,7 +234,7 @@ impl Cubature<'_> {
         }
     }
 
-    /// One cell: exact where it can be, else sampled, with the error for occluders that no sample met.
+    /// A cell: settled if its shaft is free or blocked by one occluder, else sampled.
     fn cell(&mut self, quad: [DVec3; 4], occluders: &[u32], depth: u8) -> Cell {
         let mut cell =
             Cell { quad, occluders: vec![], hidden: 0.0, spread: 0.0, error: 0.0, depth, settled: true };
@@ -273,7 +279,7 @@ impl Cubature<'_> {
             }
         }
         if cell.depth < LOOKED_AT_CORNERS {
-            // What no sample tells, a corner does: the tip of a shadow, or of what is left between shadows.
+            // The tip of a shadow, or of a lit gap between shadows, may lie between the Gauss points and a corner.
             let centre = 0.25 * cell.quad.iter().sum::<DVec3>();
             for corner in cell.quad {
                 hidden_at(corner.lerp(centre, INWARD));
@@ -286,12 +292,12 @@ impl Cubature<'_> {
         }
     }
 
-    /// Most that an occluder hides which is before no sample and no corner of a cell.
+    /// Bound on what an occluder hides from a cell if it hid the source from none of the cell's samples.
     fn missed(&self, quad: &[DVec3; 4], occluder: &Polygon) -> f64 {
         let [a, b, c, d] = *quad;
         let size = (c - a).length().max((d - b).length());
-        // A shadow as wide as samples are apart does not slip through between them; a source without extent makes it as narrow as its
-        // occluder.
+        // A shadow is at least as wide as its occluder (exactly so for a point source), so one wider than the distance of the samples
+        // contains one of them.
         if occluder.area() / occluder.radius() >= SLIPS_THROUGH * size {
             return 0.0;
         }
@@ -302,8 +308,8 @@ impl Cubature<'_> {
     }
 }
 
-/// What is hidden from all cells, and its error.
+/// The hidden exchange of all cells, and its error.
 fn sums(heap: &BinaryHeap<Cell>, settled: (f64, f64)) -> (f64, f64) {
-    // In the order of the heap's array, which depends on nothing but the input.
+    // In the order of the heap's array, which depends on the input alone, so that results are reproducible.
     heap.iter().fold(settled, |(h, e), cell| (h + cell.hidden, e + cell.error))
 }

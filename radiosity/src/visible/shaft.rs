@@ -1,10 +1,10 @@
-//! What can be between two polygons: the convex hull of both, and what reaches into it \[4\].
+//! Shaft culling \[4\]: which occluders reach into the convex hull of two polygons.
 
 use glam::DVec3;
 
 use crate::polygon::{Polygon, edges};
 
-/// What comes this close to the hull's border, relative to its size, only touches it.
+/// An occluder that reaches into the hull by at most this, times the hull's size, only touches it.
 const TOUCHING: f64 = 1e-12;
 
 /// The space between two polygons that face each other.
