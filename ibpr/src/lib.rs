@@ -44,6 +44,7 @@
 #![forbid(unsafe_code)]
 
 mod accumulate;
+mod block_view;
 mod buffer;
 mod buffer_map;
 mod cloud;
@@ -58,6 +59,7 @@ mod frame;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod layers;
+mod nearest;
 mod noise;
 mod normals;
 mod options;
@@ -67,6 +69,7 @@ mod pixels;
 mod project;
 mod raster;
 mod render;
+mod rules;
 mod scan;
 mod shade;
 mod spacing;

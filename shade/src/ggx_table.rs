@@ -65,7 +65,7 @@ impl Table {
         let mut means = Vec::with_capacity(ROUGHNESSES);
         for row in 0..ROUGHNESSES {
             let roughness = row as f64 / (ROUGHNESSES - 1) as f64;
-            let alpha = f64::from(crate::ggx::alpha(roughness as f32));
+            let alpha = f64::from(crate::roughness::alpha(roughness as f32));
             terms.extend((0..COSINES).map(|i| entry(cosine(i).max(1e-6), alpha)));
             means.push(mean(&terms[row * COSINES..]));
         }

@@ -82,6 +82,7 @@ mod merl;
 mod normals;
 mod quadrature;
 mod refraction;
+mod roughness;
 mod texture;
 
 pub use auto_uv::AutoUv;
@@ -91,7 +92,6 @@ pub use environment::{
     CubeMap, Environment, Equirectangular, cube_direction, equirectangular_direction, equirectangular_uv,
 };
 pub use error::ShadeError;
-pub use ggx::SMALLEST_ROUGHNESS;
 pub use ggx_table::coat_albedo;
 pub use interpolation::{Interpolation, interpolate_color, interpolate_normal};
 pub use light::{Falloff, Incident, LARGEST_IRRADIANCE, Light, Source};
@@ -100,4 +100,5 @@ pub use merl::{MERL_DIMENSIONS, MerlTable};
 pub use normals::{Weighting, face_normal, sees_light, turn_to, vertex_normals};
 pub use quadrature::directional_albedo;
 pub use refraction::{Refraction, mirror, refract};
+pub use roughness::SMALLEST_ROUGHNESS;
 pub use texture::{Wrap, nearest};
