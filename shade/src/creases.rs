@@ -29,7 +29,7 @@ pub fn corner_normals(
     crease_rad: f64,
 ) -> Result<CornerNormals, ShadeError> {
     if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
-        return Err(ShadeError::NotFinite { index });
+        return Err(ShadeError::VertexNotFinite { index, value: positions[index].to_array() });
     }
     let extent = extent(positions);
     let mut faces = Vec::with_capacity(triangles.len());

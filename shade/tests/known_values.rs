@@ -202,9 +202,9 @@ fn area_weights_keep_slivers_quiet() {
 #[test]
 fn wrong_meshes_are_named() {
     let error = vertex_normals(&[DVec3::ZERO], &[[0, 0, 1]], Weighting::Area).unwrap_err();
-    assert_eq!(error, ShadeError::IndexOutOfRange { triangle: 0, vertex: 1, count: 1 });
+    assert_eq!(error, ShadeError::VertexOutOfRange { triangle: 0, vertex: 1, count: 1 });
     let error = vertex_normals(&[DVec3::NAN], &[], Weighting::Area).unwrap_err();
-    assert_eq!(error, ShadeError::NotFinite { index: 0 });
+    assert!(matches!(error, ShadeError::VertexNotFinite { index: 0, .. }), "{error:?}");
 }
 
 #[test]

@@ -26,8 +26,8 @@ impl Cloud {
     /// Sorts points into an octree; estimates what they lack.
     ///
     /// # Errors
-    /// [`SurfelError::NoPoints`], [`SurfelError::TooMany`], [`SurfelError::LengthMismatch`], [`SurfelError::NotFinite`],
-    /// [`SurfelError::BadNormal`], [`SurfelError::BadColor`], [`SurfelError::BadRadius`].
+    /// [`SurfelError::NoPoints`], [`SurfelError::TooManyPoints`], [`SurfelError::LengthMismatch`], [`SurfelError::PointNotFinite`],
+    /// [`SurfelError::PointTooFar`], [`SurfelError::BadNormal`], [`SurfelError::BadColor`], [`SurfelError::BadRadius`].
     pub fn new(points: &Points<'_>) -> Result<Self, SurfelError> {
         points.check()?;
         let lattice = Lattice::around(points.positions);

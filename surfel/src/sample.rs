@@ -141,5 +141,9 @@ pub fn sample_with(
 }
 
 fn within_limit(count: f64) -> Result<f64, SurfelError> {
-    if count <= MAX_COUNT as f64 { Ok(count) } else { Err(SurfelError::TooMany { count, most: MAX_COUNT }) }
+    if count <= MAX_COUNT as f64 {
+        Ok(count)
+    } else {
+        Err(SurfelError::TooManyPoints { count, limit: MAX_COUNT })
+    }
 }
