@@ -101,6 +101,9 @@ pub use nearest::NearestVertex;
 pub use partition::{OUTSIDE, Partition, Tetrahedra, Triangles};
 pub use triangulation::Delaunay;
 
+/// The version of `glam` that this crate's functions take and return.
+pub use glam;
+
 /// The examples of the README are tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

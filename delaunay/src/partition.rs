@@ -41,6 +41,7 @@ pub struct Tetrahedra {
 
 impl Partition {
     /// 3 for tetrahedra, 2 for triangles, 1 for a line, 0 for a point.
+    #[must_use]
     pub const fn dimension(&self) -> usize {
         match self {
             Self::Point(_) => 0,

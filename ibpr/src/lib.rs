@@ -84,3 +84,8 @@ pub use scan::Scan;
 
 /// The version of `glam` that this crate's functions take and return.
 pub use glam;
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

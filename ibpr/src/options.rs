@@ -6,6 +6,7 @@ use glam::{DVec3, Vec3};
 
 /// Size of a buffer pixel in picture pixels (the paper's S).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Scale {
     /// From the field of view, the distance and the density of the points, times this factor.
     ///
@@ -18,6 +19,7 @@ pub enum Scale {
 /// How much a point of the surface nearest to the eye counts; u is its depth behind the nearest point
 /// of its pixel in units of γ, 0 ≤ u ≤ 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Weighting {
     /// `u`, eq. 2 as it survives in print: the nearest point counts (almost) nothing.
     Printed,
@@ -31,6 +33,7 @@ pub enum Weighting {
 
 /// Where normals come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Normals {
     /// Least-squares planes over windows that grow with the noise.
     Plane,
@@ -40,6 +43,7 @@ pub enum Normals {
 
 /// What is skipped because it faces away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Culling {
     /// Nothing.
     None,
@@ -53,6 +57,7 @@ pub enum Culling {
 
 /// Buffers per frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Passes {
     /// One, with S.
     One,
@@ -103,6 +108,7 @@ impl Translucency {
 
 /// Where light comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Light {
     /// From the eye.
     Eye,

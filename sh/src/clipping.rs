@@ -2,6 +2,7 @@
 
 /// The share of a photograph, 0 to 1, whose radiance is unknown: by pixels, or of a panorama by solid angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Clipping {
     /// Where a channel has the highest level: light that was brighter is missing.
     pub over_exposed: f64,

@@ -61,11 +61,13 @@ impl CubeMap {
     }
 
     /// Texels along an edge.
+    #[must_use]
     pub const fn size(&self) -> usize {
         self.size
     }
 
     /// Red, green and blue.
+    #[must_use]
     pub const fn planes(&self) -> &[Vec<f32>; 3] {
         &self.planes
     }
@@ -76,6 +78,7 @@ impl CubeMap {
     }
 
     /// A texel, or `None` outside.
+    #[must_use]
     pub fn texel(&self, face: usize, x: usize, y: usize) -> Option<[f32; 3]> {
         let is_inside = face < 6 && x < self.size && y < self.size;
         let index = (face * self.size + y) * self.size + x;
@@ -89,6 +92,7 @@ impl CubeMap {
     }
 
     /// Face, column and row of the texel that a direction meets; `None` for 0 and what is not finite.
+    #[must_use]
     pub fn texel_at(&self, direction: DVec3) -> Option<[usize; 3]> {
         let CubePoint { face, s, t } = cube_point(direction)?;
         let at = |v: f64| (((v + 1.0) * 0.5 * self.size as f64) as usize).min(self.size - 1);

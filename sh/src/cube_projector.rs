@@ -67,16 +67,19 @@ impl CubeProjector {
     }
 
     /// Texels along an edge of the faces that it takes.
+    #[must_use]
     pub const fn size(&self) -> usize {
         self.size
     }
 
     /// The highest band that it makes.
+    #[must_use]
     pub const fn order(&self) -> usize {
         self.order
     }
 
     /// How it weighs texels.
+    #[must_use]
     pub const fn weights(&self) -> Weights {
         self.weights
     }

@@ -41,6 +41,7 @@ impl DominantLight {
 
 /// Radiance as a light, to be evaluated exactly, and a rest whose irradiance is nowhere negative.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Split {
     /// The light, if there is reason for one.
     pub light: Option<DominantLight>,

@@ -100,6 +100,9 @@ pub use solid_angle::texel_solid_angle;
 pub use weights::{GREGORY_FROM, Weights};
 pub use window::Window;
 
+/// The version of `glam` that this crate's functions take and return.
+pub use glam;
+
 /// The examples of the README are tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -66,6 +66,7 @@ impl Lobe {
     }
 
     /// The factors of bands 0 to [`MAX_ORDER`].
+    #[must_use]
     pub const fn bands(&self) -> &[f64; MAX_ORDER + 1] {
         &self.bands
     }

@@ -56,16 +56,19 @@ impl Panorama {
     }
 
     /// Pixels in a row.
+    #[must_use]
     pub const fn width(&self) -> usize {
         self.width
     }
 
     /// Rows.
+    #[must_use]
     pub const fn height(&self) -> usize {
         self.height
     }
 
     /// Red, green and blue.
+    #[must_use]
     pub const fn planes(&self) -> &[Vec<f32>; 3] {
         &self.planes
     }
@@ -84,6 +87,7 @@ impl Panorama {
 
     /// Radiance from a direction of any length but 0, bilinear between the centres of pixels, around the seam and over the
     /// poles.
+    #[must_use]
     pub fn at(&self, direction: DVec3) -> Vec3 {
         let DVec3 { x, y, z } = direction;
         let u = x.atan2(-z) / TAU + 0.5;

@@ -30,11 +30,13 @@ impl SphereQuadrature {
     }
 
     /// Unit directions, each with its weight; the weights sum to 4π.
+    #[must_use]
     pub fn points(&self) -> &[(DVec3, f64)] {
         &self.points
     }
 
     /// ∫ f dω.
+    #[must_use]
     pub fn integrate<T: Channel>(&self, mut f: impl FnMut(DVec3) -> T) -> T {
         self.points.iter().fold(T::default(), |sum, &(direction, weight)| sum + f(direction) * weight)
     }

@@ -41,6 +41,7 @@ impl Rotation {
     }
 
     /// The highest band that it turns.
+    #[must_use]
     pub const fn order(&self) -> usize {
         self.bands.len() - 1
     }

@@ -423,7 +423,7 @@ fn photographs_become_radiance() {
 
     // Four rows: those at the poles are smaller than the others.
     let pixels: Vec<[u8; 3]> = (0..32).map(|i| if i < 8 { [255, 10, 0] } else { [0; 3] }).collect();
-    let (_, Clipping { over_exposed, under_exposed }) =
+    let (_, Clipping { over_exposed, under_exposed, .. }) =
         Panorama::from_photograph(8, 4, &pixels, &Response::linear(), 0.0).unwrap();
     assert!((over_exposed - 0.5 * (1.0 - 0.5_f64.sqrt())).abs() < 1e-12);
     assert!((over_exposed + under_exposed - 1.0).abs() < 1e-12);

@@ -29,6 +29,7 @@ static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 /// `cos` is that of the light (or, the coat being reciprocal, of the eye), `roughness` is perceptual; both are cut
 /// to [0, 1]. Also the factor on a prefiltered environment \[7\]. Errors are below 1e-3 up to 80° from the normal and
 /// below 5e-3 beyond.
+#[must_use]
 pub fn coat_albedo(f0: Vec3, roughness: f32, cos: f32) -> Vec3 {
     let table = &*TABLE;
     let (row, fr) = place(roughness, ROUGHNESSES);

@@ -64,6 +64,7 @@ pub struct Material {
 ///
 /// With OpenGL's local viewer, `to_eye` points from the surface to the eye; without (its default), it is the
 /// view's backward axis, the same for all points.
+#[must_use]
 pub fn contribution(light: &Light, material: &Material, point: DVec3, normal: Vec3, to_eye: Vec3) -> Vec3 {
     let (to_light, strength) = arrival(light, point);
     let cos_light = normal.dot(to_light).max(0.0);
@@ -77,6 +78,7 @@ pub fn contribution(light: &Light, material: &Material, point: DVec3, normal: Ve
 }
 
 /// Emission, global ambient and all lights, not clamped.
+#[must_use]
 pub fn shade(
     lights: &[Light],
     global_ambient: Vec3,
@@ -90,6 +92,7 @@ pub fn shade(
 }
 
 /// Clamped to [0, 1], as OpenGL does before it draws.
+#[must_use]
 pub fn display(color: Vec3) -> Vec3 {
     color.clamp(Vec3::ZERO, Vec3::ONE)
 }

@@ -102,3 +102,11 @@ pub use quadrature::directional_albedo;
 pub use refraction::{Refraction, mirror, refract};
 pub use roughness::SMALLEST_ROUGHNESS;
 pub use texture::{Wrap, nearest};
+
+/// The version of `glam` that this crate's functions take and return.
+pub use glam;
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

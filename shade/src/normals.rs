@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 
 /// How much each face counts in the normal of a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Weighting {
     /// By its area, so that slivers do not tilt the surface.
     #[default]

@@ -73,11 +73,13 @@ impl DistanceMap {
     }
 
     /// Texels on a side.
+    #[must_use]
     pub const fn size(&self) -> usize {
         self.size
     }
 
     /// Mean and mean square of each texel, row by row.
+    #[must_use]
     pub fn moments(&self) -> &[[f32; 2]] {
         &self.moments
     }
@@ -86,6 +88,7 @@ impl DistanceMap {
     ///
     /// Where the position is farther than the surface on average, Chebyshev's inequality bounds how much of the surface is farther
     /// still (Donnelly & Lauritzen, *Variance shadow maps*, 2006, eq. 5), and its cube keeps light from leaking past edges.
+    #[must_use]
     pub fn visibility(&self, offset: DVec3) -> f64 {
         let distance = offset.length();
         if distance == 0.0 {

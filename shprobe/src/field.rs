@@ -31,6 +31,7 @@ pub struct Field {
 
 /// Something that moves between probes.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct LitObject {
     /// Where it is; set by the caller.
     pub position: DVec3,
@@ -42,6 +43,7 @@ pub struct LitObject {
 
 impl LitObject {
     /// An object that is not lit yet.
+    #[must_use]
     pub const fn at(position: DVec3) -> Self {
         Self { position, hint: Hint::START, light: Irradiance::DARK }
     }
@@ -129,21 +131,25 @@ impl Field {
     }
 
     /// The cells.
+    #[must_use]
     pub const fn partition(&self) -> &Partition {
         &self.partition
     }
 
     /// Finds cells, without regard to what is seen.
+    #[must_use]
     pub const fn locator(&self) -> &Locator {
         &self.locator
     }
 
     /// The order of the probes' coefficients.
+    #[must_use]
     pub const fn order(&self) -> usize {
         self.order
     }
 
     /// How many probes there are.
+    #[must_use]
     pub fn probe_count(&self) -> usize {
         self.lights.len()
     }

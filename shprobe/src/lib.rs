@@ -63,6 +63,9 @@ pub use pointillist_delaunay::Hint;
 /// The functions that probes hold.
 pub use pointillist_sh as sh;
 
+/// The version of `glam` that this crate's functions take and return.
+pub use glam;
+
 /// The examples of the README are tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -152,8 +152,7 @@ fn spotted() -> (Vec<DVec3>, Vec<Sh>) {
 #[test]
 fn adaptive_probes_gather_where_light_changes_and_beat_a_grid() {
     let (positions, radiance) = spotted();
-    let candidates =
-        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    let candidates = place::Candidates::new(&positions, &radiance);
     let options = place::AdaptiveOptions::DEFAULT.with_max_count(60).with_balance(0.0);
     let chosen = place::adaptive(candidates, &options).unwrap();
     assert_eq!(chosen.chosen.len(), 60);
@@ -182,8 +181,7 @@ fn adaptive_probes_gather_where_light_changes_and_beat_a_grid() {
 #[test]
 fn adaptive_placement_stops_at_the_error_asked_for_and_says_what_it_reached() {
     let (positions, radiance) = spotted();
-    let candidates =
-        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    let candidates = place::Candidates::new(&positions, &radiance);
     let options = place::AdaptiveOptions::DEFAULT.with_max_count(positions.len()).with_max_error(0.05);
     let chosen = place::adaptive(candidates, &options).unwrap();
     assert!(
@@ -216,8 +214,7 @@ fn squared_error(positions: &[DVec3], radiance: &[Sh], chosen: &[u32], held: &[S
 #[test]
 fn fitted_probes_are_a_minimum_of_the_error() {
     let (positions, radiance) = spotted();
-    let candidates =
-        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    let candidates = place::Candidates::new(&positions, &radiance);
     // Every other place along each axis: none on top of the spot.
     let chosen: Vec<u32> =
         (0..positions.len() as u32).filter(|i| i % 2 == 0 && i / 16 % 3 == 0 && i / 96 % 2 == 0).collect();
@@ -248,8 +245,7 @@ fn fitting_keeps_what_is_right_already() {
     let positions = place::grid(DVec3::ZERO, DVec3::ONE, [5, 5, 5]);
     let values: Vec<f64> = positions.iter().map(|p| 1.0 + p.x + 2.0 * p.y - 0.5 * p.z).collect();
     let radiance = constant(&values);
-    let candidates =
-        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    let candidates = place::Candidates::new(&positions, &radiance);
     // The corners of the grid: light is linear between them.
     let corners: Vec<u32> = (0..8).map(|i| 4 * (i & 1) + 20 * (i >> 1 & 1) + 100 * (i >> 2)).collect();
     let fitted = place::fit(candidates, &corners, &place::FitOptions::DEFAULT).unwrap();

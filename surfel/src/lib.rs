@@ -122,3 +122,8 @@ pub use sample::{Amount, MAX_COUNT, Method, SampleOptions, sample, sample_with};
 
 /// The version of `glam` that this crate's functions take and return.
 pub use glam;
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -17,6 +17,7 @@ pub enum Procedure {
 
 /// Where light comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Light {
     /// From the eye.
     #[default]

@@ -97,6 +97,7 @@ impl Delaunay {
     }
 
     /// 3 if the points span space, 2 if they lie in a plane, 1 on a line, 0 if they coincide.
+    #[must_use]
     pub fn dimension(&self) -> usize {
         match &self.shape {
             Shape::Point(_) => 0,
@@ -106,16 +107,19 @@ impl Delaunay {
     }
 
     /// For each point given, the first that coincides with it, mostly itself; [`OUTSIDE`] if it was removed.
+    #[must_use]
     pub fn representative(&self) -> &[u32] {
         &self.representative
     }
 
     /// The points given, those removed too.
+    #[must_use]
     pub fn points(&self) -> &[DVec3] {
         &self.points
     }
 
     /// The cells. For the same points it is the same value, however they came to be there.
+    #[must_use]
     pub fn partition(&self) -> Partition {
         match &self.shape {
             Shape::Point(index) => Partition::Point(*index),
@@ -125,6 +129,7 @@ impl Delaunay {
     }
 
     /// How many points there are, without those removed.
+    #[must_use]
     pub const fn live_count(&self) -> usize {
         self.live
     }

@@ -9,6 +9,7 @@ use glam::{DVec3, Vec3, dvec3};
 /// # Panics
 ///
 /// For a face beyond 5.
+#[must_use]
 pub fn cube_direction(face: usize, s: f64, t: f64) -> DVec3 {
     match face {
         0 => dvec3(1.0, -t, -s),
@@ -66,6 +67,7 @@ impl CubeMap {
     }
 
     /// A map of what a function says about the middle of each texel, as a unit vector. A `size` of 0 counts as 1.
+    #[must_use]
     pub fn from_function(size: u32, radiance: impl Fn(DVec3) -> Vec3) -> Self {
         let size = size.max(1) as usize;
         Self::build(size, |face, x, y| radiance(texel_direction(size, face, x, y).normalize()))
@@ -123,6 +125,7 @@ impl CubeMap {
     }
 
     /// Texels on a side of a face.
+    #[must_use]
     pub fn size(&self) -> u32 {
         self.size as u32
     }
@@ -132,6 +135,7 @@ impl CubeMap {
     /// # Panics
     ///
     /// Outside the face.
+    #[must_use]
     pub fn texel(&self, face: usize, x: u32, y: u32) -> Vec3 {
         let (x, y) = (x as usize, y as usize);
         assert!(face < 6 && x < self.size && y < self.size, "texel {x}, {y} of face {face} is not there");
@@ -139,6 +143,7 @@ impl CubeMap {
     }
 
     /// Radiance from a direction of any length, interpolated between four texels; continuous everywhere.
+    #[must_use]
     pub fn sample(&self, direction: DVec3) -> Vec3 {
         let (face, s, t) = place(direction);
         let n = self.size as f64;

@@ -41,6 +41,7 @@ pub struct Environment {
 
 impl Environment {
     /// A map for mirrors only: [`Environment::radiance`] is then sharp at any roughness.
+    #[must_use]
     pub fn sharp(map: CubeMap) -> Self {
         Self { sharp: map, rough: Vec::new(), irradiance: None }
     }
@@ -66,6 +67,7 @@ impl Environment {
     }
 
     /// Radiance that a surface of this perceptual roughness mirrors from about a direction.
+    #[must_use]
     pub fn radiance(&self, direction: Vec3, roughness: f32) -> Vec3 {
         let direction = direction.as_dvec3();
         let sharp = || self.sharp.sample(direction);
@@ -83,6 +85,7 @@ impl Environment {
     }
 
     /// Irradiance of a surface that faces this way; 0 without [`Environment::with_irradiance`].
+    #[must_use]
     pub fn irradiance(&self, normal: Vec3) -> Vec3 {
         self.irradiance.as_ref().map_or(Vec3::ZERO, |map| map.sample(normal.as_dvec3()))
     }

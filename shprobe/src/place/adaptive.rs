@@ -69,6 +69,7 @@ impl Default for AdaptiveOptions {
 
 /// Which candidates became probes.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Adaptive {
     /// Indices of candidates, rising.
     pub chosen: Vec<u32>,

@@ -6,6 +6,7 @@ use glam::{DVec3, dvec3};
 const INSET: f64 = 0.1;
 
 /// `nx · ny · nz` probes evenly in a box, x fastest; the outer ones a tenth of a cell inside of it. One along an axis lies in the middle.
+#[must_use]
 pub fn grid(low: DVec3, high: DVec3, [nx, ny, nz]: [usize; 3]) -> Vec<DVec3> {
     let at = |i: usize, n: usize, axis: usize| {
         let inset = INSET * (high[axis] - low[axis]) / n as f64;
@@ -22,6 +23,7 @@ pub fn grid(low: DVec3, high: DVec3, [nx, ny, nz]: [usize; 3]) -> Vec<DVec3> {
 }
 
 /// `count` probes anywhere in a box, each place as likely as any other.
+#[must_use]
 pub fn random(low: DVec3, high: DVec3, count: usize, seed: u64) -> Vec<DVec3> {
     let mut state = seed;
     let mut unit = || {
@@ -38,6 +40,7 @@ pub fn random(low: DVec3, high: DVec3, count: usize, seed: u64) -> Vec<DVec3> {
 
 /// Up to `count` of the candidates, each as far as possible from those before it (Gonzalez 1985); the first is the one nearest to the
 /// middle. Equal candidates are taken once.
+#[must_use]
 pub fn spread(candidates: &[DVec3], count: usize) -> Vec<usize> {
     let middle = candidates.iter().copied().sum::<DVec3>() / candidates.len().max(1) as f64;
     let nearest = |a: &usize, b: &usize| {

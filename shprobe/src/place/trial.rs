@@ -7,8 +7,9 @@ use crate::sight::{Near, Shares, by_sight};
 use crate::{DistanceMap, ProbeError};
 use glam::DVec3;
 
-/// Positions at which probes may be, and the light there.
+/// Positions at which probes may be, and the light there. Start from [`Candidates::new`]: further fields may come.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Candidates<'a> {
     /// Where they are.
     pub positions: &'a [DVec3],
@@ -18,6 +19,28 @@ pub struct Candidates<'a> {
     pub distances: Option<&'a [DistanceMap]>,
     /// What the error at each counts, for example the volume it stands for; 1 without.
     pub weights: Option<&'a [f64]>,
+}
+
+impl<'a> Candidates<'a> {
+    /// Positions and as many functions, all of one order; light passes through walls, and all count alike.
+    #[must_use]
+    pub const fn new(positions: &'a [DVec3], radiance: &'a [Sh]) -> Self {
+        Self { positions, radiance, distances: None, weights: None }
+    }
+
+    /// Sets how far each sees: one map per position.
+    #[must_use]
+    pub const fn with_distances(mut self, distances: &'a [DistanceMap]) -> Self {
+        self.distances = Some(distances);
+        self
+    }
+
+    /// Sets what the error at each counts: one finite number of at least 0 per position, not all 0.
+    #[must_use]
+    pub const fn with_weights(mut self, weights: &'a [f64]) -> Self {
+        self.weights = Some(weights);
+        self
+    }
 }
 
 /// Candidates ready to be tried.
