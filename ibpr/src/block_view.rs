@@ -2,7 +2,7 @@
 
 use crate::buffer_map::BufferMap;
 use crate::cloud::Cloud;
-use crate::project::{Band, LANES, Projected};
+use crate::project::{BATCH, Band, Projected};
 use pulp::Arch;
 
 /// A block as this frame sees it.
@@ -58,8 +58,8 @@ pub(crate) fn walk(
     let [x, y, z] = &cloud.offsets;
     let end_row = band.first_row + band.rows;
     for view in views.iter().filter(|v| v.top < end_row && v.bottom > band.first_row) {
-        for start in (view.start..view.end).step_by(LANES) {
-            let lanes = start..(start + LANES).min(view.end);
+        for start in (view.start..view.end).step_by(BATCH) {
+            let lanes = start..(start + BATCH).min(view.end);
             let points = [&x[lanes.clone()], &y[lanes.clone()], &z[lanes]];
             projected.transform(arch, &view.rows, points, band);
             for k in projected.kept() {

@@ -234,7 +234,7 @@ impl Drawing<'_> {
     ) {
         for (k, strip) in strips.into_iter().enumerate() {
             if let Some(rules) = &self.rules[k] {
-                strip.place(self.width, first_row, n / self.width);
+                strip.set_rows(self.width, first_row, n / self.width);
                 begin(&mut strip.pixels);
                 faces::draw(&self.passes[k].buffer, rules, strip);
             }

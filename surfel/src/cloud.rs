@@ -63,7 +63,7 @@ impl Cloud {
 
     /// All positions, in an order of the cloud's own, to 2⁻³² of its extent.
     pub fn positions(&self) -> impl Iterator<Item = DVec3> {
-        (0..self.len()).map(|i| self.lattice.place(self.points.cell(i)))
+        (0..self.len()).map(|i| self.lattice.position(self.points.cell(i)))
     }
 
     /// Typical distance of neighbouring points, world units: the square root of the mean area of a point.
