@@ -2,6 +2,9 @@
 
 use crate::DelaunayError;
 
+/// As many points as one triangulation takes: random ones have about seven cells each.
+const MAX_POINTS: usize = 1 << 27;
+
 /// In the place of a neighbour: beyond this side there is no cell.
 pub const OUTSIDE: u32 = u32::MAX;
 
@@ -54,8 +57,10 @@ impl Partition {
     /// Checks that every corner is one of `count` points, and that neighbours are mutual: what a walk from cell to cell relies on.
     ///
     /// # Errors
-    /// [`DelaunayError::BadCell`] for the first cell that is not so.
+    /// [`DelaunayError::BadCell`] for the first cell that is not so; [`DelaunayError::TooManyPoints`].
     pub fn check(&self, count: usize) -> Result<(), DelaunayError> {
+        // Lists by point are made next; a wrong count must not ask for all memory.
+        check_count(count)?;
         let missing =
             |cell| DelaunayError::BadCell { cell, problem: "has a corner that is none of the points" };
         match self {
@@ -72,6 +77,12 @@ impl Partition {
             Self::Tetrahedra(t) => check_cells(&t.corners, &t.neighbours, count),
         }
     }
+}
+
+/// Refuses more points than cells can be told apart between.
+pub(crate) fn check_count(count: usize) -> Result<(), DelaunayError> {
+    let limit = MAX_POINTS;
+    if count <= limit { Ok(()) } else { Err(DelaunayError::TooManyPoints { count, limit }) }
 }
 
 fn check_cells<const N: usize>(

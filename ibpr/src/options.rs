@@ -1,7 +1,7 @@
 //! What a frame is made with.
 
 use crate::error::IbprError;
-use crate::scan::Scan;
+use crate::scan::{Scan, unit};
 use glam::{DVec3, Vec3};
 
 /// Size of a buffer pixel in picture pixels (the paper's S).
@@ -334,7 +334,7 @@ impl Options {
         }
         check_base(self.base)?;
         if let Light::Towards(d) = self.light
-            && !(d.is_finite() && d.length_squared() > 0.0)
+            && unit(d).is_none()
         {
             check("light", d.x as f32, false, "the direction must be finite and not zero")?;
         }

@@ -1,7 +1,7 @@
 //! Errors, one by one, and bugs that were fixed, each with the smallest input that showed it.
 
 use glam::{DAffine3, DVec3, Vec3, dvec3};
-use pointillist_ibpr::invariants::{OwnedScan, frame, frame_is_sound};
+use pointillist_ibpr::invariants::{OwnedScan, frame, frame_is_sound, frames_are_identical};
 use pointillist_ibpr::{
     Cloud, Culling, EyeDome, Frame, IbprError, Light, Options, Passes, Projection, Renderer, Scale, Scan,
     Translucency, View, ViewError,
@@ -259,5 +259,19 @@ fn a_base_that_is_no_color_is_refused() {
     for bad in [f32::NAN, -0.1, f32::INFINITY] {
         let refused = Cloud::new(&[Scan::new(&point)], Vec3::new(0.5, bad, 0.5)).unwrap_err();
         assert!(matches!(refused, IbprError::BadOption { name: "base", .. }), "{bad}: {refused}");
+    }
+}
+
+/// A direction whose squared length overflows lit nothing, and one whose squared length underflows was refused as zero.
+#[test]
+fn light_comes_from_directions_of_any_length() {
+    let scan = OwnedScan::plane(DVec3::ZERO, DVec3::X * 0.1, DVec3::Y * 0.1, 20, 20);
+    let view = View::look_at(DVec3::Z * 3.0, DVec3::ZERO, DVec3::Y, PERSPECTIVE, 16, 16).unwrap();
+    let lit = |length: f64| {
+        let options = Options::DEFAULT.with_light(Light::Towards(DVec3::Z * length));
+        frame(std::slice::from_ref(&scan), &view, &options).unwrap()
+    };
+    for length in [1e-200, 1e200] {
+        frames_are_identical(&lit(length), &lit(1.0)).unwrap();
     }
 }

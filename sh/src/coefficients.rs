@@ -99,6 +99,13 @@ impl<T: Channel> Sh<T> {
         dot(&self.coefficients, &values)
     }
 
+    /// Whether all coefficients are finite. [`Sh::new`] accepts no others, but factors and weights of arithmetic are not checked: NaN and
+    /// overflow show in the result.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.coefficients.iter().all(|c| (0..T::CHANNELS).all(|i| c.channel(i).is_finite()))
+    }
+
     /// The mean over all directions.
     #[must_use]
     pub fn mean(&self) -> T {

@@ -81,8 +81,10 @@ impl CubeMap {
     #[must_use]
     pub fn texel(&self, face: usize, x: usize, y: usize) -> Option<[f32; 3]> {
         let is_inside = face < 6 && x < self.size && y < self.size;
-        let index = (face * self.size + y) * self.size + x;
-        is_inside.then(|| self.planes.each_ref().map(|plane| plane[index]))
+        is_inside.then(|| {
+            let index = (face * self.size + y) * self.size + x;
+            self.planes.each_ref().map(|plane| plane[index])
+        })
     }
 
     /// The unit direction of a texel's centre (also beyond the face: its plane goes on).

@@ -503,3 +503,27 @@ mod regressions {
         assert_eq!(Sh::<f64>::constant(2.0, 2).unwrap().minimum().1, 2.0);
     }
 }
+
+/// Numbers from outside overflowed where they were multiplied.
+#[test]
+fn numbers_beyond_all_bands_and_faces_are_answered() {
+    assert_eq!(coefficient_count(usize::MAX), usize::MAX);
+    assert_eq!(coefficient_count(8), 81);
+    for (l, m) in [(usize::MAX, 0), (0, -5), (1, 2), (2, isize::MIN)] {
+        assert_eq!(pointillist_sh::coefficient_index(l, m), usize::MAX, "{l}, {m}");
+    }
+    assert_eq!([pointillist_sh::coefficient_index(2, -2), pointillist_sh::coefficient_index(2, 2)], [4, 8]);
+    assert_eq!(CubeMap::black(2).unwrap().texel(usize::MAX, usize::MAX, usize::MAX), None);
+}
+
+#[test]
+fn what_is_not_finite_can_be_told() {
+    let sh = Sh::constant(1.0, 2).unwrap();
+    assert!(sh.is_finite() && !sh.scaled(f64::NAN).is_finite());
+}
+
+#[test]
+#[should_panic(expected = "degree 4097 is above 4096")]
+fn a_rule_of_too_high_a_degree_panics_as_documented() {
+    let _ = SphereQuadrature::new(SphereQuadrature::MAX_DEGREE + 1);
+}

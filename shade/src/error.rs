@@ -20,6 +20,12 @@ pub enum ShadeError {
         /// Its coordinates.
         value: [f64; 3],
     },
+    /// A crease angle is NaN.
+    #[error("a crease angle of {crease_rad} rad; it must be a number")]
+    BadCrease {
+        /// As given, radians.
+        crease_rad: f64,
+    },
     /// A texture's slice does not hold `width · height` texels.
     #[error("{len} texels do not make a texture of {width} by {height}")]
     TextureSize {

@@ -97,13 +97,20 @@ pub fn display(color: Vec3) -> Vec3 {
     color.clamp(Vec3::ZERO, Vec3::ONE)
 }
 
+/// A unit vector and the length; zeros for a vector without direction.
+fn direction_and_length(v: DVec3) -> (DVec3, f64) {
+    // The squares of 1e200 and 1e-200 overflow and underflow.
+    let is_normal = (1e-280..=1e280).contains(&v.length_squared());
+    if is_normal { (v.normalize_or_zero(), v.length()) } else { crate::light::direction_and_length(v) }
+}
+
 /// Unit vector to the light, and attenuation times spot factor.
 fn arrival(light: &Light, point: DVec3) -> (Vec3, f32) {
     let (to_light, attenuation) = match light.placement {
-        Placement::Towards(direction) => (direction.normalize_or_zero(), 1.0),
+        Placement::Towards(direction) => (direction_and_length(direction).0, 1.0),
         Placement::At(position) => {
-            let offset = position - point;
-            (offset.normalize_or_zero(), Falloff::Polynomial(light.attenuation).at(offset.length()))
+            let (to_light, distance) = direction_and_length(position - point);
+            (to_light, Falloff::Polynomial(light.attenuation).at(distance))
         }
     };
     let spot = match (light.spot, light.placement) {
@@ -118,6 +125,6 @@ fn spot_factor(spot: Spot, travel: DVec3) -> f32 {
     if spot.cutoff_rad >= std::f64::consts::PI {
         return 1.0;
     }
-    let cosine = travel.dot(spot.direction.normalize_or_zero());
+    let cosine = travel.dot(direction_and_length(spot.direction).0);
     if cosine < spot.cutoff_rad.cos() { 0.0 } else { power(cosine as f32, spot.exponent) }
 }

@@ -184,7 +184,7 @@ impl Light {
 }
 
 /// A unit vector and the length, or zeros for a vector without direction. Safe from overflow and underflow.
-fn direction_and_length(v: DVec3) -> (DVec3, f64) {
+pub(crate) fn direction_and_length(v: DVec3) -> (DVec3, f64) {
     let largest = v.abs().max_element();
     if largest == 0.0 || !v.is_finite() {
         return (DVec3::ZERO, 0.0);

@@ -35,6 +35,7 @@ mod simplex;
 mod sites;
 mod solid;
 
+use crate::partition::check_count;
 use crate::{DelaunayError, OUTSIDE, Partition};
 pub(crate) use cell::Vertex;
 pub(crate) use sites::Sites;
@@ -42,9 +43,6 @@ pub(crate) use sites::Sites;
 use build::Shape;
 use glam::DVec3;
 use solid::Added;
-
-/// As many points as one triangulation takes: random ones have about seven cells each.
-const MAX_POINTS: usize = 1 << 27;
 
 /// A Delaunay triangulation that grows and shrinks: of space, or of the plane or line in which all points lie.
 #[derive(Clone, Debug)]
@@ -259,9 +257,4 @@ impl Delaunay {
 
 fn check_finite(index: usize, p: DVec3) -> Result<(), DelaunayError> {
     if p.is_finite() { Ok(()) } else { Err(DelaunayError::PointNotFinite { index }) }
-}
-
-fn check_count(count: usize) -> Result<(), DelaunayError> {
-    let limit = MAX_POINTS;
-    if count <= limit { Ok(()) } else { Err(DelaunayError::TooManyPoints { count, limit }) }
 }

@@ -66,6 +66,29 @@ pub(super) struct Outcome {
     pub(super) partition: Partition,
 }
 
+/// Weights are finite and not negative, and something counts.
+fn check_weights(weights: Option<&[f64]>) -> Result<(), ProbeError> {
+    let Some(weights) = weights else { return Ok(()) };
+    let is_bad = |w: &f64| !(*w >= 0.0 && w.is_finite());
+    let nothing = || (!weights.iter().any(|w| *w > 0.0)).then_some(0);
+    match weights.iter().position(is_bad).or_else(nothing) {
+        Some(index) => Err(ProbeError::BadWeight { index, weight: weights[index] }),
+        None => Ok(()),
+    }
+}
+
+/// Refuses what is not from 0 to 1.
+fn check_share(name: &'static str, value: f64) -> Result<(), ProbeError> {
+    let is_share = (0.0..=1.0).contains(&value);
+    if is_share { Ok(()) } else { Err(ProbeError::BadOption { name, value, range: "it must be 0 to 1" }) }
+}
+
+/// Refuses what is negative or not finite.
+pub(super) fn check_amount(name: &'static str, value: f64) -> Result<(), ProbeError> {
+    let range = "it must be finite and at least 0";
+    if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(ProbeError::BadOption { name, value, range }) }
+}
+
 impl<'a> Bench<'a> {
     pub(super) fn new(candidates: Candidates<'a>, balance: f64) -> Result<Self, ProbeError> {
         let count = candidates.positions.len();
@@ -84,6 +107,8 @@ impl<'a> Bench<'a> {
             return Err(ProbeError::PositionNotFinite { index });
         }
         common_order(candidates.radiance)?;
+        check_weights(candidates.weights)?;
+        check_share("balance", balance)?;
         let norm = (4.0 * std::f64::consts::PI).sqrt();
         let normed = |sh: &Sh| sh.convolved(&Lobe::COSINE).scaled(1.0 / norm).into_coefficients();
         let irradiance: Vec<Vec<DVec3>> = candidates.radiance.iter().map(normed).collect();
