@@ -184,7 +184,7 @@ fn bad_queries_and_starts_are_refused() {
 #[test]
 fn a_count_of_points_that_nothing_can_hold_is_refused() {
     let partition = Delaunay::new(&[[0.0; 3], [1.0, 0.0, 0.0]]).unwrap().partition();
-    for count in [1 << 40, usize::MAX] {
+    for count in [usize::MAX / 4, usize::MAX] {
         let limit = 1 << 27;
         assert_eq!(partition.graph(count), Err(DelaunayError::TooManyPoints { count, limit }));
         assert_eq!(partition.check(count), Err(DelaunayError::TooManyPoints { count, limit }));

@@ -41,7 +41,7 @@ pub enum Normals {
     Triangles,
 }
 
-/// What is skipped because it faces away.
+/// Back-face culling: which points are skipped because they face away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Culling {
@@ -69,7 +69,7 @@ pub enum Passes {
     },
 }
 
-/// Surfaces one sees through.
+/// How translucent surfaces are kept and blended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Translucency {
@@ -159,7 +159,7 @@ pub struct Options {
     pub culling: Culling,
     /// Default: [`Light::Eye`].
     pub light: Light,
-    /// Share of the light that comes from everywhere, 0 to 1. Default: 0.1.
+    /// Ambient share of the light, 0 to 1; the rest is diffuse light from `light`. Default: 0.1.
     pub ambient: f32,
     /// Color of points that have none, linear RGB, each channel from 0 to [`Scan::BRIGHTEST`]. Default: 0.8.
     pub base: Vec3,
@@ -264,7 +264,7 @@ impl Options {
         self
     }
 
-    /// Sets the share of the light that comes from everywhere, 0 to 1.
+    /// Sets the ambient share of the light, 0 to 1.
     #[must_use]
     pub const fn with_ambient(mut self, ambient: f32) -> Self {
         self.ambient = ambient;

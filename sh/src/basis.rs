@@ -1,4 +1,4 @@
-//! The functions themselves.
+//! The basis functions and their order.
 
 use crate::ShError;
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! What a photograph could not hold.
+//! How much of a photograph is over- or underexposed.
 
 /// The share of a photograph, 0 to 1, whose radiance is unknown: by pixels, or of a panorama by solid angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

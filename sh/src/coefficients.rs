@@ -7,7 +7,7 @@ use crate::basis::{
 use crate::{Channel, Lobe};
 use glam::DVec3;
 
-/// A function of direction that is a sum of spherical harmonics: radiance per colour, or (`Sh<f64>`) one number, such as
+/// A function of direction that is a sum of spherical harmonics: radiance per color, or (`Sh<f64>`) one number, such as
 /// visibility.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sh<T = DVec3> {

@@ -7,7 +7,7 @@ use pointillist_parallel as parallel;
 
 /// Radiance in all directions, on the six faces of a cube: +X, −X, +Y, −Y, +Z, −Z, each in rows from the top.
 ///
-/// Colours lie in planes, red, green and blue, each with all faces one after the other.
+/// Colors lie in planes, red, green and blue, each with all faces one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CubeMap {
     size: usize,
@@ -39,7 +39,7 @@ impl CubeMap {
         }
     }
 
-    /// From 6·size² colours, face after face.
+    /// From 6·size² colors, face after face.
     ///
     /// # Errors
     /// `CubeSize`, `CubeTexelCount`.
@@ -102,7 +102,7 @@ impl CubeMap {
     }
 }
 
-/// 6·size², if that is something to work with.
+/// 6·size², or an error if the size is 0 or above [`CubeMap::MAX_SIZE`].
 pub(crate) const fn texel_count(size: usize) -> Result<usize, ShError> {
     if size == 0 || size > CubeMap::MAX_SIZE {
         return Err(ShError::CubeSize { size, limit: CubeMap::MAX_SIZE });

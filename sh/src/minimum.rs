@@ -1,4 +1,4 @@
-//! The least value of a function.
+//! The minimum of a function over all directions.
 
 use crate::basis::{Y1, Y2_AXIAL, Y2_MIXED, Y2_SQUARES};
 use crate::eigen::eigen;

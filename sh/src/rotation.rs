@@ -1,4 +1,4 @@
-//! Turned functions.
+//! Rotation of spherical harmonics.
 
 use crate::ShError;
 use crate::basis::{checked_order, coefficient_count};

@@ -1,4 +1,4 @@
-//! Light that is nowhere negative.
+//! Windows that damp higher bands, so that light is negative nowhere.
 
 use crate::{Channel, Lobe, Sh};
 use std::f64::consts::{FRAC_PI_2, PI};

@@ -11,7 +11,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-fn colour() -> impl Strategy<Value = DVec3> {
+fn color() -> impl Strategy<Value = DVec3> {
     [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0].prop_map(DVec3::from)
 }
 
@@ -19,7 +19,7 @@ fn colour() -> impl Strategy<Value = DVec3> {
 fn direction() -> impl Strategy<Value = DVec3> {
     let corner =
         (-1..=1_i32, -1..=1_i32, -1..=1_i32).prop_map(|(x, y, z)| dvec3(x.into(), y.into(), z.into()));
-    let any = colour();
+    let any = color();
     prop_oneof![1 => corner, 3 => any].prop_filter_map("no direction", DVec3::try_normalize)
 }
 
@@ -33,7 +33,7 @@ fn rotation() -> impl Strategy<Value = DQuat> {
 }
 
 fn of_order(order: usize) -> impl Strategy<Value = Sh> {
-    vec(colour(), coefficient_count(order)).prop_map(|c| Sh::new(c).unwrap())
+    vec(color(), coefficient_count(order)).prop_map(|c| Sh::new(c).unwrap())
 }
 
 fn sh() -> impl Strategy<Value = Sh> {
@@ -82,7 +82,7 @@ proptest! {
     }
 
     #[test]
-    fn a_constant_sky_gives_pi_times_itself(radiance in colour(), size in 1..40_usize, n in direction()) {
+    fn a_constant_sky_gives_pi_times_itself(radiance in color(), size in 1..40_usize, n in direction()) {
         hold(facts::constant_sky_gives_pi(radiance, size, n))?;
     }
 

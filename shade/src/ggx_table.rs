@@ -1,4 +1,4 @@
-//! How much light a GGX coat reflects in all, tabulated once by quadrature.
+//! Directional albedo of a GGX coat, tabulated once by quadrature.
 //!
 //! With Schlick's Fresnel term the albedo for light from one direction is E = f0·A + f90·B, where A and B depend on
 //! the angle and the roughness only (the second sum of the "split sum" \[7\]).

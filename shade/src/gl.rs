@@ -1,6 +1,7 @@
 //! The fixed-function OpenGL lighting formula \[5\], with its own light and material.
 //!
-//! Not physical (the highlight is not weighted by the cosine, nothing is normalised), but the known values are known.
+//! Not physical: the highlight is not weighted by the cosine, and nothing is normalised. It gives the values that OpenGL gives, for
+//! comparison. Its light and material hold what the specification \[5\] names, and will not grow.
 
 use crate::{Falloff, brdf::power};
 use glam::{DVec3, Vec3};

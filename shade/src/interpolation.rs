@@ -10,13 +10,13 @@ pub enum Interpolation {
     /// Nothing: the face normal serves the whole triangle.
     #[default]
     Flat,
-    /// Colours: corners are shaded, the inside is mixed.
+    /// Colors: corners are shaded, the inside is mixed.
     Gouraud,
     /// Normals: every point is shaded by itself.
     Phong,
 }
 
-/// The corners' colours mixed by barycentric weights: the inside of a Gouraud triangle.
+/// The corners' colors mixed by barycentric weights: the inside of a Gouraud triangle.
 #[must_use]
 pub fn interpolate_color(corners: [Vec3; 3], weights: Vec3) -> Vec3 {
     corners[0] * weights.x + corners[1] * weights.y + corners[2] * weights.z

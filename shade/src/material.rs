@@ -1,4 +1,4 @@
-//! A surface's own constants, and the light it sends to the eye.
+//! Materials, and the radiance that they reflect towards the eye.
 
 use crate::{Incident, LARGEST_IRRADIANCE, brdf, ggx};
 use glam::Vec3;
@@ -48,7 +48,7 @@ pub struct Material {
     pub roughness: f32,
     /// Radiance that the surface sends out by itself.
     pub emission: Vec3,
-    /// 1 hides what is behind, 0 is not there.
+    /// Opacity: 1 is opaque, 0 invisible.
     pub opacity: f32,
 }
 

@@ -117,7 +117,7 @@ impl MerlTable {
     }
 
     /// Directional albedo for an eye at normal incidence, by [`crate::directional_albedo`]: what stands for the whole table
-    /// where one colour is needed.
+    /// where one color is needed.
     #[must_use]
     pub fn albedo(&self) -> Vec3 {
         crate::directional_albedo(Vec3::Z, 64, |l, v| self.brdf(Vec3::Z, l, v)).min(Vec3::ONE)

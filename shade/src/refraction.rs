@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-/// Where a look goes on at a clear surface.
+/// How a ray from the eye continues at a smooth, transparent surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Refraction {

@@ -228,7 +228,7 @@ fn a_back_face_is_turned_to_the_eye() {
 }
 
 #[test]
-fn gouraud_mixes_colours() {
+fn gouraud_mixes_colors() {
     let mixed = interpolate_color([Vec3::X, Vec3::Y, Vec3::Z], vec3(0.5, 0.25, 0.25));
     assert_eq!(mixed, vec3(0.5, 0.25, 0.25));
 }

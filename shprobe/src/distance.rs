@@ -1,4 +1,4 @@
-//! How far a probe sees in every direction, and so which positions it sees.
+//! Distances from a probe to the nearest surface in every direction, and visibility from them.
 
 use crate::octahedron::{direction_from_square, square_from_direction, wrapped};
 use crate::sh::{CubePoint, cube_direction, texel_solid_angle};

@@ -1,4 +1,4 @@
-//! Probes that light what lies between them.
+//! Light interpolated between probes.
 
 use crate::delaunay::{Delaunay, Hint, Locator, Partition};
 use crate::sh::{Irradiance, Lobe, MAX_COUNT, Sh, basis, coefficient_count};
@@ -29,7 +29,7 @@ pub struct Field {
     bias: Option<f64>,
 }
 
-/// Something that moves between probes.
+/// A moving object: its position, and the light there.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct LitObject {
@@ -261,7 +261,7 @@ impl Field {
     }
 }
 
-/// What a probe sends to surfaces, from what it receives.
+/// Coefficients of irradiance from those of radiance.
 pub(crate) fn irradiance_of(radiance: &Sh) -> Vec<Vec3> {
     radiance.convolved(&Lobe::COSINE).into_coefficients().into_iter().map(|c| c.as_vec3()).collect()
 }

@@ -5,7 +5,7 @@ use super::trial::{Bench, Candidates, Outcome, check_amount};
 use crate::{ProbeError, parallel};
 use std::collections::BTreeMap;
 
-/// When [`adaptive`] stops, and what counts as an error.
+/// When [`adaptive`] stops, and how errors are weighted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AdaptiveOptions {

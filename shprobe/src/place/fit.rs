@@ -1,4 +1,4 @@
-//! What probes should hold so that what lies between them is lit right.
+//! Coefficients of probes, fitted to the light between them by least squares.
 
 use super::trial::{Bench, Candidates, check_amount};
 use crate::sh::Sh;

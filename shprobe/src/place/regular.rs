@@ -1,4 +1,4 @@
-//! Placement that does not know the light.
+//! Placement by geometry alone: grids, random positions, and spread subsets.
 
 use glam::{DVec3, dvec3};
 

@@ -1,4 +1,4 @@
-//! How well some candidates light all of them.
+//! The error of light interpolated between some of the candidates, over all of them.
 
 use crate::delaunay::{Blend, Delaunay, Hint, Locator, Partition};
 use crate::field::{common_order, help};
@@ -55,7 +55,7 @@ pub(super) struct Bench<'a> {
 /// Light weaker than this share of the RMS counts as this much, so that errors where it is dark do not count without end.
 const DARK: f64 = 0.02;
 
-/// What a set of probes leaves wrong.
+/// The error of a set of probes.
 pub(super) struct Outcome {
     /// Square of the relative error over all candidates.
     pub(super) error2: f64,
