@@ -75,7 +75,8 @@ impl IrradianceMatrix {
     }
 }
 
-/// [`IrradianceMatrix`] in single precision, as renderers use it: about 1e-7 of the largest irradiance.
+/// [`IrradianceMatrix`] in single precision, as renderers use it: about 1e-7 of the largest irradiance; infinite for
+/// coefficients beyond the range of `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Irradiance {
     /// Of x² − z², y² − z², 1 + z², yz, xz, xy, x, y, z; four numbers each, as vector registers have them.
