@@ -11,6 +11,7 @@ pub struct Cell<'a> {
 
 impl Partition {
     /// How many cells there are. A point is one.
+    #[must_use]
     pub fn cell_count(&self) -> usize {
         match self {
             Self::Point(_) => 1,
@@ -39,6 +40,7 @@ impl Partition {
     }
 
     /// The cell of this index, if there is one.
+    #[must_use]
     pub fn cell(&self, index: u32) -> Option<Cell<'_>> {
         ((index as usize) < self.cell_count()).then_some(Cell { partition: self, index })
     }
@@ -46,11 +48,13 @@ impl Partition {
 
 impl<'a> Cell<'a> {
     /// Which cell it is, from 0.
+    #[must_use]
     pub const fn index(self) -> u32 {
         self.index
     }
 
     /// Its corners, as indices of points: one more than the dimension.
+    #[must_use]
     pub fn corners(self) -> &'a [u32] {
         let index = self.index as usize;
         match self.partition {
@@ -62,6 +66,7 @@ impl<'a> Cell<'a> {
     }
 
     /// The cell beyond the side opposite corner `side`; `None` on the hull, and if there is no such corner.
+    #[must_use]
     pub fn neighbour(self, side: usize) -> Option<Self> {
         let index = self.index as usize;
         let next = match self.partition {

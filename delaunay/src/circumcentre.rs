@@ -33,6 +33,7 @@ impl Cell<'_> {
     /// assert_eq!(centres, [Some(dvec3(1.0, 1.0, 1.0))]);
     /// # Ok::<(), pointillist_delaunay::DelaunayError>(())
     /// ```
+    #[must_use]
     pub fn circumcentre(self, points: &[DVec3]) -> Option<DVec3> {
         let mut corners = [DVec3::ZERO; 4];
         for (corner, &index) in corners.iter_mut().zip(self.corners()) {
@@ -47,6 +48,7 @@ impl Cell<'_> {
 /// The distances of the corners from it differ by at most 1e-10 of the radius and 4 ulp of the largest coordinate, of corners and centre,
 /// however flat the cell is. `None` if the corners lie in a plane or line of fewer dimensions, one is not finite, the centre is too far
 /// away for `f64`, or there are none or more than four.
+#[must_use]
 pub fn circumcentre(corners: &[DVec3]) -> Option<DVec3> {
     if !corners.iter().all(|p| p.is_finite()) {
         return None;

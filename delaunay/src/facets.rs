@@ -29,16 +29,19 @@ impl Facet {
 
     /// Its corners, as indices of points: as many as the dimension. Of a tetrahedron counterclockwise as seen from outside; of a
     /// triangle in the sense of that triangle.
+    #[must_use]
     pub fn corners(&self) -> &[u32] {
         &self.corners[..self.count]
     }
 
     /// The cell that it is a side of.
+    #[must_use]
     pub const fn cell(&self) -> u32 {
         self.cell
     }
 
     /// Which corner of the cell it lies opposite to.
+    #[must_use]
     pub const fn side(&self) -> usize {
         self.side
     }
@@ -66,6 +69,7 @@ impl Partition {
     /// assert!(hull.iter().all(|facet| !facet.corners().contains(&4)));
     /// # Ok::<(), pointillist_delaunay::DelaunayError>(())
     /// ```
+    #[must_use]
     pub fn hull(&self) -> Vec<Facet> {
         if self.dimension() == 0 {
             return vec![];

@@ -73,12 +73,14 @@ impl Graph {
     }
 
     /// How many points there are, vertices or not.
+    #[must_use]
     pub fn point_count(&self) -> usize {
         self.first.len() - 1
     }
 
     /// The vertices that share an edge with this one, rising; none of a point that is no vertex: one removed, or one that another in
     /// the same place stands for.
+    #[must_use]
     pub fn around(&self, vertex: u32) -> &[u32] {
         let v = vertex as usize;
         if v < self.point_count() { &self.around[self.first[v]..self.first[v + 1]] } else { &[] }

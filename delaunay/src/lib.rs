@@ -57,8 +57,13 @@
 //! much as building.
 //!
 //! # Features
-//! `rayon` (default) uses all cores; it never changes a result. `invariants`: facts that hold for every input, for property tests and fuzzing.
-//! Nothing needs an operating system beyond `std`; builds for `wasm32-unknown-unknown` without `rayon`.
+//! `rayon` (default) uses all cores; it never changes a result. `invariants`: the module of that name, facts for property tests and fuzzing, also
+//! of crates that build on this one.
+//!
+//! Builds for `wasm32-unknown-unknown` without default features. Cells, circumcentres and nearest vertices are the same to the bit there:
+//! decisions are exact, and circumcentres take additions, products and quotients alone. So were weights, of 3000 random points and of a
+//! grid. Times in the README are with thin LTO and `codegen-units = 1` in
+//! the profile of the dependent program.
 //!
 //! # References
 //! 1. A. Bowyer: *Computing Dirichlet tessellations*, The Computer Journal 24, 1981.
@@ -100,6 +105,9 @@ pub use locator::{Hint, Locator};
 pub use nearest::NearestVertex;
 pub use partition::{OUTSIDE, Partition, Tetrahedra, Triangles};
 pub use triangulation::Delaunay;
+
+/// The version of `glam` that this crate's functions take and return.
+pub use glam;
 
 /// The examples of the README are tests.
 #[cfg(doctest)]

@@ -148,6 +148,7 @@ impl Locator {
     }
 
     /// A hint for a position without one, from a coarse grid.
+    #[must_use]
     pub fn hint(&self, p: DVec3) -> Hint {
         self.local(p).map_or(Hint::START, |p| Hint(self.starts.at(p)))
     }

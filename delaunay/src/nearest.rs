@@ -55,6 +55,7 @@ impl NearestVertex {
     }
 
     /// The edges between the vertices.
+    #[must_use]
     pub const fn graph(&self) -> &Graph {
         &self.graph
     }

@@ -2,6 +2,9 @@
 
 use crate::DelaunayError;
 
+/// As many points as one triangulation takes: random ones have about seven cells each.
+const MAX_POINTS: usize = 1 << 27;
+
 /// In the place of a neighbour: beyond this side there is no cell.
 pub const OUTSIDE: u32 = u32::MAX;
 
@@ -41,6 +44,7 @@ pub struct Tetrahedra {
 
 impl Partition {
     /// 3 for tetrahedra, 2 for triangles, 1 for a line, 0 for a point.
+    #[must_use]
     pub const fn dimension(&self) -> usize {
         match self {
             Self::Point(_) => 0,
@@ -50,11 +54,14 @@ impl Partition {
         }
     }
 
-    /// Checks that every corner is one of `count` points, and that neighbours are mutual: what a walk from cell to cell relies on.
+    /// Checks that every corner is one of `count` points, that no cell has a corner twice, and that neighbours are mutual: what a walk from
+    /// cell to cell relies on.
     ///
     /// # Errors
-    /// [`DelaunayError::BadCell`] for the first cell that is not so.
+    /// [`DelaunayError::BadCell`] for the first cell that is not so; [`DelaunayError::TooManyPoints`].
     pub fn check(&self, count: usize) -> Result<(), DelaunayError> {
+        // Lists by point are made next; a wrong count must not ask for all memory.
+        check_count(count)?;
         let missing =
             |cell| DelaunayError::BadCell { cell, problem: "has a corner that is none of the points" };
         match self {
@@ -65,13 +72,25 @@ impl Partition {
                 None if line.len() < 2 => {
                     Err(DelaunayError::BadCell { cell: 0, problem: "is a line of fewer than two points" })
                 }
-                None => Ok(()),
+                None => match line.windows(2).position(|ends| ends[0] == ends[1]) {
+                    Some(cell) => Err(DelaunayError::BadCell { cell, problem: REPEATED }),
+                    None => Ok(()),
+                },
             },
             Self::Triangles(t) => check_cells(&t.corners, &t.neighbours, count),
             Self::Tetrahedra(t) => check_cells(&t.corners, &t.neighbours, count),
         }
     }
 }
+
+/// Refuses more points than cells can be told apart between.
+pub(crate) fn check_count(count: usize) -> Result<(), DelaunayError> {
+    let limit = MAX_POINTS;
+    if count <= limit { Ok(()) } else { Err(DelaunayError::TooManyPoints { count, limit }) }
+}
+
+/// What is wrong with a cell that has no inside.
+const REPEATED: &str = "has a corner twice";
 
 fn check_cells<const N: usize>(
     corners: &[[u32; N]],
@@ -88,6 +107,9 @@ fn check_cells<const N: usize>(
     for (cell, (points, next)) in corners.iter().zip(neighbours).enumerate() {
         if points.iter().any(|&p| p as usize >= count) {
             return bad(cell, "has a corner that is none of the points");
+        }
+        if (1..N).any(|k| points[..k].contains(&points[k])) {
+            return bad(cell, REPEATED);
         }
         for &n in next.iter().filter(|&&n| n != OUTSIDE) {
             let back = neighbours.get(n as usize).is_some_and(|list| list.contains(&(cell as u32)));

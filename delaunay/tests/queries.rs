@@ -179,3 +179,32 @@ fn bad_queries_and_starts_are_refused() {
     let only = NearestVertex::new(&[DVec3::ONE; 3], &Partition::Point(0)).unwrap();
     assert_eq!(only.find(DVec3::ZERO), Ok(0));
 }
+
+/// A count of points that memory cannot hold overflowed, or ended the program.
+#[test]
+fn a_count_of_points_that_nothing_can_hold_is_refused() {
+    let partition = Delaunay::new(&[[0.0; 3], [1.0, 0.0, 0.0]]).unwrap().partition();
+    for count in [usize::MAX / 4, usize::MAX] {
+        let limit = 1 << 27;
+        assert_eq!(partition.graph(count), Err(DelaunayError::TooManyPoints { count, limit }));
+        assert_eq!(partition.check(count), Err(DelaunayError::TooManyPoints { count, limit }));
+    }
+}
+
+/// A partition in which no cell has two different corners has no vertex: looking for the nearest one panicked.
+#[test]
+fn cells_with_a_corner_twice_are_refused() {
+    let points = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let point = Tetrahedra { corners: vec![[0; 4]], neighbours: vec![[OUTSIDE; 4]] };
+    let flat = Triangles { corners: vec![[0, 1, 2], [1, 3, 1]], neighbours: vec![[OUTSIDE; 3]; 2] };
+    for (partition, cell) in [
+        (Partition::Tetrahedra(point), 0),
+        (Partition::Triangles(flat), 1),
+        (Partition::Line(vec![0, 1, 1]), 1),
+    ] {
+        let error = Some(DelaunayError::BadCell { cell, problem: "has a corner twice" });
+        assert_eq!(partition.check(4).err(), error);
+        assert_eq!(NearestVertex::new(&points, &partition).err(), error);
+        assert_eq!(pointillist_delaunay::Locator::new(&points, &partition).err(), error);
+    }
+}

@@ -50,15 +50,12 @@ fn material(input: &MaterialInput) -> Material {
     let [diffuse, specular, emission] = input.colors.map(color);
     let models =
         [shade::Model::Lambert, shade::Model::Phong, shade::Model::NormalizedBlinnPhong, shade::Model::Ggx];
-    let surface = shade::Material {
-        model: models[input.model as usize % models.len()],
-        diffuse,
-        specular,
-        emission,
-        opacity: f32::from(input.opacity) / 255.0,
-        shininess: 20.0,
-        roughness: 0.3,
-    };
+    let model = models[input.model as usize % models.len()];
+    let surface = shade::Material::lambert(diffuse)
+        .with_specular(model, specular, 20.0)
+        .with_emission(emission)
+        .with_opacity(f32::from(input.opacity) / 255.0)
+        .with_roughness(0.3);
     let mut material = Material::new("any", surface);
     let map = |n: u8| Map { texture: usize::from(n % 3), wrap: Wrap::Mirror, channel: Channel::Red };
     let [diffuse, opacity, bump, roughness] = input.maps;

@@ -135,3 +135,15 @@ impl DepthScale {
         steps * (self.spacing * slope * slope).max(self.footprint * slope)
     }
 }
+
+/// Rows of a buffer that a band writes.
+pub(crate) struct BufferBand<'a> {
+    pub(crate) x: &'a mut [f32],
+    pub(crate) y: &'a mut [f32],
+    pub(crate) q: &'a mut [f32],
+    pub(crate) count: &'a mut [f32],
+    pub(crate) color: &'a mut [[f32; 3]],
+    /// Entries to the next layer and to the next row.
+    pub(crate) stride: usize,
+    pub(crate) pitch: usize,
+}

@@ -5,7 +5,7 @@ use crate::error::IbprError;
 use crate::options::check_base;
 use crate::order::{Lattice, in_order};
 use crate::parallel::*;
-use crate::scan::Scan;
+use crate::scan::{Scan, unit};
 use crate::spacing;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -53,15 +53,18 @@ impl Cloud {
     /// without color get `base` if other scans have colors.
     ///
     /// # Errors
-    /// [`IbprError::NoPoints`], [`IbprError::PointNotFinite`], [`IbprError::BadColor`],
-    /// [`IbprError::LengthMismatch`], [`IbprError::BadScan`], [`IbprError::TooManyPoints`]; [`IbprError::BadOption`] if a channel of
-    /// `base` is not from 0 to [`Scan::BRIGHTEST`].
+    /// [`IbprError::NoPoints`], [`IbprError::PointNotFinite`], [`IbprError::PointTooFar`], [`IbprError::BadColor`],
+    /// [`IbprError::LengthMismatch`], [`IbprError::BadSpacing`], [`IbprError::BadDirection`], [`IbprError::TooManyPoints`];
+    /// [`IbprError::BadOption`] if a channel of `base` is not from 0 to [`Scan::BRIGHTEST`].
     pub fn new(scans: &[Scan<'_>], base: Vec3) -> Result<Self, IbprError> {
         check_base(base)?;
-        let points: usize = scans.iter().map(|s| s.positions.len()).sum();
-        if u32::try_from(points).is_err() {
-            return Err(IbprError::TooManyPoints { points });
-        }
+        let add = |sum: usize, scan: &Scan<'_>| sum.checked_add(scan.positions.len());
+        let limit = u32::MAX as usize;
+        // Scans may share points, so that more than memory holds can be given: on 32 bits even more than can be counted.
+        let Some(points) = scans.iter().try_fold(0, add).filter(|&points| points <= limit) else {
+            let count = scans.iter().fold(0_usize, |sum, s| sum.saturating_add(s.positions.len()));
+            return Err(IbprError::TooManyPoints { count, limit });
+        };
         for (i, scan) in scans.iter().enumerate() {
             scan.check(i)?;
         }
@@ -69,9 +72,6 @@ impl Cloud {
             return Err(IbprError::NoPoints);
         }
         let lattice = Lattice::around(scans.iter().flat_map(|s| s.positions));
-        if !lattice.extent.is_finite() {
-            return Err(IbprError::BadScan { scan: 0, reason: "its points are too far apart for f64" });
-        }
         let ordered = in_order(scans, &lattice);
         let spacings: Vec<f64> = ordered.iter().map(|o| spacing::of_scan(&scans[o.scan], o)).collect();
         let spacing = spacing::typical(&ordered, &spacings);
@@ -123,7 +123,7 @@ impl Cloud {
                 axis.push(value);
             }
         }
-        let towards_scanner = scan.towards_scanner.map(DVec3::normalize);
+        let towards_scanner = scan.towards_scanner.and_then(unit);
         let points = start..start + indices.len();
         // Rounded up: the box must hold the rounded offsets.
         let half = (0.5 / self.unit * (bounds.high - bounds.low)).as_vec3() * (1.0 + 4.0 * f32::EPSILON);

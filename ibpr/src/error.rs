@@ -15,6 +15,18 @@ pub enum IbprError {
         /// Its coordinates.
         value: [f64; 3],
     },
+    /// A coordinate is beyond [`Scan::FARTHEST`](crate::Scan::FARTHEST).
+    #[error(
+        "point {index} of scan {scan} is too far from the origin: {value:?}; coordinates can be up to 4.4e307"
+    )]
+    PointTooFar {
+        /// Position of the scan in the slice.
+        scan: usize,
+        /// Position of the point in its scan.
+        index: usize,
+        /// Its coordinates.
+        value: [f64; 3],
+    },
     /// A color is NaN, negative, or above [`Scan::BRIGHTEST`](crate::Scan::BRIGHTEST).
     #[error("the color of point {index} of scan {scan} is not from 0 to 1e28: {value:?}")]
     BadColor {
@@ -35,19 +47,29 @@ pub enum IbprError {
         /// How many points there are.
         points: usize,
     },
-    /// A spacing must be finite and above 0, a direction finite and not zero.
-    #[error("scan {scan}: {reason}")]
-    BadScan {
+    /// The spacing of a scan is not finite, or not above 0.
+    #[error("scan {scan} has a spacing of {spacing}; it must be finite and above 0")]
+    BadSpacing {
         /// Position of the scan in the slice.
         scan: usize,
-        /// What is wrong.
-        reason: &'static str,
+        /// As given, world units.
+        spacing: f64,
     },
-    /// More points than an index holds.
-    #[error("{points} points are more than this crate can number (2^32 - 1)")]
+    /// The direction towards the scanner is zero or not finite.
+    #[error("scan {scan}: the direction towards the scanner is {value:?}; it must be finite and not zero")]
+    BadDirection {
+        /// Position of the scan in the slice.
+        scan: usize,
+        /// As given.
+        value: [f64; 3],
+    },
+    /// All scans together have more points than 32 bits can number.
+    #[error("{count} points, and there can be at most {limit}")]
     TooManyPoints {
         /// How many there are.
-        points: usize,
+        count: usize,
+        /// How many there can be.
+        limit: usize,
     },
     /// A side of the picture is above [`Renderer::LARGEST_SIDE`](crate::Renderer::LARGEST_SIDE).
     #[error("a picture of {width}×{height} pixels cannot be drawn: each side must be at most 16384")]

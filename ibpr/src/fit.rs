@@ -13,7 +13,7 @@ const TERMS: usize = 6;
 const PAIRS: usize = TERMS * (TERMS + 1) / 2;
 
 /// A value for each of the pixels that are fitted together.
-type Lane = [f32; LANES];
+type Lanes = [f32; LANES];
 
 /// A fitted surface at its pixel.
 #[derive(Clone, Copy, Default)]
@@ -51,17 +51,17 @@ impl<const RESIDUAL: bool> NullaryFnOnce for Chunk<'_, RESIDUAL> {
 #[derive(Clone, Copy)]
 struct Window {
     /// Row by row from the diagonal on.
-    left: [Lane; PAIRS],
-    right: [Lane; TERMS],
+    left: [Lanes; PAIRS],
+    right: [Lanes; TERMS],
     /// Sum of w·q².
-    qq: Lane,
+    qq: Lanes,
 }
 
 #[inline(always)]
-fn sum_window(b: &Buffer, first: usize, step: &Lane, radius: isize) -> Window {
+fn sum_window(b: &Buffer, first: usize, step: &Lanes, radius: isize) -> Window {
     let zero = [0.0; LANES];
     let mut s = Window { left: [zero; PAIRS], right: [zero; TERMS], qq: zero };
-    let of = |array: &[f32], at: usize| -> Lane {
+    let of = |array: &[f32], at: usize| -> Lanes {
         array[at..at + LANES].try_into().expect("a slice of LANES entries")
     };
     let (cx, cy, cq) = (of(&b.x, first), of(&b.y, first), of(&b.q, first));
@@ -165,7 +165,7 @@ impl Window {
     }
 }
 
-type Matrix = [[Lane; TERMS]; TERMS];
+type Matrix = [[Lanes; TERMS]; TERMS];
 
 /// First of the terms that bend the surface.
 const CURVED: usize = 3;
@@ -174,7 +174,7 @@ const CURVED: usize = 3;
 ///
 /// Lanes are the innermost loops: those are the ones that the compiler makes vectors of.
 #[inline(always)]
-fn decompose(m: &mut Matrix, rhs: &mut [Lane; TERMS]) {
+fn decompose(m: &mut Matrix, rhs: &mut [Lanes; TERMS]) {
     for i in 0..TERMS {
         // D·L of this row, which every entry needs.
         let mut scaled = [[0.0; LANES]; TERMS];
@@ -198,7 +198,7 @@ fn decompose(m: &mut Matrix, rhs: &mut [Lane; TERMS]) {
 
 /// `rhs` becomes L⁻ᵀ·rhs.
 #[inline(always)]
-fn substitute_back(m: &Matrix, rhs: &mut [Lane; TERMS]) {
+fn substitute_back(m: &Matrix, rhs: &mut [Lanes; TERMS]) {
     for i in (0..TERMS).rev() {
         for l in i + 1..TERMS {
             rhs[i] = minus_product(rhs[i], &m[l][i], &rhs[l]);
@@ -207,12 +207,12 @@ fn substitute_back(m: &Matrix, rhs: &mut [Lane; TERMS]) {
 }
 
 #[inline(always)]
-fn lanes(value: impl Fn(usize) -> f32) -> Lane {
+fn lanes(value: impl Fn(usize) -> f32) -> Lanes {
     std::array::from_fn(value)
 }
 
 /// v − a·b
 #[inline(always)]
-fn minus_product(v: Lane, a: &Lane, b: &Lane) -> Lane {
+fn minus_product(v: Lanes, a: &Lanes, b: &Lanes) -> Lanes {
     lanes(|k| v[k] - a[k] * b[k])
 }

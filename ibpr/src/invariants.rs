@@ -1,7 +1,18 @@
-//! Facts that hold for every cloud, view and set of options, as functions: property tests and fuzz
-//! targets call the same ones.
+//! Facts that hold for every cloud, view and set of options, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
 //!
-//! Each takes any input at all. Scans or options that are refused satisfy every fact.
+//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a crate
+//! that builds on it, with the feature `invariants`. Each takes any input at all; scans and options that are
+//! refused satisfy every fact.
+//!
+//! ```
+//! use pointillist_ibpr::{Options, Projection, View, invariants::{OwnedScan, frames_are_sound}};
+//! # use glam::DVec3;
+//!
+//! let scan = OwnedScan::plane(DVec3::ZERO, DVec3::X * 0.1, DVec3::Y * 0.1, 20, 20).jittered(DVec3::Z * 0.05, 1);
+//! let view = View::look_at(DVec3::Z * 3.0, DVec3::ZERO, DVec3::Y, Projection::Perspective { fov_y_rad: 0.8 }, 32, 24).unwrap();
+//! frames_are_sound(&[scan], &view, &Options::DEFAULT)?;
+//! # Ok::<(), String>(())
+//! ```
 
 use crate::{Cloud, Frame, IbprError, Options, Renderer, Scan, View};
 use glam::{DVec2, DVec3, Vec3};

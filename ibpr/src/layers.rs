@@ -4,11 +4,12 @@
 //! threshold from the first one of its layer opens the next. The paper opens layers in the order in
 //! which points arrive; sorted first, the layers are the same for every order.
 
-use crate::accumulate::{BandScratch, BlockView, Resolved, Rules, walk};
-use crate::buffer::PAD;
+use crate::block_view::{BlockView, walk};
+use crate::buffer::{BufferBand, PAD};
 use crate::cloud::Cloud;
 use crate::options::Translucency;
 use crate::project::Band;
+use crate::rules::Rules;
 
 /// A point in its pixel.
 #[derive(Clone, Copy, Debug, Default)]
@@ -35,10 +36,9 @@ pub(crate) fn fill_band(
     band: &Band,
     rules: Rules,
     options: Translucency,
-    scratch: &mut BandScratch,
-    mut out: Resolved<'_>,
+    scratch: &mut LayerScratch,
+    mut out: BufferBand<'_>,
 ) {
-    let scratch = &mut scratch.layered;
     sort_by_pixel(cloud, views, band, scratch);
     for row in 0..band.rows {
         for column in 0..band.width {
@@ -84,7 +84,7 @@ fn split(
     options: Translucency,
     members: &[Member],
     first: usize,
-    out: &mut Resolved<'_>,
+    out: &mut BufferBand<'_>,
 ) {
     let mut rest = members;
     for layer in 0..options.layers {

@@ -34,8 +34,12 @@
 //! `studies/results/ibpr.md` has time against error for every option, and the paper's own times beside ours.
 //!
 //! # Features
-//! `rayon` (default): bands of the picture on all cores; results do not change. `invariants`: the checks
-//! that tests and fuzzing share.
+//! `rayon` (default): bands of the picture on all cores; results do not change. `invariants`: the module of that name, facts
+//! for property tests and fuzzing, also of crates that build on this one.
+//!
+//! Builds for `wasm32-unknown-unknown` without default features; last bits of pictures may differ there, because logarithms and
+//! trigonometric functions come from another library. Figures here and in the README are with thin LTO and `codegen-units = 1` (`[profile.release]` of the
+//! program that depends on this crate): without them expect somewhat more.
 //!
 //! # References
 //! \[1\] The paper on image-based point rendering (IBPR) of several range scans: buffer, γ, eight
@@ -44,6 +48,7 @@
 #![forbid(unsafe_code)]
 
 mod accumulate;
+mod block_view;
 mod buffer;
 mod buffer_map;
 mod cloud;
@@ -58,6 +63,7 @@ mod frame;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod layers;
+mod nearest;
 mod noise;
 mod normals;
 mod options;
@@ -67,6 +73,7 @@ mod pixels;
 mod project;
 mod raster;
 mod render;
+mod rules;
 mod scan;
 mod shade;
 mod spacing;
@@ -81,3 +88,8 @@ pub use scan::Scan;
 
 /// The version of `glam` that this crate's functions take and return.
 pub use glam;
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

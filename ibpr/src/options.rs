@@ -1,11 +1,12 @@
 //! What a frame is made with.
 
 use crate::error::IbprError;
-use crate::scan::Scan;
+use crate::scan::{Scan, unit};
 use glam::{DVec3, Vec3};
 
 /// Size of a buffer pixel in picture pixels (the paper's S).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Scale {
     /// From the field of view, the distance and the density of the points, times this factor.
     ///
@@ -18,6 +19,7 @@ pub enum Scale {
 /// How much a point of the surface nearest to the eye counts; u is its depth behind the nearest point
 /// of its pixel in units of γ, 0 ≤ u ≤ 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Weighting {
     /// `u`, eq. 2 as it survives in print: the nearest point counts (almost) nothing.
     Printed,
@@ -31,6 +33,7 @@ pub enum Weighting {
 
 /// Where normals come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Normals {
     /// Least-squares planes over windows that grow with the noise.
     Plane,
@@ -38,8 +41,9 @@ pub enum Normals {
     Triangles,
 }
 
-/// What is skipped because it faces away.
+/// Back-face culling: which points are skipped because they face away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Culling {
     /// Nothing.
     None,
@@ -53,6 +57,7 @@ pub enum Culling {
 
 /// Buffers per frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Passes {
     /// One, with S.
     One,
@@ -64,7 +69,7 @@ pub enum Passes {
     },
 }
 
-/// Surfaces one sees through.
+/// How translucent surfaces are kept and blended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Translucency {
@@ -103,6 +108,7 @@ impl Translucency {
 
 /// Where light comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Light {
     /// From the eye.
     Eye,
@@ -153,7 +159,7 @@ pub struct Options {
     pub culling: Culling,
     /// Default: [`Light::Eye`].
     pub light: Light,
-    /// Share of the light that comes from everywhere, 0 to 1. Default: 0.1.
+    /// Ambient share of the light, 0 to 1; the rest is diffuse light from `light`. Default: 0.1.
     pub ambient: f32,
     /// Color of points that have none, linear RGB, each channel from 0 to [`Scan::BRIGHTEST`]. Default: 0.8.
     pub base: Vec3,
@@ -258,7 +264,7 @@ impl Options {
         self
     }
 
-    /// Sets the share of the light that comes from everywhere, 0 to 1.
+    /// Sets the ambient share of the light, 0 to 1.
     #[must_use]
     pub const fn with_ambient(mut self, ambient: f32) -> Self {
         self.ambient = ambient;
@@ -328,7 +334,7 @@ impl Options {
         }
         check_base(self.base)?;
         if let Light::Towards(d) = self.light
-            && !(d.is_finite() && d.length_squared() > 0.0)
+            && unit(d).is_none()
         {
             check("light", d.x as f32, false, "the direction must be finite and not zero")?;
         }

@@ -4,17 +4,17 @@ use crate::buffer_map::BufferMap;
 use pulp::{Arch, NullaryFnOnce};
 
 /// Points that are transformed together: their results stay in the first-level cache.
-pub(crate) const LANES: usize = 256;
+pub(crate) const BATCH: usize = 256;
 
 /// Transformed points; entries of `kept` number those that lie in the band.
 pub(crate) struct Projected {
     /// Position in buffer pixels.
-    pub(crate) x: [f32; LANES],
-    pub(crate) y: [f32; LANES],
+    pub(crate) x: [f32; BATCH],
+    pub(crate) y: [f32; BATCH],
     /// Depth relative to the reference.
-    pub(crate) depth: [f32; LANES],
-    inside: [u8; LANES],
-    kept: [u16; LANES],
+    pub(crate) depth: [f32; BATCH],
+    inside: [u8; BATCH],
+    kept: [u16; BATCH],
     count: usize,
 }
 
@@ -47,8 +47,8 @@ impl Band {
 
 impl Projected {
     pub(crate) fn new() -> Self {
-        let zero = [0.0; LANES];
-        Self { x: zero, y: zero, depth: zero, inside: [0; LANES], kept: [0; LANES], count: 0 }
+        let zero = [0.0; BATCH];
+        Self { x: zero, y: zero, depth: zero, inside: [0; BATCH], kept: [0; BATCH], count: 0 }
     }
 
     /// Numbers of the points in the band.
@@ -61,10 +61,10 @@ impl Projected {
         (self.y[k] as usize - band.first_row) * band.width + self.x[k] as usize
     }
 
-    /// Transforms up to [`LANES`] points and notes which lie in the band.
+    /// Transforms up to [`BATCH`] points and notes which lie in the band.
     pub(crate) fn transform(&mut self, arch: Arch, rows: &[f32; 12], points: [&[f32]; 3], band: &Band) {
         arch.dispatch(Transform { lanes: self, rows, points, band });
-        let n = points[0].len().min(LANES);
+        let n = points[0].len().min(BATCH);
         let mut count = 0;
         for i in 0..n {
             // Without a branch: an entry that is not kept is overwritten by the next.
@@ -78,7 +78,7 @@ impl Projected {
     #[inline(always)]
     fn transform_lanes(&mut self, rows: &[f32; 12], points: [&[f32]; 3], band: &Band) {
         let [px, py, pz] = points;
-        let n = px.len().min(LANES);
+        let n = px.len().min(BATCH);
         let (px, py, pz) = (&px[..n], &py[..n], &pz[..n]);
         let (x, y, depth) = (&mut self.x[..n], &mut self.y[..n], &mut self.depth[..n]);
         for i in 0..n {

@@ -34,7 +34,7 @@ pub(crate) struct Strip<P> {
 
 impl<P: Pixels> Strip<P> {
     /// Gives it the place of some rows of the picture.
-    pub(crate) fn place(&mut self, width: usize, first_row: usize, rows: usize) {
+    pub(crate) fn set_rows(&mut self, width: usize, first_row: usize, rows: usize) {
         (self.width, self.first_row, self.rows) = (width, first_row, rows);
     }
 

@@ -1,6 +1,7 @@
 //! A frame, from the cloud to the picture.
 
-use crate::accumulate::{self, BandScratch, BlockView, Rules};
+use crate::accumulate::{self, BandScratch};
+use crate::block_view::{self, BlockView};
 use crate::buffer::{Buffer, DepthScale, STEP};
 use crate::buffer_map::{BufferMap, depth_of};
 use crate::cloud::Cloud;
@@ -16,6 +17,7 @@ use crate::options::{Culling, Options, Passes, Scale};
 use crate::parallel::*;
 use crate::pixels::{Nearest, Stack};
 use crate::raster::{Pixels, Strip};
+use crate::rules::Rules;
 use crate::shade::{RowsOut, Shaded, Shader};
 use pointillist_parallel::{Pool, threads};
 use pointillist_view::{Projection, View};
@@ -232,7 +234,7 @@ impl Drawing<'_> {
     ) {
         for (k, strip) in strips.into_iter().enumerate() {
             if let Some(rules) = &self.rules[k] {
-                strip.place(self.width, first_row, n / self.width);
+                strip.set_rows(self.width, first_row, n / self.width);
                 begin(&mut strip.pixels);
                 faces::draw(&self.passes[k].buffer, rules, strip);
             }
@@ -250,7 +252,7 @@ impl Pass {
         bands: &Pool<BandScratch>,
         fill: &mut FillScratch,
     ) {
-        accumulate::view_blocks(cloud, visible, map, &mut self.views);
+        block_view::view_blocks(cloud, visible, map, &mut self.views);
         let layers = options.translucency;
         self.buffer.reshape(map.width, map.height, layers.map_or(1, |t| t.layers));
         let scale = DepthScale::new(map, cloud.spacing());

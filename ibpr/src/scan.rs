@@ -13,6 +13,9 @@ pub struct Scan<'a> {
 }
 
 impl<'a> Scan<'a> {
+    /// Largest absolute value of a coordinate, a quarter of `f64::MAX`: differences of coordinates, and twice those, are finite.
+    pub const FARTHEST: f64 = 0.25 * f64::MAX;
+
     /// Largest channel of a color: sums over the 2³² points that a pixel may have are still numbers in single precision.
     pub const BRIGHTEST: f32 = 1e28;
 
@@ -45,8 +48,14 @@ impl<'a> Scan<'a> {
 
     /// Refuses what no picture can be made of; `scan` is its place in the caller's slice.
     pub(crate) fn check(&self, scan: usize) -> Result<(), IbprError> {
-        if let Some(index) = self.positions.iter().position(|p| !p.is_finite()) {
-            return Err(IbprError::PointNotFinite { scan, index, value: self.positions[index].to_array() });
+        // Not `max_element`, which passes over NaN.
+        let near = |p: &DVec3| p.abs().cmple(DVec3::splat(Self::FARTHEST)).all();
+        if let Some(index) = self.positions.iter().position(|p| !near(p)) {
+            let (finite, value) = (self.positions[index].is_finite(), self.positions[index].to_array());
+            return Err(match finite {
+                true => IbprError::PointTooFar { scan, index, value },
+                false => IbprError::PointNotFinite { scan, index, value },
+            });
         }
         if let Some(colors) = self.colors {
             if colors.len() != self.positions.len() {
@@ -58,14 +67,22 @@ impl<'a> Scan<'a> {
                 return Err(IbprError::BadColor { scan, index, value: colors[index] });
             }
         }
-        let bad = |reason| Err(IbprError::BadScan { scan, reason });
         match self.spacing {
-            Some(s) if !(s > 0.0 && s.is_finite()) => return bad("the spacing must be finite and above 0"),
+            Some(spacing) if !(spacing > 0.0 && spacing.is_finite()) => {
+                return Err(IbprError::BadSpacing { scan, spacing });
+            }
             _ => {}
         }
         match self.towards_scanner {
-            Some(d) if d.try_normalize().is_none() => bad("the direction must be finite and not zero"),
+            Some(d) if unit(d).is_none() => Err(IbprError::BadDirection { scan, value: d.to_array() }),
             _ => Ok(()),
         }
     }
+}
+
+/// The direction of a vector of any finite length above 0.
+pub(crate) fn unit(v: DVec3) -> Option<DVec3> {
+    // The squares of 1e200 and 1e-200 overflow and underflow: such vectors are divided by their largest coordinate first.
+    let is_normal = (1e-280..=1e280).contains(&v.length_squared());
+    if is_normal { v.try_normalize() } else { (v / v.abs().max_element()).try_normalize() }
 }

@@ -4,7 +4,8 @@ use crate::buffer_map::BufferMap;
 use crate::options::{Light, Options};
 use crate::pixels::{Fragment, Nearest};
 use crate::raster::Paint;
-use glam::Vec3;
+use crate::scan::unit;
+use glam::{DVec3, Vec3};
 
 /// Shading and output of a frame: everything in the camera's frame (right, up, back).
 pub(crate) struct Shader {
@@ -28,7 +29,8 @@ impl Shader {
         let light = match options.light {
             Light::Eye => None,
             Light::Towards(d) => {
-                let d = d.normalize();
+                // Checked with the options.
+                let d = unit(d).unwrap_or(DVec3::ZERO);
                 Some(Vec3::new(d.dot(v.right()) as f32, d.dot(v.up()) as f32, -d.dot(v.forward()) as f32))
             }
         };

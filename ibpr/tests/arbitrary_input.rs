@@ -56,14 +56,17 @@ proptest! {
     ) {
         let scan = OwnedScan { positions, colors, spacing, towards_scanner: towards };
         let result = cloud(std::slice::from_ref(&scan));
-        let finite = scan.positions.iter().all(|p| p.is_finite());
+        let near = |p: &DVec3| p.abs().cmple(DVec3::splat(Scan::FARTHEST)).all();
         match result {
             Ok(cloud) => {
-                prop_assert!(finite && cloud.len() == scan.positions.len());
+                prop_assert!(scan.positions.iter().all(near) && cloud.len() == scan.positions.len());
                 prop_assert!(cloud.spacing() >= 0.0 && cloud.density_spacing() >= 0.0, "{cloud:?}");
                 prop_assert!(cloud.spacing().is_finite() && cloud.density_spacing().is_finite(), "{cloud:?}");
             }
             Err(IbprError::PointNotFinite { index, .. }) => prop_assert!(!scan.positions[index].is_finite()),
+            Err(IbprError::PointTooFar { index, .. }) => {
+                prop_assert!(scan.positions[index].is_finite() && !near(&scan.positions[index]));
+            }
             Err(_) => {}
         }
     }
@@ -112,13 +115,15 @@ proptest! {
 }
 
 #[test]
-#[cfg_attr(target_pointer_width = "32", ignore = "memory has no room for so many")]
 fn as_many_points_as_cannot_be_numbered_are_refused() {
     let points = vec![DVec3::ZERO; 1 << 16];
     let scans = vec![Scan::new(&points); 1 << 16];
     assert_eq!(
         Cloud::new(&scans, Vec3::ONE).err(),
-        Some(IbprError::TooManyPoints { points: points.len() * scans.len() })
+        Some(IbprError::TooManyPoints {
+            count: points.len().saturating_mul(scans.len()),
+            limit: u32::MAX as usize
+        })
     );
 }
 

@@ -1,7 +1,7 @@
 //! Errors, one by one, and bugs that were fixed, each with the smallest input that showed it.
 
 use glam::{DAffine3, DVec3, Vec3, dvec3};
-use pointillist_ibpr::invariants::{OwnedScan, frame, frame_is_sound};
+use pointillist_ibpr::invariants::{OwnedScan, frame, frame_is_sound, frames_are_identical};
 use pointillist_ibpr::{
     Cloud, Culling, EyeDome, Frame, IbprError, Light, Options, Passes, Projection, Renderer, Scale, Scan,
     Translucency, View, ViewError,
@@ -54,14 +54,32 @@ fn spacings_and_directions_are_checked() {
     let points = [DVec3::ZERO];
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = refused(&[Scan::new(&points).with_spacing(bad)]);
-        assert!(matches!(error, IbprError::BadScan { scan: 0, .. }), "{error:?}");
+        assert!(matches!(error, IbprError::BadSpacing { scan: 0, .. }), "{error:?}");
     }
     for bad in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY] {
         let error = refused(&[Scan::new(&points), Scan::new(&points).with_scanner(bad)]);
-        assert!(matches!(error, IbprError::BadScan { scan: 1, .. }), "{error:?}");
+        assert!(matches!(error, IbprError::BadDirection { scan: 1, .. }), "{error:?}");
     }
-    let apart = [DVec3::splat(-1e308), DVec3::splat(1e308)];
-    assert!(matches!(refused(&[Scan::new(&apart)]), IbprError::BadScan { .. }));
+}
+
+/// The first scan was named, whichever point was too far away.
+#[test]
+fn a_point_that_is_too_far_away_is_named() {
+    let (near, far) = ([DVec3::ONE], [DVec3::ZERO, dvec3(0.0, -1e308, 0.0)]);
+    let error = refused(&[Scan::new(&near), Scan::new(&far)]);
+    assert_eq!(error, IbprError::PointTooFar { scan: 1, index: 1, value: far[1].to_array() });
+    let apart = [DVec3::splat(-Scan::FARTHEST), DVec3::splat(Scan::FARTHEST)];
+    assert!(Cloud::new(&[Scan::new(&apart)], Vec3::ONE).is_ok());
+}
+
+/// Directions whose squared length is no number were refused as zero.
+#[test]
+fn directions_of_any_length_are_taken() {
+    let points = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    for length in [5e-324, 1e-200, 1e-5, 1e200, f64::MAX] {
+        let scan = Scan::new(&points).with_scanner(dvec3(0.0, 0.0, length));
+        assert!(Cloud::new(&[scan], Vec3::ONE).is_ok(), "{length:e}");
+    }
 }
 
 /// A mirrored matrix was un-mirrored without a word, and drew the scene from another camera than the one asked for.
@@ -241,5 +259,19 @@ fn a_base_that_is_no_color_is_refused() {
     for bad in [f32::NAN, -0.1, f32::INFINITY] {
         let refused = Cloud::new(&[Scan::new(&point)], Vec3::new(0.5, bad, 0.5)).unwrap_err();
         assert!(matches!(refused, IbprError::BadOption { name: "base", .. }), "{bad}: {refused}");
+    }
+}
+
+/// A direction whose squared length overflows lit nothing, and one whose squared length underflows was refused as zero.
+#[test]
+fn light_comes_from_directions_of_any_length() {
+    let scan = OwnedScan::plane(DVec3::ZERO, DVec3::X * 0.1, DVec3::Y * 0.1, 20, 20);
+    let view = View::look_at(DVec3::Z * 3.0, DVec3::ZERO, DVec3::Y, PERSPECTIVE, 16, 16).unwrap();
+    let lit = |length: f64| {
+        let options = Options::DEFAULT.with_light(Light::Towards(DVec3::Z * length));
+        frame(std::slice::from_ref(&scan), &view, &options).unwrap()
+    };
+    for length in [1e-200, 1e200] {
+        frames_are_identical(&lit(length), &lit(1.0)).unwrap();
     }
 }

@@ -216,12 +216,8 @@ impl Rounds<'_> {
         if places.len() == probes || probes == 0 {
             return Ok(radiance);
         }
-        let candidates = place::Candidates {
-            positions: &places,
-            radiance: &radiance,
-            distances: distances.as_deref(),
-            weights: None,
-        };
+        let mut candidates = place::Candidates::new(&places, &radiance);
+        candidates.distances = distances.as_deref();
         let chosen: Vec<u32> = (0..probes as u32).collect();
         let fit = || place::fit(candidates, &chosen, &place::FitOptions::DEFAULT.with_balance(0.0));
         Ok(stage(self.monitor, "fit", fit)?)

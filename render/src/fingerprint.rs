@@ -142,7 +142,8 @@ impl Fingerprint {
     }
 
     fn material(&mut self, material: &Material) {
-        let Surface { model, diffuse, specular, shininess, roughness, emission, opacity } = material.surface;
+        let Surface { model, diffuse, specular, shininess, roughness, emission, opacity, .. } =
+            material.surface;
         self.text(&format!("{model:?} {:?}", material.wrap));
         [diffuse, specular, emission, Vec3::new(shininess, opacity, roughness)]
             .into_iter()
@@ -192,5 +193,17 @@ impl Fingerprint {
             _ => self.text(&format!("{light:?}")),
         }
         self.text(&format!("{falloff:?}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `Surface` can gain fields without an error here: the fingerprint must then take them in.
+    #[test]
+    fn every_field_of_a_surface_is_in_the_fingerprint() {
+        let text = format!("{:?}", Surface::default());
+        assert_eq!(text.matches(": ").count(), 7, "{text}");
     }
 }

@@ -141,7 +141,7 @@ pub fn white_surfaces_show_even_light_as_it_is(scene: &Scene, light: Vec3) -> Re
     scene.ambient = AmbientLight::Color(light);
     for material in &mut scene.materials {
         let opacity = material.surface.opacity;
-        material.surface = crate::shade::Material { opacity, ..crate::shade::Material::lambert(Vec3::ONE) };
+        material.surface = crate::shade::Material::lambert(Vec3::ONE).with_opacity(opacity);
         material.diffuse_map = None;
         material.details = crate::Details::default();
     }

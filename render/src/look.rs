@@ -63,7 +63,7 @@ pub fn look_all(
     let size = options.capture.resolution as usize;
     let projector = CubeProjector::new(size, options.order, Weights::Gregory)?;
     let bounds = prepared.geometry().bounds();
-    let far = ((bounds.high - bounds.low).length() * 2.0).max(f64::MIN_POSITIVE) as f32;
+    let far = ((bounds.high - bounds.low).length() * 2.0).max(f64::from(f32::MIN_POSITIVE)) as f32;
     let one = |&position: &DVec3| {
         let capture = prepared.capture(position, options.capture, ambient, monitor)?;
         monitor.count("faces", u64::from(6 - capture.empty_faces));

@@ -21,7 +21,8 @@ fn cuboid(low: DVec3, high: DVec3, from_inside: bool) -> (Vec<DVec3>, Vec<[u32; 
 /// Walls that glow with radiance 1 and reflect half of what arrives.
 fn glowing_room() -> Scene {
     let mut scene = Scene::new(Camera::perspective(DVec3::ONE, DVec3::ZERO, 1.0), [8, 8]);
-    let surface = shade::Material { emission: Vec3::ONE, ..shade::Material::lambert(Vec3::splat(0.5)) };
+    let mut surface = shade::Material::lambert(Vec3::splat(0.5));
+    surface.emission = Vec3::ONE;
     scene.add_material(Material::new("wall", surface));
     let (positions, triangles) = cuboid(DVec3::splat(-2.0), DVec3::splat(2.0), true);
     scene.mesh.add(&Part::new("room", &positions, &triangles)).unwrap();

@@ -26,14 +26,9 @@ fn surface() -> impl Strategy<Value = shade::Material> {
         prop_oneof![3 => Just(Lambert), 1 => Just(NormalizedPhong), 1 => Just(BlinnPhong), 1 => Just(Ggx)];
     let opacity = prop_oneof![2 => Just(1.0f32), 1 => 0.0..=1.0f32];
     (model, color(1.0), color(0.5), color(0.3), opacity, 1.0..60.0f32, 0.05..1.0f32).prop_map(
-        |(model, diffuse, specular, emission, opacity, shininess, roughness)| shade::Material {
-            model,
-            diffuse,
-            specular,
-            emission,
-            opacity,
-            shininess,
-            roughness,
+        |(model, diffuse, specular, emission, opacity, shininess, roughness)| {
+            let surface = shade::Material::lambert(diffuse).with_specular(model, specular, shininess);
+            surface.with_emission(emission).with_opacity(opacity).with_roughness(roughness)
         },
     )
 }

@@ -1,4 +1,4 @@
-//! The functions themselves.
+//! The basis functions and their order.
 
 use crate::ShError;
 use glam::DVec3;
@@ -21,16 +21,21 @@ pub(crate) const Y2_AXIAL: f64 = 0.315_391_565_252_520_05;
 /// ¼√(15/π), of x² − y².
 pub(crate) const Y2_SQUARES: f64 = 0.546_274_215_296_039_6;
 
-/// How many coefficients there are up to a band: (order+1)².
+/// How many coefficients there are up to a band: (order+1)², or `usize::MAX` if that is more.
 #[must_use]
 pub const fn coefficient_count(order: usize) -> usize {
-    (order + 1) * (order + 1)
+    order.saturating_add(1).saturating_mul(order.saturating_add(1))
 }
 
-/// Where the coefficient of band l and −l ≤ m ≤ l stands: l(l+1) + m.
+/// Where the coefficient of band l and −l ≤ m ≤ l stands: l(l+1) + m. `usize::MAX`, which is no place in any list, if m is outside or the
+/// place is beyond the range of `usize`.
 #[must_use]
 pub const fn coefficient_index(l: usize, m: isize) -> usize {
-    (l * (l + 1)).wrapping_add_signed(m)
+    let middle = l.saturating_mul(l.saturating_add(1));
+    if m.unsigned_abs() > l || middle == usize::MAX {
+        return usize::MAX;
+    }
+    middle.saturating_add_signed(m)
 }
 
 /// The order, if this crate can compute it.

@@ -4,7 +4,7 @@ use glam::DVec3;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Sub};
 
-/// A colour (`DVec3`) or one number (`f64`): what coefficients are made of. Products are channel by channel.
+/// A color (`DVec3`) or one number (`f64`): what coefficients are made of. Products are channel by channel.
 pub trait Channel:
     Copy
     + Debug

@@ -1,7 +1,8 @@
-//! What a photograph could not hold.
+//! How much of a photograph is over- or underexposed.
 
 /// The share of a photograph, 0 to 1, whose radiance is unknown: by pixels, or of a panorama by solid angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Clipping {
     /// Where a channel has the highest level: light that was brighter is missing.
     pub over_exposed: f64,

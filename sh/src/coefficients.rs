@@ -7,7 +7,7 @@ use crate::basis::{
 use crate::{Channel, Lobe};
 use glam::DVec3;
 
-/// A function of direction that is a sum of spherical harmonics: radiance per colour, or (`Sh<f64>`) one number, such as
+/// A function of direction that is a sum of spherical harmonics: radiance per color, or (`Sh<f64>`) one number, such as
 /// visibility.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sh<T = DVec3> {
@@ -58,32 +58,38 @@ impl<T: Channel> Sh<T> {
     }
 
     /// The highest band.
+    #[must_use]
     pub const fn order(&self) -> usize {
         self.order
     }
 
     /// All coefficients, by band and m.
+    #[must_use]
     pub fn coefficients(&self) -> &[T] {
         &self.coefficients
     }
 
     /// All coefficients, by band and m.
+    #[must_use]
     pub fn into_coefficients(self) -> Vec<T> {
         self.coefficients
     }
 
     /// The coefficients of a band, from m = −l to l; none above the order.
+    #[must_use]
     pub fn band(&self, l: usize) -> &[T] {
         if l > self.order { &[] } else { &self.coefficients[l * l..(l + 1) * (l + 1)] }
     }
 
     /// The coefficient of l and m; 0 where there is none.
+    #[must_use]
     pub fn coefficient(&self, l: usize, m: isize) -> T {
         let exists = l <= self.order && m.unsigned_abs() <= l;
         if exists { self.coefficients[coefficient_index(l, m)] } else { T::default() }
     }
 
     /// The value in a direction of unit length.
+    #[must_use]
     pub fn at(&self, direction: DVec3) -> T {
         if let Ok(coefficients) = <&[T; 9]>::try_from(self.coefficients.as_slice()) {
             return dot(coefficients, &basis_l2(direction));
@@ -93,12 +99,21 @@ impl<T: Channel> Sh<T> {
         dot(&self.coefficients, &values)
     }
 
+    /// Whether all coefficients are finite. [`Sh::new`] accepts no others, but factors and weights of arithmetic are not checked: NaN and
+    /// overflow show in the result.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.coefficients.iter().all(|c| (0..T::CHANNELS).all(|i| c.channel(i).is_finite()))
+    }
+
     /// The mean over all directions.
+    #[must_use]
     pub fn mean(&self) -> T {
         self.coefficients[0] * Y0
     }
 
     /// Σ c² of a band, per channel. Rotations keep it.
+    #[must_use]
     pub fn band_power(&self, l: usize) -> T {
         self.band(l).iter().fold(T::default(), |sum, &c| sum + c * c)
     }
@@ -188,6 +203,7 @@ impl<T: Channel> Sh<T> {
     }
 
     /// One channel on its own.
+    #[must_use]
     pub fn channel(&self, index: usize) -> Sh<f64> {
         let coefficients = self.coefficients.iter().map(|c| c.channel(index)).collect();
         Sh::from_parts(coefficients, self.order)

@@ -7,7 +7,7 @@ use pointillist_parallel as parallel;
 
 /// Radiance in all directions, on the six faces of a cube: +X, −X, +Y, −Y, +Z, −Z, each in rows from the top.
 ///
-/// Colours lie in planes, red, green and blue, each with all faces one after the other.
+/// Colors lie in planes, red, green and blue, each with all faces one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CubeMap {
     size: usize,
@@ -39,7 +39,7 @@ impl CubeMap {
         }
     }
 
-    /// From 6·size² colours, face after face.
+    /// From 6·size² colors, face after face.
     ///
     /// # Errors
     /// `CubeSize`, `CubeTexelCount`.
@@ -61,11 +61,13 @@ impl CubeMap {
     }
 
     /// Texels along an edge.
+    #[must_use]
     pub const fn size(&self) -> usize {
         self.size
     }
 
     /// Red, green and blue.
+    #[must_use]
     pub const fn planes(&self) -> &[Vec<f32>; 3] {
         &self.planes
     }
@@ -76,10 +78,13 @@ impl CubeMap {
     }
 
     /// A texel, or `None` outside.
+    #[must_use]
     pub fn texel(&self, face: usize, x: usize, y: usize) -> Option<[f32; 3]> {
         let is_inside = face < 6 && x < self.size && y < self.size;
-        let index = (face * self.size + y) * self.size + x;
-        is_inside.then(|| self.planes.each_ref().map(|plane| plane[index]))
+        is_inside.then(|| {
+            let index = (face * self.size + y) * self.size + x;
+            self.planes.each_ref().map(|plane| plane[index])
+        })
     }
 
     /// The unit direction of a texel's centre (also beyond the face: its plane goes on).
@@ -89,6 +94,7 @@ impl CubeMap {
     }
 
     /// Face, column and row of the texel that a direction meets; `None` for 0 and what is not finite.
+    #[must_use]
     pub fn texel_at(&self, direction: DVec3) -> Option<[usize; 3]> {
         let CubePoint { face, s, t } = cube_point(direction)?;
         let at = |v: f64| (((v + 1.0) * 0.5 * self.size as f64) as usize).min(self.size - 1);
@@ -96,7 +102,7 @@ impl CubeMap {
     }
 }
 
-/// 6·size², if that is something to work with.
+/// 6·size², or an error if the size is 0 or above [`CubeMap::MAX_SIZE`].
 pub(crate) const fn texel_count(size: usize) -> Result<usize, ShError> {
     if size == 0 || size > CubeMap::MAX_SIZE {
         return Err(ShError::CubeSize { size, limit: CubeMap::MAX_SIZE });

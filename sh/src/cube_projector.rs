@@ -16,7 +16,7 @@ const MAX_SUMS: usize = 2 * MAX_ORDER + 1;
 /// Makes coefficients of cube maps of one size; made once, used for many.
 ///
 /// It sums texels times weights times polynomials per face, in `f64`: rows of a face have five sums for order 2, and all faces
-/// and colours share one table. Sums are made in a fixed order: the same bits on any processor.
+/// and colors share one table. Sums are made in a fixed order: the same bits on any processor.
 pub struct CubeProjector {
     size: usize,
     order: usize,
@@ -67,16 +67,19 @@ impl CubeProjector {
     }
 
     /// Texels along an edge of the faces that it takes.
+    #[must_use]
     pub const fn size(&self) -> usize {
         self.size
     }
 
     /// The highest band that it makes.
+    #[must_use]
     pub const fn order(&self) -> usize {
         self.order
     }
 
     /// How it weighs texels.
+    #[must_use]
     pub const fn weights(&self) -> Weights {
         self.weights
     }

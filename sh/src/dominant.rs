@@ -7,7 +7,7 @@ use glam::{DVec3, dvec3};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-/// Luminance of linear colours (ITU-R BT.709).
+/// Luminance of linear colors (ITU-R BT.709).
 const LUMINANCE: DVec3 = dvec3(0.2126, 0.7152, 0.0722);
 
 /// Steps in which the share of a light is sought: to 1e-6 of it.
@@ -41,6 +41,7 @@ impl DominantLight {
 
 /// Radiance as a light, to be evaluated exactly, and a rest whose irradiance is nowhere negative.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Split {
     /// The light, if there is reason for one.
     pub light: Option<DominantLight>,
@@ -60,7 +61,7 @@ impl Sh {
     /// The directional light that with an even sky comes closest to this irradiance (least squares over the sphere; \[3\],
     /// dominant light). `None` below order 1, and where light has no direction.
     ///
-    /// Its direction is that of the linear band's luminance. Per colour it is not below 0, and not above what the mean allows.
+    /// Its direction is that of the linear band's luminance. Per color it is not below 0, and not above what the mean allows.
     /// It is more than what a lamp or the sun gives alone: a sky brighter on one side is a light, too. To take
     /// lights out, see [`Sh::split`].
     #[must_use]
@@ -142,7 +143,7 @@ impl Sh {
         (irradiance != DVec3::ZERO).then_some(DominantLight { direction, irradiance })
     }
 
-    /// The lowest irradiance of any colour in any direction.
+    /// The lowest irradiance of any color in any direction.
     fn least_irradiance(&self) -> f64 {
         let channels = (0..3).map(|i| self.channel(i).convolved(&Lobe::COSINE).minimum().1);
         channels.fold(f64::INFINITY, f64::min)

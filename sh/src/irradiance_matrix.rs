@@ -14,7 +14,7 @@ const C4: f64 = 0.886_226_925_452_758;
 /// A₂·¼√(5/π) = √(5π)/16.
 const C5: f64 = 0.247_707_956_100_375_7;
 
-/// E(n) = nᵀMn with n = (x, y, z, 1) (\[1\], eq. 11 and 12): a symmetric matrix per colour.
+/// E(n) = nᵀMn with n = (x, y, z, 1) (\[1\], eq. 11 and 12): a symmetric matrix per color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IrradianceMatrix {
     /// Of x², y², z², 1, yz, xz, xy, x, y, z.
@@ -75,7 +75,8 @@ impl IrradianceMatrix {
     }
 }
 
-/// [`IrradianceMatrix`] in single precision, as renderers use it: about 1e-7 of the largest irradiance.
+/// [`IrradianceMatrix`] in single precision, as renderers use it: about 1e-7 of the largest irradiance; infinite for
+/// coefficients beyond the range of `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Irradiance {
     /// Of x² − z², y² − z², 1 + z², yz, xz, xy, x, y, z; four numbers each, as vector registers have them.

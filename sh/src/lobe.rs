@@ -18,7 +18,7 @@ impl Lobe {
     pub const COSINE: Self =
         Self { bands: [PI, TAU / 3.0, FRAC_PI_4, 0.0, -PI / 24.0, 0.0, PI / 64.0, 0.0, -PI / 128.0] };
 
-    /// What leaves light as it is: 1 for each band.
+    /// The identity of convolution: factor 1 for every band.
     pub const MIRROR: Self = Self { bands: [1.0; MAX_ORDER + 1] };
 
     /// From a factor per band.
@@ -66,6 +66,7 @@ impl Lobe {
     }
 
     /// The factors of bands 0 to [`MAX_ORDER`].
+    #[must_use]
     pub const fn bands(&self) -> &[f64; MAX_ORDER + 1] {
         &self.bands
     }

@@ -1,4 +1,4 @@
-//! The least value of a function.
+//! The minimum of a function over all directions.
 
 use crate::basis::{Y1, Y2_AXIAL, Y2_MIXED, Y2_SQUARES};
 use crate::eigen::eigen;
@@ -14,6 +14,7 @@ impl Sh<f64> {
     /// Up to order 2 it is that of a quadratic form on the sphere, from its secular equation: the value is within 1e-14 of the
     /// largest coefficient. Above, the lowest of a search from 40 (order + 1)² even directions, refined: the
     /// value of a minimum, within 1e-12; in theory one in a narrow valley could be missed.
+    #[must_use]
     pub fn minimum(&self) -> (DVec3, f64) {
         let direction = if self.order() <= 2 { quadratic_minimum(self) } else { search::minimum(self) };
         (direction, self.at(direction))

@@ -7,6 +7,7 @@ use std::f64::consts::FRAC_1_PI;
 impl Sh<f64> {
     /// Of visibility (1 where nothing is in the way, 0 elsewhere): the share of an even sky's irradiance that arrives at a
     /// surface, ∫ V·max(cos θ, 0) dω/π. From 0, all occluded, to 1; what truncation leaves beyond is cut off.
+    #[must_use]
     pub fn ambient_occlusion(&self, normal: DVec3) -> f64 {
         (self.irradiance(normal) * FRAC_1_PI).clamp(0.0, 1.0)
     }

@@ -17,10 +17,10 @@ impl Panorama {
     /// The largest number of pixels along a side.
     pub const MAX_SIDE: usize = 1 << 16;
 
-    /// From colours in rows from the top.
+    /// From colors in rows from the top.
     ///
     /// # Errors
-    /// `PanoramaSize` if there is not one colour per pixel, or a side is 0 or above [`Panorama::MAX_SIDE`]; `PixelNotFinite`.
+    /// `PanoramaSize` if there is not one color per pixel, or a side is 0 or above [`Panorama::MAX_SIDE`]; `PixelNotFinite`.
     pub fn new(width: usize, height: usize, pixels: &[[f32; 3]]) -> Result<Self, ShError> {
         Self::from_planes(width, height, std::array::from_fn(|c| pixels.iter().map(|p| p[c]).collect()))
     }
@@ -56,16 +56,19 @@ impl Panorama {
     }
 
     /// Pixels in a row.
+    #[must_use]
     pub const fn width(&self) -> usize {
         self.width
     }
 
     /// Rows.
+    #[must_use]
     pub const fn height(&self) -> usize {
         self.height
     }
 
     /// Red, green and blue.
+    #[must_use]
     pub const fn planes(&self) -> &[Vec<f32>; 3] {
         &self.planes
     }
@@ -84,6 +87,7 @@ impl Panorama {
 
     /// Radiance from a direction of any length but 0, bilinear between the centres of pixels, around the seam and over the
     /// poles.
+    #[must_use]
     pub fn at(&self, direction: DVec3) -> Vec3 {
         let DVec3 { x, y, z } = direction;
         let u = x.atan2(-z) / TAU + 0.5;
@@ -105,7 +109,7 @@ impl Panorama {
     }
 }
 
-/// Width times height, if that is something to work with.
+/// Width times height, or an error if a side is 0 or above [`Panorama::MAX_SIDE`].
 pub(crate) fn pixel_count(width: usize, height: usize) -> Result<usize, ShError> {
     let range = 1..=Panorama::MAX_SIDE;
     if range.contains(&width) && range.contains(&height) {
@@ -121,7 +125,7 @@ pub(crate) fn solid_angle(width: usize, height: usize, y: usize) -> f64 {
     TAU / width as f64 * 2.0 * ((y as f64 + 0.5) * step).sin() * (0.5 * step).sin()
 }
 
-/// Of a place in the image, from 0 at the left and top to 1.
+/// The direction of a position in the image, from 0 at the left and top to 1.
 fn direction(u: f64, v: f64) -> DVec3 {
     let (sin_phi, cos_phi) = (TAU * (u - 0.5)).sin_cos();
     let (sin_theta, cos_theta) = (PI * v).sin_cos();

@@ -103,7 +103,7 @@ fn waves(width: usize, order: usize) -> Tables {
     tables
 }
 
-/// One row of each colour.
+/// One row of each color.
 struct RowSums<'a> {
     tables: &'a Tables,
     row: [&'a [f32]; 3],

@@ -1,4 +1,4 @@
-//! Products of functions.
+//! Products of functions in spherical harmonics.
 
 use crate::ShError;
 use crate::basis::{MAX_COUNT, checked_order, coefficient_count, fill_basis};

@@ -15,9 +15,16 @@ pub struct SphereQuadrature {
 }
 
 impl SphereQuadrature {
-    /// The rule for polynomials up to `degree` in the direction: about degree²/2 points.
+    /// Highest degree of a rule: 8 million points, 256 MB.
+    pub const MAX_DEGREE: usize = 4096;
+
+    /// The rule for polynomials up to `degree` in the direction: about degree²/2 points of 32 bytes.
+    ///
+    /// # Panics
+    /// If the degree is above [`SphereQuadrature::MAX_DEGREE`].
     #[must_use]
     pub fn new(degree: usize) -> Self {
+        assert!(degree <= Self::MAX_DEGREE, "degree {degree} is above {}", Self::MAX_DEGREE);
         let columns = degree + 1;
         let rows = gauss_legendre(degree / 2 + 1);
         let point = |(z, weight): (f64, f64), column: usize| {
@@ -30,11 +37,13 @@ impl SphereQuadrature {
     }
 
     /// Unit directions, each with its weight; the weights sum to 4π.
+    #[must_use]
     pub fn points(&self) -> &[(DVec3, f64)] {
         &self.points
     }
 
     /// ∫ f dω.
+    #[must_use]
     pub fn integrate<T: Channel>(&self, mut f: impl FnMut(DVec3) -> T) -> T {
         self.points.iter().fold(T::default(), |sum, &(direction, weight)| sum + f(direction) * weight)
     }

@@ -1,4 +1,4 @@
-//! What a camera makes of light, undone.
+//! Inverse response of a camera: from the levels of a photograph to radiance.
 
 use crate::ShError;
 use crate::panorama::solid_angle;

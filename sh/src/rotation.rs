@@ -1,4 +1,4 @@
-//! Turned functions.
+//! Rotation of spherical harmonics.
 
 use crate::ShError;
 use crate::basis::{checked_order, coefficient_count};
@@ -41,6 +41,7 @@ impl Rotation {
     }
 
     /// The highest band that it turns.
+    #[must_use]
     pub const fn order(&self) -> usize {
         self.bands.len() - 1
     }

@@ -27,6 +27,7 @@ const GREGORY: [f64; 5] = [741.0 / 640.0, 3547.0 / 5760.0, 527.0 / 384.0, 1571.0
 /// With hard edges all are equally good. The solid angle is not the best weight of a *point* sample: it would be of a
 /// texel's mean. `Gregory` integrates the smooth function through the samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Weights {
     /// Cubes: the differential solid angle of the centre with Gregory's end corrections, factors of
     /// the outer five texels of each row and column; below [`GREGORY_FROM`] as `Paper`. Panoramas: Fejér's rule, whose nodes the

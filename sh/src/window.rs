@@ -1,4 +1,4 @@
-//! Light that is nowhere negative.
+//! Windows that damp higher bands, so that light is negative nowhere.
 
 use crate::{Channel, Lobe, Sh};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -8,6 +8,7 @@ const HALVINGS: usize = 30;
 
 /// How higher bands are damped: by a factor that falls with the band, from 1 without damping to 0 at full strength.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Window {
     /// cos²(π·l·s/2), 0 from l·s = 1.
     Hanning,
@@ -48,6 +49,7 @@ impl<T: Channel> Sh<T> {
 
     /// The least strength, within 1e-9, at which the convolution with `lobe` is negative nowhere, in no channel; 0 where
     /// nothing needs to be done. Channels whose mean is not above 0 are not looked at: no window helps them.
+    #[must_use]
     pub fn strength_for(&self, lobe: &Lobe, window: Window) -> f64 {
         let channels = (0..T::CHANNELS).map(|i| self.channel(i).convolved(lobe));
         let channels: Vec<Sh<f64>> = channels.filter(|sh| sh.mean() > 0.0).collect();

@@ -11,7 +11,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-fn colour() -> impl Strategy<Value = DVec3> {
+fn color() -> impl Strategy<Value = DVec3> {
     [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0].prop_map(DVec3::from)
 }
 
@@ -19,7 +19,7 @@ fn colour() -> impl Strategy<Value = DVec3> {
 fn direction() -> impl Strategy<Value = DVec3> {
     let corner =
         (-1..=1_i32, -1..=1_i32, -1..=1_i32).prop_map(|(x, y, z)| dvec3(x.into(), y.into(), z.into()));
-    let any = colour();
+    let any = color();
     prop_oneof![1 => corner, 3 => any].prop_filter_map("no direction", DVec3::try_normalize)
 }
 
@@ -33,7 +33,7 @@ fn rotation() -> impl Strategy<Value = DQuat> {
 }
 
 fn of_order(order: usize) -> impl Strategy<Value = Sh> {
-    vec(colour(), coefficient_count(order)).prop_map(|c| Sh::new(c).unwrap())
+    vec(color(), coefficient_count(order)).prop_map(|c| Sh::new(c).unwrap())
 }
 
 fn sh() -> impl Strategy<Value = Sh> {
@@ -82,7 +82,7 @@ proptest! {
     }
 
     #[test]
-    fn a_constant_sky_gives_pi_times_itself(radiance in colour(), size in 1..40_usize, n in direction()) {
+    fn a_constant_sky_gives_pi_times_itself(radiance in color(), size in 1..40_usize, n in direction()) {
         hold(facts::constant_sky_gives_pi(radiance, size, n))?;
     }
 
@@ -423,7 +423,7 @@ fn photographs_become_radiance() {
 
     // Four rows: those at the poles are smaller than the others.
     let pixels: Vec<[u8; 3]> = (0..32).map(|i| if i < 8 { [255, 10, 0] } else { [0; 3] }).collect();
-    let (_, Clipping { over_exposed, under_exposed }) =
+    let (_, Clipping { over_exposed, under_exposed, .. }) =
         Panorama::from_photograph(8, 4, &pixels, &Response::linear(), 0.0).unwrap();
     assert!((over_exposed - 0.5 * (1.0 - 0.5_f64.sqrt())).abs() < 1e-12);
     assert!((over_exposed + under_exposed - 1.0).abs() < 1e-12);
@@ -502,4 +502,28 @@ mod regressions {
         }
         assert_eq!(Sh::<f64>::constant(2.0, 2).unwrap().minimum().1, 2.0);
     }
+}
+
+/// Numbers from outside overflowed where they were multiplied.
+#[test]
+fn numbers_beyond_all_bands_and_faces_are_answered() {
+    assert_eq!(coefficient_count(usize::MAX), usize::MAX);
+    assert_eq!(coefficient_count(8), 81);
+    for (l, m) in [(usize::MAX, 0), (0, -5), (1, 2), (2, isize::MIN)] {
+        assert_eq!(pointillist_sh::coefficient_index(l, m), usize::MAX, "{l}, {m}");
+    }
+    assert_eq!([pointillist_sh::coefficient_index(2, -2), pointillist_sh::coefficient_index(2, 2)], [4, 8]);
+    assert_eq!(CubeMap::black(2).unwrap().texel(usize::MAX, usize::MAX, usize::MAX), None);
+}
+
+#[test]
+fn what_is_not_finite_can_be_told() {
+    let sh = Sh::constant(1.0, 2).unwrap();
+    assert!(sh.is_finite() && !sh.scaled(f64::NAN).is_finite());
+}
+
+#[test]
+#[should_panic(expected = "degree 4097 is above 4096")]
+fn a_rule_of_too_high_a_degree_panics_as_documented() {
+    let _ = SphereQuadrature::new(SphereQuadrature::MAX_DEGREE + 1);
 }

@@ -69,7 +69,7 @@ fn environments(c: &mut Criterion) {
 
 /// The share of light that a GGX coat returns, by quadrature; the error is that against many steps.
 fn albedos(c: &mut Criterion) {
-    let coat = Material { roughness: 0.3, ..Material::lambert(Vec3::ZERO) };
+    let coat = Material::lambert(Vec3::ZERO).with_roughness(0.3);
     let coat = coat.with_specular(Model::Ggx, Vec3::splat(0.5), 0.0);
     let albedo = |steps| directional_albedo(vec3(0.6, 0.0, 0.8), steps, |l, v| coat.brdf(Vec3::Z, l, v)).x;
     let exact = albedo(1000);

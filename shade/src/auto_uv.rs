@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 /// How texture coordinates are made from positions. The object's box becomes the unit square, v runs upward (+Y).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum AutoUv {
     /// Along the shortest side of the box, so that the texture lies on its largest face: u along x (z if the box is
     /// thinnest in x), v along y (−z if it is thinnest in y).
@@ -24,6 +25,7 @@ impl AutoUv {
     /// `normal` says which side a triangle of [`AutoUv::Box`] faces. Where a triangle crosses the seam at the back (−Z), its u runs
     /// on beyond 0 or 1, so that the texture, repeated, has no jump in it; a corner on the axis gets the u of the others' middle.
     /// A box without extent in a direction maps to 0.5.
+    #[must_use]
     pub fn corners(self, low: DVec3, high: DVec3, corners: [DVec3; 3], normal: DVec3) -> [DVec2; 3] {
         let size = high - low;
         let unit = corners.map(|p| {

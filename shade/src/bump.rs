@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 
 /// How texture coordinates lie on a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct UvFrame {
     /// Gradient of u over the surface, per world unit.
     pub gradient_u: Vec3,
@@ -19,6 +20,7 @@ pub struct UvFrame {
 
 impl UvFrame {
     /// The frame of a triangle; `None` if its corners or its coordinates span no area, so that the texture has no directions on it.
+    #[must_use]
     pub fn new(corners: [DVec3; 3], uv: [DVec2; 3]) -> Option<Self> {
         let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
         let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
@@ -47,6 +49,7 @@ impl UvFrame {
     /// `slope` is (∂h/∂u, ∂h/∂v) with h in world units along the front normal; `normal` is the unit normal to tilt and
     /// `side` is 1 if it is on the front, −1 if it was turned to the back, where hills are hollows. The silhouette
     /// does not change. No slope gives `normal` back, bit by bit.
+    #[must_use]
     pub fn bumped(&self, normal: Vec3, side: f32, slope: Vec2) -> Vec3 {
         if slope == Vec2::ZERO {
             return normal;
@@ -60,6 +63,7 @@ impl UvFrame {
     ///
     /// `vector` need not be of unit length: the mean of several is as good. (0, 0, z) with z > 0 gives `normal` back,
     /// bit by bit. `normal` and `side` as for [`UvFrame::bumped`].
+    #[must_use]
     pub fn mapped(&self, normal: Vec3, side: f32, vector: Vec3) -> Vec3 {
         if vector.x == 0.0 && vector.y == 0.0 {
             return normal;
@@ -80,6 +84,7 @@ fn direction(v: Vec3, fallback: Vec3) -> Vec3 {
 
 /// Turns a shading normal that points away from the eye until it is at right angles to the view; others come back as
 /// they are. `fallback` serves where no such direction is left.
+#[must_use]
 pub fn keep_visible(normal: Vec3, to_eye: Vec3, fallback: Vec3) -> Vec3 {
     let towards = normal.dot(to_eye);
     if towards >= 0.0 {
@@ -94,6 +99,7 @@ pub fn keep_visible(normal: Vec3, to_eye: Vec3, fallback: Vec3) -> Vec3 {
 ///
 /// `height(x, y)` is asked for the neighbours of texel (x, y), so columns from −1 to `width` and rows from −1 to `height`;
 /// the caller wraps them.
+#[must_use]
 pub fn slope_of_heights(size: [u32; 2], x: u32, y: u32, height: impl Fn(i64, i64) -> f32) -> Vec2 {
     let (x, y) = (i64::from(x), i64::from(y));
     let du = height(x + 1, y) - height(x - 1, y);

@@ -17,19 +17,22 @@ pub struct CornerNormals {
 ///
 /// Faces are neighbours if they share an edge. Around a vertex they form groups that can be walked through without crossing
 /// an edge with a sharper fold, and each group has its own mean. At π and above nothing is a crease, and all faces of a
-/// vertex form one group. A face without area joins no group but its own. The same input gives the same bytes.
+/// vertex form one group; below 0 every edge is one. A face without area joins no group but its own. The same input gives the same bytes.
 ///
 /// # Errors
 ///
-/// As [`crate::vertex_normals`].
+/// As [`crate::vertex_normals`]; [`ShadeError::BadCrease`] if the angle is NaN.
 pub fn corner_normals(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     weighting: Weighting,
     crease_rad: f64,
 ) -> Result<CornerNormals, ShadeError> {
+    if crease_rad.is_nan() {
+        return Err(ShadeError::BadCrease { crease_rad });
+    }
     if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
-        return Err(ShadeError::NotFinite { index });
+        return Err(ShadeError::VertexNotFinite { index, value: positions[index].to_array() });
     }
     let extent = extent(positions);
     let mut faces = Vec::with_capacity(triangles.len());

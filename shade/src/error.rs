@@ -3,20 +3,28 @@
 #[non_exhaustive]
 pub enum ShadeError {
     /// A triangle names a vertex that does not exist.
-    #[error("triangle {triangle} names vertex {vertex}, but there are only {count}")]
-    IndexOutOfRange {
-        /// Position of the triangle in the list.
+    #[error("triangle {triangle} names vertex {vertex}, but there are {count}")]
+    VertexOutOfRange {
+        /// Position in the triangle array.
         triangle: usize,
-        /// The index it holds.
+        /// The vertex it names.
         vertex: u32,
         /// How many vertices there are.
         count: usize,
     },
-    /// A vertex position is NaN or infinite.
-    #[error("vertex {index} is not finite")]
-    NotFinite {
-        /// Position of the vertex in the list.
+    /// A vertex is NaN or infinite.
+    #[error("vertex {index} is not finite: {value:?}")]
+    VertexNotFinite {
+        /// Position in the vertex array.
         index: usize,
+        /// Its coordinates.
+        value: [f64; 3],
+    },
+    /// A crease angle is NaN.
+    #[error("a crease angle of {crease_rad} rad; it must be a number")]
+    BadCrease {
+        /// As given, radians.
+        crease_rad: f64,
     },
     /// A texture's slice does not hold `width · height` texels.
     #[error("{len} texels do not make a texture of {width} by {height}")]

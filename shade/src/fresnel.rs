@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 /// Reflectance at normal incidence below which the Fresnel term at grazing angles fades, too \[7\]: no real surface
-/// reflects less than 2 %, so less is meant as occlusion, and none as none.
+/// reflects less than 2 %, so smaller values are taken for occlusion baked into the map, and 0 for no reflection at all.
 const LEAST_REAL_REFLECTANCE: f32 = 0.02;
 
 /// The reflectance at grazing angles that goes with one at normal incidence.

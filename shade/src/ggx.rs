@@ -3,24 +3,12 @@
 
 use crate::fresnel::schlick;
 use crate::ggx_table::{coat_albedo, mean_coat_albedo};
+use crate::roughness::alpha;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// Perceptual roughness below this counts as this.
-///
-/// Chosen: α = 9e-4, a highlight of a twentieth of a degree; narrower ones cannot be told from a mirror by `f32`
-/// directions, and a lamp without size would never be seen in them.
-pub const SMALLEST_ROUGHNESS: f32 = 0.03;
-
 /// Keeps 1/x finite where both cosines vanish; the cosine in the numerator then takes the product to 0.
 const SMALLEST_DENOMINATOR: f32 = 1e-20;
-
-/// α = perceptual roughness squared \[7\]; from [`SMALLEST_ROUGHNESS`]² to 1, also for NaN.
-pub(crate) fn alpha(roughness: f32) -> f32 {
-    // Not `clamp`, which lets NaN pass.
-    let r = if roughness > SMALLEST_ROUGHNESS { roughness.min(1.0) } else { SMALLEST_ROUGHNESS };
-    r * r
-}
 
 /// D(h) = α² / π(cos²(α²−1) + 1)² \[6, eq. 33\].
 pub(crate) fn distribution(n: Vec3, h: Vec3, alpha: f32) -> f32 {

@@ -1,4 +1,4 @@
-//! How much light a GGX coat reflects in all, tabulated once by quadrature.
+//! Directional albedo of a GGX coat, tabulated once by quadrature.
 //!
 //! With Schlick's Fresnel term the albedo for light from one direction is E = f0·A + f90·B, where A and B depend on
 //! the angle and the roughness only (the second sum of the "split sum" \[7\]).
@@ -29,10 +29,11 @@ static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 /// `cos` is that of the light (or, the coat being reciprocal, of the eye), `roughness` is perceptual; both are cut
 /// to [0, 1]. Also the factor on a prefiltered environment \[7\]. Errors are below 1e-3 up to 80° from the normal and
 /// below 5e-3 beyond.
+#[must_use]
 pub fn coat_albedo(f0: Vec3, roughness: f32, cos: f32) -> Vec3 {
     let table = &*TABLE;
-    let (row, fr) = place(roughness, ROUGHNESSES);
-    let (column, fc) = place(cos.max(0.0).sqrt(), COSINES);
+    let (row, fr) = entry_below(roughness, ROUGHNESSES);
+    let (column, fc) = entry_below(cos.max(0.0).sqrt(), COSINES);
     let at = |row: usize| {
         let first = row * COSINES + column;
         table.terms[first].lerp(table.terms[first + 1], fc)
@@ -42,7 +43,7 @@ pub fn coat_albedo(f0: Vec3, roughness: f32, cos: f32) -> Vec3 {
 
 /// The mean of [`coat_albedo`] over evenly lit directions, 2∫ E(c) c dc.
 pub(crate) fn mean_coat_albedo(f0: Vec3, roughness: f32) -> Vec3 {
-    let (row, f) = place(roughness, ROUGHNESSES);
+    let (row, f) = entry_below(roughness, ROUGHNESSES);
     combine(f0, TABLE.means[row].lerp(TABLE.means[row + 1], f))
 }
 
@@ -51,7 +52,7 @@ fn combine(f0: Vec3, terms: Vec2) -> Vec3 {
 }
 
 /// The entry below a coordinate in [0, 1], and how far it is to the next.
-fn place(x: f32, count: usize) -> (usize, f32) {
+fn entry_below(x: f32, count: usize) -> (usize, f32) {
     // Not `clamp`, which lets NaN pass.
     let x = if x > 0.0 { x.min(1.0) } else { 0.0 } * (count - 1) as f32;
     let index = (x as usize).min(count - 2);
@@ -65,7 +66,7 @@ impl Table {
         let mut means = Vec::with_capacity(ROUGHNESSES);
         for row in 0..ROUGHNESSES {
             let roughness = row as f64 / (ROUGHNESSES - 1) as f64;
-            let alpha = f64::from(crate::ggx::alpha(roughness as f32));
+            let alpha = f64::from(crate::roughness::alpha(roughness as f32));
             terms.extend((0..COSINES).map(|i| entry(cosine(i).max(1e-6), alpha)));
             means.push(mean(&terms[row * COSINES..]));
         }
@@ -80,7 +81,7 @@ fn mean(row: &[Vec2]) -> Vec2 {
     let mut sum = Vec2::ZERO;
     for i in 0..STEPS {
         let root = (i as f32 + 0.5) / STEPS as f32;
-        let (k, f) = place(root, COSINES);
+        let (k, f) = entry_below(root, COSINES);
         // c = root², dc = 2 root: 2 E c dc.
         sum += row[k].lerp(row[k + 1], f) * (4.0 * root * root * root / STEPS as f32);
     }

@@ -1,6 +1,7 @@
 //! The fixed-function OpenGL lighting formula \[5\], with its own light and material.
 //!
-//! Not physical (the highlight is not weighted by the cosine, nothing is normalised), but the known values are known.
+//! Not physical: the highlight is not weighted by the cosine, and nothing is normalised. It gives the values that OpenGL gives, for
+//! comparison. Its light and material hold what the specification \[5\] names, and will not grow.
 
 use crate::{Falloff, brdf::power};
 use glam::{DVec3, Vec3};
@@ -64,6 +65,7 @@ pub struct Material {
 ///
 /// With OpenGL's local viewer, `to_eye` points from the surface to the eye; without (its default), it is the
 /// view's backward axis, the same for all points.
+#[must_use]
 pub fn contribution(light: &Light, material: &Material, point: DVec3, normal: Vec3, to_eye: Vec3) -> Vec3 {
     let (to_light, strength) = arrival(light, point);
     let cos_light = normal.dot(to_light).max(0.0);
@@ -77,6 +79,7 @@ pub fn contribution(light: &Light, material: &Material, point: DVec3, normal: Ve
 }
 
 /// Emission, global ambient and all lights, not clamped.
+#[must_use]
 pub fn shade(
     lights: &[Light],
     global_ambient: Vec3,
@@ -90,17 +93,25 @@ pub fn shade(
 }
 
 /// Clamped to [0, 1], as OpenGL does before it draws.
+#[must_use]
 pub fn display(color: Vec3) -> Vec3 {
     color.clamp(Vec3::ZERO, Vec3::ONE)
+}
+
+/// A unit vector and the length; zeros for a vector without direction.
+fn direction_and_length(v: DVec3) -> (DVec3, f64) {
+    // The squares of 1e200 and 1e-200 overflow and underflow.
+    let is_normal = (1e-280..=1e280).contains(&v.length_squared());
+    if is_normal { (v.normalize_or_zero(), v.length()) } else { crate::light::direction_and_length(v) }
 }
 
 /// Unit vector to the light, and attenuation times spot factor.
 fn arrival(light: &Light, point: DVec3) -> (Vec3, f32) {
     let (to_light, attenuation) = match light.placement {
-        Placement::Towards(direction) => (direction.normalize_or_zero(), 1.0),
+        Placement::Towards(direction) => (direction_and_length(direction).0, 1.0),
         Placement::At(position) => {
-            let offset = position - point;
-            (offset.normalize_or_zero(), Falloff::Polynomial(light.attenuation).at(offset.length()))
+            let (to_light, distance) = direction_and_length(position - point);
+            (to_light, Falloff::Polynomial(light.attenuation).at(distance))
         }
     };
     let spot = match (light.spot, light.placement) {
@@ -115,6 +126,6 @@ fn spot_factor(spot: Spot, travel: DVec3) -> f32 {
     if spot.cutoff_rad >= std::f64::consts::PI {
         return 1.0;
     }
-    let cosine = travel.dot(spot.direction.normalize_or_zero());
+    let cosine = travel.dot(direction_and_length(spot.direction).0);
     if cosine < spot.cutoff_rad.cos() { 0.0 } else { power(cosine as f32, spot.exponent) }
 }

@@ -1,10 +1,25 @@
-//! Facts that hold for every input; `Err` says what went wrong.
+//! Facts that hold for every material and every measured table, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
+//!
+//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a crate
+//! that builds on it, with the feature `invariants`. What each asks of its arguments stands with it.
+//!
+//! ```
+//! use pointillist_shade::{Material, invariants::brdf_is_reciprocal};
+//! # use glam::Vec3;
+//!
+//! let (to_light, to_eye) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 0.28, 0.96));
+//! brdf_is_reciprocal(&Material::metallic_roughness(Vec3::ONE, 0.5, 0.3), Vec3::Z, to_light, to_eye)?;
+//! # Ok::<(), String>(())
+//! ```
 
 use crate::{MERL_DIMENSIONS, Material, MerlTable, Model, ShadeError};
 use glam::Vec3;
 
 /// Exchanging light and eye changes nothing, and the value is finite and not negative. All vectors of unit length, `material` with
 /// albedos from 0 to 1.
+///
+/// # Errors
+/// The material, and both values.
 pub fn brdf_is_reciprocal(
     material: &Material,
     normal: Vec3,
@@ -29,6 +44,9 @@ pub fn brdf_is_reciprocal(
 }
 
 /// A table is read, and then answers with finite numbers, or refused for one of the reasons that there are.
+///
+/// # Errors
+/// The value, or the error that does not belong to tables.
 pub fn merl_is_read_or_refused(bytes: &[u8], directions: [Vec3; 3]) -> Result<(), String> {
     let table = match MerlTable::from_bytes(bytes) {
         Ok(table) => table,
@@ -43,6 +61,7 @@ pub fn merl_is_read_or_refused(bytes: &[u8], directions: [Vec3; 3]) -> Result<()
 }
 
 /// A file of the right size that repeats `pattern`, so that a fuzzer need not find 35 MB by itself.
+#[must_use]
 pub fn merl_of_pattern(pattern: &[u8]) -> Vec<u8> {
     let mut bytes: Vec<u8> = MERL_DIMENSIONS.iter().flat_map(|&n| (n as i32).to_le_bytes()).collect();
     let values = 3 * 8 * MERL_DIMENSIONS.iter().product::<usize>();

@@ -1,7 +1,7 @@
 //! What a surface does with light: lights, BRDFs, normals and textures.
 //!
-//! Everything here is a pure function of its arguments. Who sees what, and who shadows whom, is the caller's
-//! business; this crate says how much light *would* arrive and how much of it leaves towards the eye.
+//! Everything here is a pure function of its arguments. Visibility and shadows are left to the caller: this crate computes the light
+//! that arrives at a point if nothing is in between, and how much of it leaves towards the eye.
 //!
 //! ```
 //! use glam::{DVec3, Vec3, dvec3};
@@ -33,13 +33,30 @@
 //! * [`Environment`], [`CubeMap`], [`Equirectangular`]: light from far away, mirrored by surfaces of any roughness, and
 //!   [`mirror`], [`refract`] for where to look.
 //!
+//! # Which numbers are `f64`
+//!
+//! Positions, and what is computed from positions before rounding can do harm, are `f64`: points and lamps, directions of lamps and edges
+//! of rectangles ([`Light`]), face normals from corners ([`face_normal`]), texture coordinates ([`nearest`], [`AutoUv`]), and directions
+//! into images of the surroundings ([`CubeMap`], [`Equirectangular`]), whose texels may be narrower than an `f32` tells apart. Positions
+//! are subtracted before anything is rounded, so a scene far from its origin shades as it does at the origin.
+//!
+//! What a surface is shaded with is `f32`: unit vectors (normals, to the light, to the eye), colors, BRDFs. `as_vec3` and `as_dvec3` of
+//! glam lead from one to the other; [`turn_to`] and everything after it takes `Vec3`.
+//!
 //! # Accuracy and cost
 //!
-//! Positions are `f64` and are subtracted before anything is rounded to `f32`, so a scene far from its origin shades
-//! as it does at the origin. Directions and colours are `f32`; an evaluation costs a few tens of nanoseconds and
+//! An evaluation costs a few tens of nanoseconds and
 //! does not allocate. Tables are made when they are first asked for: the GGX coat's albedo (0.04 s, once), a MERL table
 //! (17 MB), the blurred levels of an environment (0.5 s). Finite input gives finite output: irradiance beyond [`LARGEST_IRRADIANCE`] (a point on top of
 //! a lamp) is cut there.
+//!
+//! # Features
+//!
+//! None is on by default. `invariants`: the module of that name, facts for property tests and fuzzing, also of crates that build on this
+//! one.
+//!
+//! Builds for `wasm32-unknown-unknown`; last bits of light may differ there, because powers and trigonometric functions come from
+//! another library. Times are with thin LTO and `codegen-units = 1` in the profile of the dependent program.
 //!
 //! # References
 //!
@@ -82,6 +99,7 @@ mod merl;
 mod normals;
 mod quadrature;
 mod refraction;
+mod roughness;
 mod texture;
 
 pub use auto_uv::AutoUv;
@@ -91,7 +109,6 @@ pub use environment::{
     CubeMap, Environment, Equirectangular, cube_direction, equirectangular_direction, equirectangular_uv,
 };
 pub use error::ShadeError;
-pub use ggx::SMALLEST_ROUGHNESS;
 pub use ggx_table::coat_albedo;
 pub use interpolation::{Interpolation, interpolate_color, interpolate_normal};
 pub use light::{Falloff, Incident, LARGEST_IRRADIANCE, Light, Source};
@@ -100,4 +117,13 @@ pub use merl::{MERL_DIMENSIONS, MerlTable};
 pub use normals::{Weighting, face_normal, sees_light, turn_to, vertex_normals};
 pub use quadrature::directional_albedo;
 pub use refraction::{Refraction, mirror, refract};
+pub use roughness::SMALLEST_ROUGHNESS;
 pub use texture::{Wrap, nearest};
+
+/// The version of `glam` that this crate's functions take and return.
+pub use glam;
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -21,6 +21,7 @@ pub enum Falloff {
 
 impl Falloff {
     /// The factor at distance `d`; 0 where the formula has no finite positive value.
+    #[must_use]
     pub fn at(self, d: f64) -> f64 {
         let denominator = match self {
             Self::InverseSquare => d * d,
@@ -95,6 +96,7 @@ pub enum Source {
 
 /// What arrives at a point from one sample of a light, if nothing is in between.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Incident {
     /// Unit vector towards the light; zero if there is no such direction (the point is on the lamp).
     pub to_light: Vec3,
@@ -106,6 +108,7 @@ pub struct Incident {
 
 impl Incident {
     /// Whether nothing arrives, so that neither shadow nor BRDF matters.
+    #[must_use]
     pub fn is_dark(&self) -> bool {
         self.irradiance == Vec3::ZERO
     }
@@ -113,6 +116,7 @@ impl Incident {
 
 impl Light {
     /// How many samples stand for this light: 1 except for a [`Light::Rect`].
+    #[must_use]
     pub fn samples(&self) -> u32 {
         match self {
             Self::Rect { samples, .. } => (*samples).max(1),
@@ -121,6 +125,7 @@ impl Light {
     }
 
     /// Where sample number `sample` is; numbers beyond [`Light::samples`] start again.
+    #[must_use]
     pub fn source(&self, sample: u32) -> Source {
         match *self {
             Self::Directional { direction, .. } => Source::Direction(direction),
@@ -136,6 +141,7 @@ impl Light {
     /// What arrives at `point` from sample number `sample`; the light is the sum over its samples.
     ///
     /// Finite input gives finite output. A point that coincides with the source receives nothing.
+    #[must_use]
     pub fn illuminate(&self, sample: u32, point: DVec3) -> Incident {
         let source = self.source(sample);
         let position = match source {
@@ -161,6 +167,7 @@ impl Light {
     }
 
     /// The light's own quantity: irradiance, intensity or radiance.
+    #[must_use]
     pub fn color(&self) -> Vec3 {
         match *self {
             Self::Directional { irradiance, .. } => irradiance,
@@ -177,7 +184,7 @@ impl Light {
 }
 
 /// A unit vector and the length, or zeros for a vector without direction. Safe from overflow and underflow.
-fn direction_and_length(v: DVec3) -> (DVec3, f64) {
+pub(crate) fn direction_and_length(v: DVec3) -> (DVec3, f64) {
     let largest = v.abs().max_element();
     if largest == 0.0 || !v.is_finite() {
         return (DVec3::ZERO, 0.0);

@@ -1,4 +1,4 @@
-//! A surface's own constants, and the light it sends to the eye.
+//! Materials, and the radiance that they reflect towards the eye.
 
 use crate::{Incident, LARGEST_IRRADIANCE, brdf, ggx};
 use glam::Vec3;
@@ -31,7 +31,10 @@ pub enum Model {
 }
 
 /// What a surface is made of, at one point (textures are looked up before).
+///
+/// Start from [`Material::lambert`], [`Material::ggx`] or [`Material::metallic_roughness`] and set what differs: further fields may come.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Material {
     /// How it reflects.
     pub model: Model,
@@ -45,7 +48,7 @@ pub struct Material {
     pub roughness: f32,
     /// Radiance that the surface sends out by itself.
     pub emission: Vec3,
-    /// 1 hides what is behind, 0 is not there.
+    /// Opacity: 1 is opaque, 0 invisible.
     pub opacity: f32,
 }
 
@@ -58,6 +61,7 @@ impl Default for Material {
 
 impl Material {
     /// An opaque Lambert surface.
+    #[must_use]
     pub const fn lambert(diffuse: Vec3) -> Self {
         Self {
             model: Model::Lambert,
@@ -68,6 +72,17 @@ impl Material {
             emission: Vec3::ZERO,
             opacity: 1.0,
         }
+    }
+
+    /// An opaque surface of [`Model::Ggx`]: a base of albedo `diffuse` under a coat of reflectance `specular` at normal incidence and
+    /// this perceptual roughness.
+    #[must_use]
+    pub const fn ggx(diffuse: Vec3, specular: Vec3, roughness: f32) -> Self {
+        let mut surface = Self::lambert(diffuse);
+        surface.model = Model::Ggx;
+        surface.specular = specular;
+        surface.roughness = roughness;
+        surface
     }
 
     /// The same with another diffuse albedo, as read from a texture.
@@ -86,20 +101,39 @@ impl Material {
         self
     }
 
+    /// The same with another perceptual roughness, for [`Model::Ggx`].
+    #[must_use]
+    pub const fn with_roughness(mut self, roughness: f32) -> Self {
+        self.roughness = roughness;
+        self
+    }
+
+    /// The same with another radiance that it sends out by itself.
+    #[must_use]
+    pub const fn with_emission(mut self, emission: Vec3) -> Self {
+        self.emission = emission;
+        self
+    }
+
+    /// The same with another opacity, 0 to 1.
+    #[must_use]
+    pub const fn with_opacity(mut self, opacity: f32) -> Self {
+        self.opacity = opacity;
+        self
+    }
+
     /// A GGX surface as glTF describes it: `metallic` 0 has `base` as its diffuse albedo under a clear coat of
     /// reflectance [`DIELECTRIC_REFLECTANCE`], 1 mirrors `base` and has no diffuse part.
+    #[must_use]
     pub fn metallic_roughness(base: Vec3, metallic: f32, roughness: f32) -> Self {
-        Self {
-            model: Model::Ggx,
-            specular: Vec3::splat(DIELECTRIC_REFLECTANCE).lerp(base, metallic),
-            roughness,
-            ..Self::lambert(base * (1.0 - metallic))
-        }
+        let specular = Vec3::splat(DIELECTRIC_REFLECTANCE).lerp(base, metallic);
+        Self::ggx(base * (1.0 - metallic), specular, roughness)
     }
 
     /// The BRDF: radiance towards `to_eye` per irradiance from `to_light`; 0 where either is below the surface.
     ///
     /// All three are unit vectors away from the surface. Reciprocal: exchanging light and eye gives the same.
+    #[must_use]
     pub fn brdf(&self, normal: Vec3, to_light: Vec3, to_eye: Vec3) -> Vec3 {
         if normal.dot(to_light) <= 0.0 || normal.dot(to_eye) <= 0.0 {
             return Vec3::ZERO;
@@ -123,6 +157,7 @@ impl Material {
     /// Radiance towards `to_eye` of what arrives: BRDF · irradiance · cosine. Without emission.
     ///
     /// A surface seen exactly edge-on counts as just visible, so that a Lambert surface keeps its value there.
+    #[must_use]
     pub fn reflect(&self, incident: &Incident, normal: Vec3, to_eye: Vec3) -> Vec3 {
         let cos_light = normal.dot(incident.to_light);
         if cos_light <= 0.0 || incident.is_dark() {
@@ -136,6 +171,7 @@ impl Material {
     }
 
     /// Whether reflection depends on where the eye is; if not, one value serves all views.
+    #[must_use]
     pub fn depends_on_view(&self) -> bool {
         self.model != Model::Lambert && self.specular != Vec3::ZERO
     }

@@ -61,6 +61,7 @@ impl MerlTable {
     /// The table of a function of `(to_light, to_eye)`, unit vectors about the normal +Z, asked at every bin's centre.
     ///
     /// Directions may lie below the surface; negative and non-finite values are stored as 0.
+    #[must_use]
     pub fn tabulate(brdf: impl Fn(Vec3, Vec3) -> Vec3) -> Self {
         let [halves, thetas, phis] = MERL_DIMENSIONS;
         let mut bins = Vec::with_capacity(BINS);
@@ -77,6 +78,7 @@ impl MerlTable {
     }
 
     /// The file of this table; [`MerlTable::from_bytes`] reads it back to the rounding of `f32`.
+    #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(HEADER + 24 * BINS);
         MERL_DIMENSIONS.iter().for_each(|&n| bytes.extend((n as i32).to_le_bytes()));
@@ -88,6 +90,7 @@ impl MerlTable {
     }
 
     /// The BRDF; 0 where light or eye is below the surface. All three are unit vectors away from the surface.
+    #[must_use]
     pub fn brdf(&self, normal: Vec3, to_light: Vec3, to_eye: Vec3) -> Vec3 {
         if !(normal.dot(to_light) > 0.0 && normal.dot(to_eye) > 0.0) {
             return Vec3::ZERO;
@@ -104,6 +107,7 @@ impl MerlTable {
     }
 
     /// Radiance towards `to_eye` of what arrives: BRDF · irradiance · cosine.
+    #[must_use]
     pub fn reflect(&self, incident: &Incident, normal: Vec3, to_eye: Vec3) -> Vec3 {
         let cos_light = normal.dot(incident.to_light);
         if cos_light <= 0.0 || incident.is_dark() {
@@ -113,7 +117,8 @@ impl MerlTable {
     }
 
     /// Directional albedo for an eye at normal incidence, by [`crate::directional_albedo`]: what stands for the whole table
-    /// where one colour is needed.
+    /// where one color is needed.
+    #[must_use]
     pub fn albedo(&self) -> Vec3 {
         crate::directional_albedo(Vec3::Z, 64, |l, v| self.brdf(Vec3::Z, l, v)).min(Vec3::ONE)
     }

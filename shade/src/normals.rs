@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 
 /// How much each face counts in the normal of a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Weighting {
     /// By its area, so that slivers do not tilt the surface.
     #[default]
@@ -16,6 +17,7 @@ pub enum Weighting {
 }
 
 /// Unit normal of the triangle, counter-clockwise seen from its front; zero for a triangle without area.
+#[must_use]
 pub fn face_normal(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     // Scaled by the longest side first: the cross product of 1e-200 sides would underflow to "no area".
     let (ab, ac) = (half_side(a, b), half_side(a, c));
@@ -39,7 +41,7 @@ pub fn vertex_normals(
     weighting: Weighting,
 ) -> Result<Vec<Vec3>, ShadeError> {
     if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
-        return Err(ShadeError::NotFinite { index });
+        return Err(ShadeError::VertexNotFinite { index, value: positions[index].to_array() });
     }
     // Cross products are taken of sides divided by this, so that areas neither overflow nor underflow.
     let extent = extent(positions);
@@ -68,6 +70,7 @@ pub(crate) fn shares([a, b, c]: [DVec3; 3], weighting: Weighting, extent: f64) -
 }
 
 /// `normal`, or its opposite if that is the one on the side of `towards`.
+#[must_use]
 pub fn turn_to(normal: Vec3, towards: Vec3) -> Vec3 {
     if normal.dot(towards) < 0.0 { -normal } else { normal }
 }
@@ -75,6 +78,7 @@ pub fn turn_to(normal: Vec3, towards: Vec3) -> Vec3 {
 /// The two-sided rule: light arrives where the eye looks only if both are on the same side of the face.
 ///
 /// `face` is the face normal turned to the eye; `to_light` points to the light.
+#[must_use]
 pub fn sees_light(face: Vec3, to_light: Vec3) -> bool {
     face.dot(to_light) > 0.0
 }
@@ -86,7 +90,7 @@ pub(crate) fn corners_of(
 ) -> Result<[DVec3; 3], ShadeError> {
     let mut points = [DVec3::ZERO; 3];
     for (point, vertex) in points.iter_mut().zip(corners) {
-        *point = *positions.get(vertex as usize).ok_or(ShadeError::IndexOutOfRange {
+        *point = *positions.get(vertex as usize).ok_or(ShadeError::VertexOutOfRange {
             triangle,
             vertex,
             count: positions.len(),

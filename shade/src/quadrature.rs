@@ -1,4 +1,4 @@
-//! How much light a BRDF returns in all.
+//! Directional albedo of a BRDF, by quadrature.
 
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -8,7 +8,8 @@ use std::f64::consts::{PI, TAU};
 ///
 /// Midpoints of `steps` × `steps` cells in polar coordinates about the direction that mirrors `v`, packed towards
 /// it: cells there are `steps`⁴ times smaller than a hemisphere's share, so that lobes as narrow as
-/// [`crate::SMALLEST_ROUGHNESS`] are resolved. 64 steps give two digits, 256 three.
+/// [`crate::SMALLEST_ROUGHNESS`] are resolved. 64 steps give two digits, 256 three; 0 steps give 0.
+#[must_use]
 pub fn directional_albedo(to_eye: Vec3, steps: usize, brdf: impl Fn(Vec3, Vec3) -> Vec3) -> Vec3 {
     let mirror =
         DVec3::new(-f64::from(to_eye.x), -f64::from(to_eye.y), f64::from(to_eye.z)).normalize_or(DVec3::Z);

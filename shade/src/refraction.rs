@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
-/// Where a look goes on at a clear surface.
+/// How a ray from the eye continues at a smooth, transparent surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Refraction {
     /// Unit vector on, away from the eye: into the medium, or mirrored if no light passes.
     pub direction: Vec3,
@@ -12,6 +13,7 @@ pub struct Refraction {
 }
 
 /// The direction that mirrors `to_eye` at the normal; unit vectors give a unit vector.
+#[must_use]
 pub fn mirror(to_eye: Vec3, normal: Vec3) -> Vec3 {
     2.0 * normal.dot(to_eye) * normal - to_eye
 }
@@ -21,6 +23,7 @@ pub fn mirror(to_eye: Vec3, normal: Vec3) -> Vec3 {
 /// `normal` is on the eye's side, and `index` is the refraction index beyond the surface over that on the eye's
 /// side: 1.5 looking into glass, 1/1.5 out of it. An index that is not positive counts as 1. Both vectors are of unit
 /// length; an eye below the surface counts as one at its edge.
+#[must_use]
 pub fn refract(to_eye: Vec3, normal: Vec3, index: f32) -> Refraction {
     let index = if index > 0.0 && index.is_finite() { index } else { 1.0 };
     let cos_i = normal.dot(to_eye).clamp(0.0, 1.0);

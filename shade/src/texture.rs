@@ -17,6 +17,7 @@ pub enum Wrap {
 
 impl Wrap {
     /// The texel of `0..size` that stands for texel number `i` of the endless row. A `size` of 0 counts as 1.
+    #[must_use]
     pub fn texel(self, i: i64, size: u32) -> u32 {
         let n = i64::from(size.max(1));
         let wrapped = match self {

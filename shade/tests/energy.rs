@@ -57,10 +57,7 @@ fn lambert_returns_its_albedo_from_anywhere() {
 }
 
 fn ggx(diffuse: f32, f0: f32, roughness: f32) -> Material {
-    Material {
-        roughness,
-        ..Material::lambert(Vec3::splat(diffuse)).with_specular(Model::Ggx, Vec3::splat(f0), 0.0)
-    }
+    Material::ggx(Vec3::splat(diffuse), Vec3::splat(f0), roughness)
 }
 
 #[test]
@@ -127,7 +124,7 @@ fn metals_have_no_diffuse_part_and_plastics_a_clear_coat() {
 }
 
 fn plastic(l: Vec3, v: Vec3) -> Vec3 {
-    let m = Material { roughness: 0.4, ..ggx(0.5, 0.04, 0.4) };
+    let m = ggx(0.5, 0.04, 0.4);
     m.with_diffuse(vec3(0.5, 0.3, 0.1)).brdf(Vec3::Z, l, v)
 }
 

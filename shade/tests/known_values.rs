@@ -202,9 +202,9 @@ fn area_weights_keep_slivers_quiet() {
 #[test]
 fn wrong_meshes_are_named() {
     let error = vertex_normals(&[DVec3::ZERO], &[[0, 0, 1]], Weighting::Area).unwrap_err();
-    assert_eq!(error, ShadeError::IndexOutOfRange { triangle: 0, vertex: 1, count: 1 });
+    assert_eq!(error, ShadeError::VertexOutOfRange { triangle: 0, vertex: 1, count: 1 });
     let error = vertex_normals(&[DVec3::NAN], &[], Weighting::Area).unwrap_err();
-    assert_eq!(error, ShadeError::NotFinite { index: 0 });
+    assert!(matches!(error, ShadeError::VertexNotFinite { index: 0, .. }), "{error:?}");
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn a_back_face_is_turned_to_the_eye() {
 }
 
 #[test]
-fn gouraud_mixes_colours() {
+fn gouraud_mixes_colors() {
     let mixed = interpolate_color([Vec3::X, Vec3::Y, Vec3::Z], vec3(0.5, 0.25, 0.25));
     assert_eq!(mixed, vec3(0.5, 0.25, 0.25));
 }
@@ -258,4 +258,39 @@ fn a_texture_of_the_wrong_size_is_refused() {
     let error = nearest(&[0u8; 3], 2, 2, Wrap::Clamp, DVec2::ZERO).unwrap_err();
     assert_eq!(error, ShadeError::TextureSize { len: 3, width: 2, height: 2 });
     assert!(nearest::<u8>(&[], 0, 0, Wrap::Clamp, DVec2::ZERO).is_err());
+}
+
+/// The number of texels overflowed, and an angle that is no number made every edge a crease.
+#[test]
+fn sizes_and_angles_that_cannot_be_are_refused() {
+    let texels = pointillist_shade::CubeMap::new(u32::MAX, &[]);
+    assert!(matches!(texels, Err(ShadeError::TextureSize { len: 0, width: u32::MAX, .. })), "{texels:?}");
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let creased = |angle| pointillist_shade::corner_normals(&corners, &[[0, 1, 2]], Weighting::Area, angle);
+    assert!(matches!(creased(f64::NAN), Err(ShadeError::BadCrease { .. })));
+    assert!(creased(-1.0).is_ok() && creased(f64::INFINITY).is_ok());
+}
+
+/// Directions whose squared length overflows or underflows gave no light.
+#[test]
+fn opengl_lights_may_be_any_distance_away() {
+    use pointillist_shade::gl;
+    let material = gl::Material {
+        ambient: Vec3::ZERO,
+        diffuse: Vec3::ONE,
+        specular: Vec3::ZERO,
+        shininess: 1.0,
+        emission: Vec3::ZERO,
+    };
+    let shaded = |placement, spot| {
+        let (ambient, attenuation) = (Vec3::ZERO, [1.0, 0.0, 0.0]);
+        let light =
+            gl::Light { ambient, diffuse: Vec3::ONE, specular: Vec3::ONE, placement, spot, attenuation };
+        gl::contribution(&light, &material, DVec3::ZERO, Vec3::Y, Vec3::Y)
+    };
+    for far in [1e-200, 1.0, 1e200] {
+        assert_eq!(shaded(gl::Placement::Towards(DVec3::Y * far), None), Vec3::ONE, "{far:e}");
+        let spot = gl::Spot { direction: DVec3::NEG_Y * far, cutoff_rad: 0.5, exponent: 1.0 };
+        assert_eq!(shaded(gl::Placement::At(DVec3::Y * far), Some(spot)), Vec3::ONE, "{far:e}");
+    }
 }

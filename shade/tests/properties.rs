@@ -85,9 +85,10 @@ fn light() -> BoxedStrategy<Light> {
 fn material() -> impl Strategy<Value = Material> {
     let number = || any::<f32>().prop_filter("not NaN", |m| !m.is_nan());
     (0..MODELS.len(), color(), color(), number(), any::<f32>()).prop_map(
-        |(model, diffuse, specular, shininess, roughness)| Material {
-            roughness,
-            ..Material::lambert(diffuse).with_specular(MODELS[model], specular, shininess)
+        |(model, diffuse, specular, shininess, roughness)| {
+            Material::lambert(diffuse)
+                .with_specular(MODELS[model], specular, shininess)
+                .with_roughness(roughness)
         },
     )
 }
@@ -96,9 +97,10 @@ fn material() -> impl Strategy<Value = Material> {
 fn real_material() -> impl Strategy<Value = Material> {
     let albedo = || [0.0f32..=1.0, 0.0f32..=1.0, 0.0f32..=1.0].prop_map(Vec3::from_array);
     (0..MODELS.len(), albedo(), albedo(), 0.0f32..1e4, 0.0f32..=1.0).prop_map(
-        |(model, diffuse, specular, shininess, roughness)| Material {
-            roughness,
-            ..Material::lambert(diffuse).with_specular(MODELS[model], specular, shininess)
+        |(model, diffuse, specular, shininess, roughness)| {
+            Material::lambert(diffuse)
+                .with_specular(MODELS[model], specular, shininess)
+                .with_roughness(roughness)
         },
     )
 }

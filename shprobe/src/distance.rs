@@ -1,4 +1,4 @@
-//! How far a probe sees in every direction, and so which positions it sees.
+//! Distances from a probe to the nearest surface in every direction, and visibility from them.
 
 use crate::octahedron::{direction_from_square, square_from_direction, wrapped};
 use crate::sh::{CubePoint, cube_direction, texel_solid_angle};
@@ -19,13 +19,26 @@ pub const DEFAULT_DISTANCE_SIZE: usize = 16;
 /// Farther than this times the mean, a position counts as unseen however little is known about the surface.
 const RELATIVE_SLACK: f64 = 0.01;
 
+/// Refuses maps without texels, and those too large to be meant.
+const fn check_size(size: usize) -> Result<(), ProbeError> {
+    let limit = DistanceMap::MAX_SIZE;
+    if size == 0 || size > limit { Err(ProbeError::MapSize { size, limit }) } else { Ok(()) }
+}
+
 impl DistanceMap {
+    /// Most texels along an edge, of maps and of cube maps of distances.
+    pub const MAX_SIZE: usize = 8192;
+
+    /// Largest distance: its square is a number in single precision.
+    pub const FARTHEST: f32 = 1e19;
+
     /// Of moments, mean and mean square of each texel of a `size` × `size` square, row by row.
     ///
     /// # Errors
-    /// [`ProbeError::BadDistances`] if there are not `size²`, or one is negative or not finite.
+    /// [`ProbeError::MapSize`]; [`ProbeError::BadDistances`] if there are not `size²`, or one is negative or not finite.
     pub fn new(size: usize, moments: Vec<[f32; 2]>) -> Result<Self, ProbeError> {
-        if size == 0 || moments.len() != size * size {
+        check_size(size)?;
+        if moments.len() != size * size {
             return Err(ProbeError::BadDistances { index: moments.len().min(size * size) });
         }
         let bad = |m: &[f32; 2]| !m.iter().all(|v| v.is_finite() && *v >= 0.0);
@@ -36,13 +49,20 @@ impl DistanceMap {
     }
 
     /// Of a cube map of distances: six faces of `cube_size`² texels, row by row. What is farther than `far`, or infinite, counts as
-    /// `far`.
+    /// `far`: world units, above 0, at most [`DistanceMap::FARTHEST`].
     ///
     /// # Errors
+    /// [`ProbeError::MapSize`] if either size is 0 or above [`DistanceMap::MAX_SIZE`]; [`ProbeError::BadOption`] for `far`;
     /// [`ProbeError::BadDistances`] if there are not `6 · cube_size²`, or one is negative or NaN.
     pub fn from_cube(size: usize, cube_size: usize, distances: &[f32], far: f32) -> Result<Self, ProbeError> {
+        check_size(size)?;
+        check_size(cube_size)?;
+        if !(far > 0.0 && far <= Self::FARTHEST) {
+            let range = "it must be above 0 and at most 1e19";
+            return Err(ProbeError::BadOption { name: "far", value: f64::from(far), range });
+        }
         let area = cube_size * cube_size;
-        if size == 0 || cube_size == 0 || distances.len() != 6 * area {
+        if distances.len() != 6 * area {
             return Err(ProbeError::BadDistances { index: distances.len().min(6 * area) });
         }
         if let Some(index) = distances.iter().position(|d| d.is_nan() || *d < 0.0) {
@@ -73,19 +93,23 @@ impl DistanceMap {
     }
 
     /// Texels on a side.
+    #[must_use]
     pub const fn size(&self) -> usize {
         self.size
     }
 
     /// Mean and mean square of each texel, row by row.
+    #[must_use]
     pub fn moments(&self) -> &[[f32; 2]] {
         &self.moments
     }
 
-    /// How much of the neighbourhood of a position this far from the probe the probe sees, 0..=1; continuous in the position.
+    /// How much of the neighbourhood of a position this far from the probe the probe sees, 0..=1; continuous in the position. NaN for an
+    /// offset that is not finite.
     ///
     /// Where the position is farther than the surface on average, Chebyshev's inequality bounds how much of the surface is farther
     /// still (Donnelly & Lauritzen, *Variance shadow maps*, 2006, eq. 5), and its cube keeps light from leaking past edges.
+    #[must_use]
     pub fn visibility(&self, offset: DVec3) -> f64 {
         let distance = offset.length();
         if distance == 0.0 {

@@ -1,6 +1,6 @@
 //! Changing a field: what probes hold, and which probes there are; and its arrays, for shaders.
 
-use crate::field::{expect_count, irradiance_of};
+use crate::field::{check_radiance, expect_count, irradiance_of};
 use crate::sh::{Irradiance, Sh, coefficient_count};
 use crate::{DistanceMap, Field, ProbeError};
 use glam::{DVec3, Vec3};
@@ -10,10 +10,10 @@ impl Field {
     /// Gives a probe other light, in constant time.
     ///
     /// # Errors
-    /// [`ProbeError::NoSuchProbe`], or [`ProbeError::MixedOrders`] if it has another order than those of the field.
+    /// [`ProbeError::NoSuchProbe`], [`ProbeError::MixedOrders`] if it has another order than those of the field, or [`ProbeError::BadRadiance`].
     pub fn set_radiance(&mut self, probe: u32, radiance: &Sh) -> Result<(), ProbeError> {
         let index = self.index(probe)?;
-        self.expect_order(index, radiance)?;
+        check_radiance(index, radiance, self.order)?;
         let count = coefficient_count(self.order);
         self.irradiance[index * count..][..count].copy_from_slice(&irradiance_of(radiance));
         self.lights[index] = Irradiance::new(radiance);
@@ -46,7 +46,7 @@ impl Field {
         expect_count(if self.distances.is_some() { positions.len() } else { 0 }, distances.len())?;
         let before = self.probe_count();
         for (i, sh) in radiance.iter().enumerate() {
-            self.expect_order(before + i, sh)?;
+            check_radiance(before + i, sh, self.order)?;
         }
         self.positions.extend_from_slice(positions);
         if let Err(error) = self.divide() {
@@ -112,10 +112,5 @@ impl Field {
     fn index(&self, probe: u32) -> Result<usize, ProbeError> {
         let index = probe as usize;
         if index < self.probe_count() { Ok(index) } else { Err(ProbeError::NoSuchProbe { index: probe }) }
-    }
-
-    fn expect_order(&self, index: usize, radiance: &Sh) -> Result<(), ProbeError> {
-        let (order, expected) = (radiance.order(), self.order);
-        if order == expected { Ok(()) } else { Err(ProbeError::MixedOrders { index, order, expected }) }
     }
 }

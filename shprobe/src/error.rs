@@ -54,6 +54,46 @@ pub enum ProbeError {
         /// That of the first probe.
         expected: usize,
     },
+    /// A coordinate of a probe is beyond [`Field::FARTHEST`](crate::Field::FARTHEST).
+    #[error("position {index} is too far from the origin: coordinates can be up to 1e150")]
+    PositionTooFar {
+        /// Which, from 0.
+        index: usize,
+    },
+    /// A coefficient of what a probe holds is not finite, or beyond [`Field::BRIGHTEST`](crate::Field::BRIGHTEST).
+    #[error("probe {index} holds a coefficient that is not from −1e30 to 1e30")]
+    BadRadiance {
+        /// Which probe, from 0.
+        index: usize,
+    },
+    /// The weight of a candidate is negative or not finite, or all are 0.
+    #[error(
+        "candidate {index} counts {weight}: weights must be finite and at least 0, and one must be above 0"
+    )]
+    BadWeight {
+        /// Which candidate, from 0.
+        index: usize,
+        /// As given.
+        weight: f64,
+    },
+    /// An option or distance outside its range.
+    #[error("{name} is {value}: {range}")]
+    BadOption {
+        /// Which option.
+        name: &'static str,
+        /// As given.
+        value: f64,
+        /// What it must be.
+        range: &'static str,
+    },
+    /// A map of distances without texels, or with too many.
+    #[error("a map of distances with {size} texels along an edge: there must be 1 to {limit}")]
+    MapSize {
+        /// Texels along an edge.
+        size: usize,
+        /// How many there can be.
+        limit: usize,
+    },
     /// A distance is negative or not finite, or there are not as many as the map has texels.
     #[error("distance {index} of a map is missing, negative or not finite, or one too many")]
     BadDistances {

@@ -1,4 +1,4 @@
-//! Probes that light what lies between them.
+//! Light interpolated between probes.
 
 use crate::delaunay::{Delaunay, Hint, Locator, Partition};
 use crate::sh::{Irradiance, Lobe, MAX_COUNT, Sh, basis, coefficient_count};
@@ -29,8 +29,9 @@ pub struct Field {
     bias: Option<f64>,
 }
 
-/// Something that moves between probes.
+/// A moving object: its position, and the light there.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct LitObject {
     /// Where it is; set by the caller.
     pub position: DVec3,
@@ -42,6 +43,7 @@ pub struct LitObject {
 
 impl LitObject {
     /// An object that is not lit yet.
+    #[must_use]
     pub const fn at(position: DVec3) -> Self {
         Self { position, hint: Hint::START, light: Irradiance::DARK }
     }
@@ -54,10 +56,17 @@ const HELP: f64 = 2.0;
 const BIAS: f64 = 0.02;
 
 impl Field {
+    /// Largest absolute value of a coordinate of a probe: squares of distances are finite.
+    pub const FARTHEST: f64 = 1e150;
+
+    /// Largest absolute value of a coefficient: light in single precision is finite.
+    pub const BRIGHTEST: f64 = 1e30;
+
     /// Divides the space between `positions`, whose probes hold `radiance`.
     ///
     /// # Errors
-    /// No probes, as many coefficients as positions, positions that are not finite, coefficients of mixed orders.
+    /// [`ProbeError::NoProbes`], [`ProbeError::CountMismatch`] if there is not one function for each position,
+    /// [`ProbeError::PositionNotFinite`], [`ProbeError::PositionTooFar`], [`ProbeError::MixedOrders`], [`ProbeError::BadRadiance`].
     pub fn new(positions: &[DVec3], radiance: &[Sh]) -> Result<Self, ProbeError> {
         expect_count(positions.len(), radiance.len())?;
         Self::from_parts(positions, Delaunay::new(positions)?.partition(), radiance)
@@ -76,6 +85,7 @@ impl Field {
         radiance: &[Sh],
     ) -> Result<Self, ProbeError> {
         expect_count(positions.len(), radiance.len())?;
+        check_positions(positions)?;
         let order = common_order(radiance)?;
         let locator = Locator::new(positions, &partition)?;
         Ok(Self {
@@ -94,6 +104,7 @@ impl Field {
 
     /// Divides space anew, after positions have changed.
     pub(crate) fn divide(&mut self) -> Result<(), ProbeError> {
+        check_positions(&self.positions)?;
         self.partition = Delaunay::new(&self.positions)?.partition();
         self.locator = Locator::new(&self.positions, &self.partition)?;
         self.spacing = spacing(&self.positions, &self.partition);
@@ -115,11 +126,20 @@ impl Field {
     }
 
     /// Sets how far positions on a surface are lifted off it along its normal before they are looked up. Default: 2 % of the mean
-    /// distance between neighbouring probes.
-    #[must_use]
-    pub const fn with_bias(mut self, bias: f64) -> Self {
+    /// distance between neighbouring probes. World units, from −[`Field::FARTHEST`] to [`Field::FARTHEST`].
+    ///
+    /// # Errors
+    /// [`ProbeError::BadOption`].
+    pub fn with_bias(mut self, bias: f64) -> Result<Self, ProbeError> {
+        if !(-Self::FARTHEST..=Self::FARTHEST).contains(&bias) {
+            return Err(ProbeError::BadOption {
+                name: "bias",
+                value: bias,
+                range: "it must be −1e150 to 1e150",
+            });
+        }
         self.bias = Some(bias);
-        self
+        Ok(self)
     }
 
     /// How far positions on a surface are lifted off it.
@@ -129,21 +149,25 @@ impl Field {
     }
 
     /// The cells.
+    #[must_use]
     pub const fn partition(&self) -> &Partition {
         &self.partition
     }
 
     /// Finds cells, without regard to what is seen.
+    #[must_use]
     pub const fn locator(&self) -> &Locator {
         &self.locator
     }
 
     /// The order of the probes' coefficients.
+    #[must_use]
     pub const fn order(&self) -> usize {
         self.order
     }
 
     /// How many probes there are.
+    #[must_use]
     pub fn probe_count(&self) -> usize {
         self.lights.len()
     }
@@ -168,7 +192,7 @@ impl Field {
     /// shaded with, both of length 1. Linear RGB, at least 0.
     ///
     /// # Errors
-    /// [`ProbeError::QueryNotFinite`].
+    /// [`ProbeError::QueryNotFinite`] if the position or a normal is not finite.
     pub fn irradiance(
         &self,
         position: DVec3,
@@ -176,6 +200,9 @@ impl Field {
         normal: Vec3,
         hint: &mut Hint,
     ) -> Result<Vec3, ProbeError> {
+        if !normal.is_finite() {
+            return Err(ProbeError::QueryNotFinite { index: 0 });
+        }
         let shares = self.weigh(position + face_normal.as_dvec3() * self.bias(), hint)?;
         let basis: [f64; MAX_COUNT] = basis(self.order, normal.as_dvec3());
         let count = coefficient_count(self.order);
@@ -234,7 +261,7 @@ impl Field {
     }
 }
 
-/// What a probe sends to surfaces, from what it receives.
+/// Coefficients of irradiance from those of radiance.
 pub(crate) fn irradiance_of(radiance: &Sh) -> Vec<Vec3> {
     radiance.convolved(&Lobe::COSINE).into_coefficients().into_iter().map(|c| c.as_vec3()).collect()
 }
@@ -243,16 +270,35 @@ pub(crate) fn expect_count(probes: usize, given: usize) -> Result<(), ProbeError
     if probes == given { Ok(()) } else { Err(ProbeError::CountMismatch { probes, given }) }
 }
 
+/// Refuses positions whose distances have no squares. What is not finite is left to the triangulation.
+fn check_positions(positions: &[DVec3]) -> Result<(), ProbeError> {
+    let is_far = |p: &DVec3| p.is_finite() && p.abs().max_element() > Field::FARTHEST;
+    match positions.iter().position(is_far) {
+        Some(index) => Err(ProbeError::PositionTooFar { index }),
+        None => Ok(()),
+    }
+}
+
 /// The order of all; 0 of none.
 ///
 /// # Errors
-/// [`ProbeError::MixedOrders`] for the first that has another than the first of all.
+/// [`ProbeError::MixedOrders`] for the first that has another than the first of all; [`ProbeError::BadRadiance`].
 pub(crate) fn common_order(radiance: &[Sh]) -> Result<usize, ProbeError> {
     let expected = radiance.first().map_or(0, Sh::order);
-    match radiance.iter().position(|sh| sh.order() != expected) {
-        Some(index) => Err(ProbeError::MixedOrders { index, order: radiance[index].order(), expected }),
-        None => Ok(expected),
+    for (index, sh) in radiance.iter().enumerate() {
+        check_radiance(index, sh, expected)?;
     }
+    Ok(expected)
+}
+
+/// What a probe may hold: functions of the order of the others, whose light is finite in single precision.
+pub(crate) fn check_radiance(index: usize, sh: &Sh, expected: usize) -> Result<(), ProbeError> {
+    let order = sh.order();
+    if order != expected {
+        return Err(ProbeError::MixedOrders { index, order, expected });
+    }
+    let is_good = |c: &DVec3| c.abs().cmple(DVec3::splat(Field::BRIGHTEST)).all();
+    if sh.coefficients().iter().all(is_good) { Ok(()) } else { Err(ProbeError::BadRadiance { index }) }
 }
 
 /// How far away a probe may be and still help.

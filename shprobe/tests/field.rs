@@ -152,8 +152,7 @@ fn spotted() -> (Vec<DVec3>, Vec<Sh>) {
 #[test]
 fn adaptive_probes_gather_where_light_changes_and_beat_a_grid() {
     let (positions, radiance) = spotted();
-    let candidates =
-        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    let candidates = place::Candidates::new(&positions, &radiance);
     let options = place::AdaptiveOptions::DEFAULT.with_max_count(60).with_balance(0.0);
     let chosen = place::adaptive(candidates, &options).unwrap();
     assert_eq!(chosen.chosen.len(), 60);
@@ -182,8 +181,7 @@ fn adaptive_probes_gather_where_light_changes_and_beat_a_grid() {
 #[test]
 fn adaptive_placement_stops_at_the_error_asked_for_and_says_what_it_reached() {
     let (positions, radiance) = spotted();
-    let candidates =
-        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    let candidates = place::Candidates::new(&positions, &radiance);
     let options = place::AdaptiveOptions::DEFAULT.with_max_count(positions.len()).with_max_error(0.05);
     let chosen = place::adaptive(candidates, &options).unwrap();
     assert!(
@@ -216,8 +214,7 @@ fn squared_error(positions: &[DVec3], radiance: &[Sh], chosen: &[u32], held: &[S
 #[test]
 fn fitted_probes_are_a_minimum_of_the_error() {
     let (positions, radiance) = spotted();
-    let candidates =
-        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    let candidates = place::Candidates::new(&positions, &radiance);
     // Every other place along each axis: none on top of the spot.
     let chosen: Vec<u32> =
         (0..positions.len() as u32).filter(|i| i % 2 == 0 && i / 16 % 3 == 0 && i / 96 % 2 == 0).collect();
@@ -248,8 +245,7 @@ fn fitting_keeps_what_is_right_already() {
     let positions = place::grid(DVec3::ZERO, DVec3::ONE, [5, 5, 5]);
     let values: Vec<f64> = positions.iter().map(|p| 1.0 + p.x + 2.0 * p.y - 0.5 * p.z).collect();
     let radiance = constant(&values);
-    let candidates =
-        place::Candidates { positions: &positions, radiance: &radiance, distances: None, weights: None };
+    let candidates = place::Candidates::new(&positions, &radiance);
     // The corners of the grid: light is linear between them.
     let corners: Vec<u32> = (0..8).map(|i| 4 * (i & 1) + 20 * (i >> 1 & 1) + 100 * (i >> 2)).collect();
     let fitted = place::fit(candidates, &corners, &place::FitOptions::DEFAULT).unwrap();
@@ -333,4 +329,85 @@ fn changes_that_do_not_fit_are_refused_and_change_nothing() {
 
     let beyond = Partition::Point(24);
     assert!(matches!(Field::from_parts(&positions, beyond, &radiance), Err(ProbeError::Cells(_))));
+}
+
+/// Light beyond single precision was infinite, and distances between far probes were no numbers.
+#[test]
+fn what_no_light_can_be_computed_of_is_refused() {
+    let positions = [DVec3::ZERO, DVec3::X];
+    for bad in [1e31, -1e31, 1e300] {
+        let refused = Field::new(&positions, &constant(&[1.0, bad])).err();
+        assert_eq!(refused, Some(ProbeError::BadRadiance { index: 1 }), "{bad:e}");
+    }
+    let nan = constant(&[1.0])[0].scaled(f64::NAN);
+    let mut field = Field::new(&positions, &constant(&[1.0, 2.0])).unwrap();
+    assert_eq!(field.set_radiance(1, &nan), Err(ProbeError::BadRadiance { index: 1 }));
+    assert_eq!(field.insert(&[DVec3::Y], &[nan], vec![]), Err(ProbeError::BadRadiance { index: 2 }));
+    let far = [DVec3::ZERO, dvec3(0.0, -1e151, 0.0)];
+    assert_eq!(Field::new(&far, &constant(&[1.0, 1.0])).err(), Some(ProbeError::PositionTooFar { index: 1 }));
+    assert_eq!(
+        field.insert(&far, &constant(&[1.0, 1.0]), vec![]),
+        Err(ProbeError::PositionTooFar { index: 3 })
+    );
+    assert_eq!(field.probe_count(), 2);
+    let mut hint = Hint::default();
+    let normal = field.irradiance(DVec3::ZERO, Vec3::Y, Vec3::NAN, &mut hint);
+    assert_eq!(normal, Err(ProbeError::QueryNotFinite { index: 0 }));
+    assert!(matches!(field.clone().with_bias(f64::NAN), Err(ProbeError::BadOption { name: "bias", .. })));
+    assert_eq!(field.with_bias(0.5).unwrap().bias(), 0.5);
+}
+
+/// Sizes overflowed, and a `far` that is no distance made maps that see through everything.
+#[test]
+fn maps_that_cannot_be_are_refused() {
+    let limit = DistanceMap::MAX_SIZE;
+    for size in [0, limit + 1, usize::MAX] {
+        let wrong = Some(ProbeError::MapSize { size, limit });
+        assert_eq!(DistanceMap::new(size, vec![]).err(), wrong);
+        assert_eq!(DistanceMap::from_cube(size, 1, &[1.0; 6], 9.0).err(), wrong);
+        assert_eq!(DistanceMap::from_cube(4, size, &[1.0; 6], 9.0).err(), wrong);
+    }
+    for far in [f32::NAN, 0.0, -4.0, f32::INFINITY, 1e20] {
+        let refused = DistanceMap::from_cube(2, 1, &[f32::INFINITY; 6], far).err();
+        assert!(matches!(refused, Some(ProbeError::BadOption { name: "far", .. })), "{far}");
+    }
+    let farthest = DistanceMap::from_cube(2, 1, &[f32::INFINITY; 6], DistanceMap::FARTHEST).unwrap();
+    assert!(farthest.moments().iter().flatten().all(|m| m.is_finite()));
+}
+
+/// Weights and options that are no numbers chose one probe and called it faultless.
+#[test]
+fn placement_refuses_weights_and_options_that_are_no_numbers() {
+    let positions = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let radiance = constant(&[1.0, 2.0, 3.0, 4.0]);
+    let known = place::Candidates::new(&positions, &radiance);
+    let options = place::AdaptiveOptions::DEFAULT;
+    for (weights, index) in [
+        ([1.0, f64::NAN, 1.0, 1.0], 1),
+        ([1.0, 1.0, -1.0, 1.0], 2),
+        ([1.0, 1.0, 1.0, f64::INFINITY], 3),
+        ([0.0; 4], 0),
+    ] {
+        let refused = place::adaptive(known.with_weights(&weights), &options).err();
+        assert!(matches!(refused, Some(ProbeError::BadWeight { index: i, .. }) if i == index), "{refused:?}");
+    }
+    for bad in [f64::NAN, -1.0, f64::INFINITY] {
+        for refused in [
+            place::adaptive(known, &options.with_balance(bad)).map(|_| ()),
+            place::adaptive(known, &options.with_max_error(bad)).map(|_| ()),
+            place::fit(known, &[0, 1], &place::FitOptions::DEFAULT.with_hold(bad)).map(|_| ()),
+        ] {
+            assert!(matches!(refused, Err(ProbeError::BadOption { .. })), "{bad}: {refused:?}");
+        }
+    }
+}
+
+/// The first candidate was taken again and again, because its distance to the others was no number.
+#[test]
+fn candidates_that_are_not_finite_are_never_taken() {
+    let candidates = [DVec3::NAN, DVec3::ONE, DVec3::INFINITY, DVec3::ZERO];
+    let mut chosen = place::spread(&candidates, 4);
+    chosen.sort_unstable();
+    assert_eq!(chosen, [1, 3]);
+    assert!(place::spread(&candidates[..1], 4).is_empty());
 }

@@ -142,8 +142,7 @@ fn coat_table(text: &mut String) -> std::fmt::Result {
     for roughness in [0.1, 0.15, 0.25, 0.4, 0.6, 0.8, 1.0] {
         write!(text, "| {roughness} |")?;
         for f0 in [0.04, 0.5, 1.0] {
-            let coat = Material { roughness, ..Material::lambert(Vec3::ZERO) };
-            let coat = coat.with_specular(Model::Ggx, Vec3::splat(f0), 0.0);
+            let coat = Material::ggx(Vec3::ZERO, Vec3::splat(f0), roughness);
             let error = [0.0, 20.0, 40.0, 60.0, 80.0].map(|degrees| {
                 let v = tilted(degrees);
                 let exact = directional_albedo(v, 1000, |l, v| coat.brdf(Vec3::Z, l, v)).x;

@@ -1,4 +1,4 @@
-//! What the points of a cloud are, in the cloud's order.
+//! Attributes of the points of a cloud, in the cloud's order.
 
 use crate::lattice::{Lattice, morton};
 use crate::neighbours::Places;
@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 /// Radii and areas are at least this many units: 2⁻³³, half a cell of the lattice.
 pub(crate) const SMALLEST: f32 = 1.164_153_2e-10;
 
-/// What points are: those of a leaf follow one another.
+/// Attributes of all points, leaf by leaf.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Attributes {
     pub(crate) cells: [Vec<u32>; 3],
@@ -46,7 +46,7 @@ impl Attributes {
     }
 }
 
-/// Estimates what is missing and brings all into an order that depends on what points are, not on how they came.
+/// Estimates missing attributes and sorts points by Morton code, then by attributes, so that the order of input does not matter.
 pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, Vec<u64>) {
     let count = points.positions.len();
     let cells = parallel::map(count, |i| lattice.cell(points.positions[i]));
@@ -82,7 +82,7 @@ pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, V
     (attributes, keys.into_iter().map(|key| key.0).collect())
 }
 
-/// Points of one code by everything that they are: those that are equal in all are the same.
+/// Order of points of one Morton code: by all attributes. Points that are equal in all of them are interchangeable.
 fn compare(points: &Points<'_>, cells: &[[u32; 3]], a: usize, b: usize) -> Ordering {
     let exact = |i: usize| points.positions[i].to_array();
     let normal = |i: usize| points.normals.map_or([0.0; 3], |all| all[i].to_array());

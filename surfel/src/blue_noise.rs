@@ -45,7 +45,7 @@ fn candidate(mesh: &Mesh<'_>, i: usize, count: usize, seed: u64) -> SurfacePoint
     mesh.point(triangle, DVec3::new(1.0 - u, u * (1.0 - v), u * v))
 }
 
-/// Number `i` of a sequence in [0, 1). The seed is mixed first, so that neighbouring seeds share nothing.
+/// Number `i` of a sequence in [0, 1). The seed is mixed first, so that sequences of neighbouring seeds do not overlap.
 fn unit(seed: u64, i: u64) -> f64 {
     let bits = split_mix(split_mix(seed, 0), i);
     (bits >> 11) as f64 / (1u64 << 53) as f64

@@ -18,7 +18,7 @@ const BLURRED_DISC_THICKNESS: f32 = 1.75;
 const SLANTED_THICKNESS: f32 = 1.5;
 const BLURRED_THICKNESS: f32 = 0.7;
 
-/// Slopes (depth over width) are taken to be at most this.
+/// Slopes (depth over width) are clamped to this.
 const STEEPEST: f32 = 8.0;
 
 /// Reach of a disc's kernel in standard deviations: the square root of [`crate::splat::REACH2`].
@@ -57,7 +57,7 @@ impl Camera {
         let is_perspective = view.projection().is_perspective();
         let unit = if is_perspective { 1.0 } else { lattice.side };
         let (depth, focus) = focus.depth_and_focus();
-        // A blur beyond all pictures is as good as an endless one, and a number.
+        // Clamped: a blur wider than every picture looks the same as an infinite one, and stays finite.
         let blur = depth.min(1e9) as f32;
         Self {
             view: *view,

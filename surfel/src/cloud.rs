@@ -26,8 +26,8 @@ impl Cloud {
     /// Sorts points into an octree; estimates what they lack.
     ///
     /// # Errors
-    /// [`SurfelError::NoPoints`], [`SurfelError::TooMany`], [`SurfelError::LengthMismatch`], [`SurfelError::NotFinite`],
-    /// [`SurfelError::BadNormal`], [`SurfelError::BadColor`], [`SurfelError::BadRadius`].
+    /// [`SurfelError::NoPoints`], [`SurfelError::TooManyPoints`], [`SurfelError::LengthMismatch`], [`SurfelError::PointNotFinite`],
+    /// [`SurfelError::PointTooFar`], [`SurfelError::BadNormal`], [`SurfelError::BadColor`], [`SurfelError::BadRadius`].
     pub fn new(points: &Points<'_>) -> Result<Self, SurfelError> {
         points.check()?;
         let lattice = Lattice::around(points.positions);
@@ -63,7 +63,7 @@ impl Cloud {
 
     /// All positions, in an order of the cloud's own, to 2⁻³² of its extent.
     pub fn positions(&self) -> impl Iterator<Item = DVec3> {
-        (0..self.len()).map(|i| self.lattice.place(self.points.cell(i)))
+        (0..self.len()).map(|i| self.lattice.position(self.points.cell(i)))
     }
 
     /// Typical distance of neighbouring points, world units: the square root of the mean area of a point.

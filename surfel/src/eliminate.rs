@@ -13,11 +13,11 @@ const GAMMA: f64 = 1.5;
 /// (Across the edge of a box or a roof they do.)
 pub(crate) const OTHER_SIDE: f64 = -0.5;
 
-/// How points crowd one another.
+/// Weight function of sample elimination.
 struct Crowding {
-    /// Points farther apart do not.
+    /// Points farther apart than this, world units, add no weight to one another.
     reach: f64,
-    /// Points nearer do as much as at this distance.
+    /// Distances below this count as this, world units (\[2\], eq. 4).
     nearest: f64,
 }
 
@@ -38,11 +38,11 @@ impl Crowding {
 /// then moves down in constant time. The patterns are as good, since weights differ by much more than a step.
 struct Queue {
     steps_per_weight: f64,
-    /// The last point that came to each step.
+    /// The point inserted last into each step.
     first: Vec<u32>,
-    /// The point that came before each point to its step.
+    /// For each point, the one inserted before it into the same step.
     next: Vec<u32>,
-    /// No step above has any.
+    /// All steps above this one are empty.
     top: usize,
 }
 

@@ -4,21 +4,39 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfelError {
-    /// A position is NaN or infinite.
-    #[error("position {index} is not finite")]
-    NotFinite {
-        /// Its number in the list of positions.
+    /// A vertex of the mesh is NaN or infinite.
+    #[error("vertex {index} is not finite: {value:?}")]
+    VertexNotFinite {
+        /// Position in the vertex array.
         index: usize,
+        /// Its coordinates.
+        value: [f64; 3],
     },
-    /// A triangle refers to a position that does not exist.
-    #[error("triangle {triangle} refers to position {index}, and there are {count}")]
-    IndexOutOfRange {
-        /// Its number in the list of triangles.
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} names vertex {vertex}, but there are {count}")]
+    VertexOutOfRange {
+        /// Position in the triangle array.
         triangle: usize,
-        /// What it refers to.
-        index: u32,
-        /// How many positions there are.
+        /// The vertex it names.
+        vertex: u32,
+        /// How many vertices there are.
         count: usize,
+    },
+    /// A point of the cloud is NaN or infinite.
+    #[error("point {index} is not finite: {value:?}")]
+    PointNotFinite {
+        /// Number of the point.
+        index: usize,
+        /// Its coordinates.
+        value: [f64; 3],
+    },
+    /// A coordinate is beyond [`Points::FARTHEST`](crate::Points::FARTHEST).
+    #[error("point {index} is too far from the origin: {value:?}; coordinates can be up to 4.4e307")]
+    PointTooFar {
+        /// Number of the point.
+        index: usize,
+        /// Its coordinates.
+        value: [f64; 3],
     },
     /// There is nothing to put points on: no triangle has an area, or the sum is beyond the range of numbers, which is
     /// 1e-280 to 1e280.
@@ -36,21 +54,21 @@ pub enum SurfelError {
         /// As given.
         spacing: f64,
     },
-    /// More points than [`crate::MAX_COUNT`].
-    #[error("about {count:.3e} points are asked for, and at most {most} can be made")]
-    TooMany {
-        /// How many there would be.
+    /// More points than [`MAX_COUNT`](crate::MAX_COUNT) to be sampled, or [`Points::MOST`](crate::Points::MOST) in a cloud.
+    #[error("about {count:.3e} points, and there can be at most {limit}")]
+    TooManyPoints {
+        /// How many there would be, as far as it can be told beforehand.
         count: f64,
-        /// How many there may be.
-        most: usize,
+        /// How many there can be.
+        limit: usize,
     },
     /// The mesh is too long for so fine a grid of rays.
-    #[error("the mesh is {cells:.3e} spacings long, and a grid has at most {most} rays a side")]
+    #[error("the mesh is {cells:.3e} spacings long, and a grid has at most {limit} rays a side")]
     TooFine {
         /// Rays along the longest side.
         cells: f64,
-        /// How many there may be.
-        most: u32,
+        /// How many there can be.
+        limit: u32,
     },
     /// A cloud without points.
     #[error("the cloud has no points")]

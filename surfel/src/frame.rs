@@ -1,6 +1,6 @@
 //! The picture.
 
-use crate::grid::{HEIGHT, Place, WIDTH};
+use crate::grid::{HEIGHT, TileRect, WIDTH};
 
 /// A drawn frame: layers of `width · height` entries, row by row from the top left pixel.
 ///
@@ -143,14 +143,14 @@ impl Band<'_> {
     }
 
     /// All tiles as one.
-    pub(crate) fn whole(&self) -> Place {
-        Place { x: 0, y: self.first_row, width: self.width, height: self.rows() }
+    pub(crate) fn whole(&self) -> TileRect {
+        TileRect { x: 0, y: self.first_row, width: self.width, height: self.rows() }
     }
 
     /// Where a tile lies.
-    pub(crate) fn place(&self, tile: usize) -> Place {
+    pub(crate) fn rect(&self, tile: usize) -> TileRect {
         let columns = self.columns(tile);
-        Place { x: columns.start, y: self.first_row, width: columns.len(), height: self.rows() }
+        TileRect { x: columns.start, y: self.first_row, width: columns.len(), height: self.rows() }
     }
 
     /// Makes a tile empty.

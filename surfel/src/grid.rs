@@ -9,7 +9,7 @@ pub(crate) const SQUARE: usize = 16;
 
 /// Where a tile lies in the picture, in pixels.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct TileRect {
     pub(crate) x: usize,
     pub(crate) y: usize,
     pub(crate) width: usize,

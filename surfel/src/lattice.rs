@@ -37,7 +37,7 @@ impl Lattice {
     }
 
     /// The middle of a cell in the world.
-    pub(crate) fn place(&self, cell: [u32; 3]) -> DVec3 {
+    pub(crate) fn position(&self, cell: [u32; 3]) -> DVec3 {
         self.way(DVec3::ZERO, cell)
     }
 

@@ -58,7 +58,7 @@ pub(crate) fn points(mesh: &Mesh<'_>, spacing: f64) -> Result<Vec<SurfacePoint>,
     let (low, high) = mesh.bounds;
     let cells = (high - low).max_element() / spacing;
     if cells > f64::from(MAX_CELLS) {
-        return Err(SurfelError::TooFine { cells, most: MAX_CELLS });
+        return Err(SurfelError::TooFine { cells, limit: MAX_CELLS });
     }
     let mut hits = parallel::flat_map(mesh.len(), |t, hits| add_hits(mesh, t, spacing, hits));
     parallel::sort_by(&mut hits, compare);

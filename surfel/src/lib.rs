@@ -39,8 +39,8 @@
 //! * [`Cloud`]: an octree whose leaves hold the points and whose inner nodes hold links to a few of them, each with the area
 //!   and the mean place, normal and color of what it stands for.
 //! * [`Renderer`] takes each part of the cloud from the coarsest level on which about one point falls on a pixel, or, out of focus,
-//!   points are as far apart as the blur is wide. Between two levels it draws pairs of neighbours as one disc. Discs become ellipses with exact perspective and are lit; in each pixel those of the nearest surface are averaged and laid over
-//!   what is behind.
+//!   points are as far apart as the blur is wide. Between two levels it draws pairs of neighbours as one disc. Discs become ellipses
+//!   with exact perspective and are lit; in each pixel those of the nearest surface are averaged and composited over what is behind.
 //! * [`Focus`]: the paper's parameter d (\[3\], §3), or a thin lens, of which d = aperture/focus is the same.
 //! * [`Procedure::Paper`]: what the paper does (\[3\]), for comparison.
 //!
@@ -50,7 +50,12 @@
 //! or on the order of points, and none of drawing on where the cloud lies. Accuracy and time of frames: `studies/results/surfel.md`.
 //!
 //! # Features
-//! `rayon` (default) uses all cores; it never changes a result. `invariants`: facts for property tests and fuzzing.
+//! `rayon` (default) uses all cores; it never changes a result. `invariants`: the module of that name, facts
+//! for property tests and fuzzing, also of crates that build on this one.
+//!
+//! Builds for `wasm32-unknown-unknown` without default features; last bits of samples and pictures may differ there, because sines and
+//! powers come from another library. Figures here and in the README are with thin LTO and `codegen-units = 1` (`[profile.release]` of the
+//! program that depends on this crate): without them expect somewhat more.
 //!
 //! # References
 //! 1. H. Pfister, M. Zwicker, J. van Baar, M. Gross: *Surfels: surface elements as rendering primitives*, SIGGRAPH 2000.
@@ -122,3 +127,8 @@ pub use sample::{Amount, MAX_COUNT, Method, SampleOptions, sample, sample_with};
 
 /// The version of `glam` that this crate's functions take and return.
 pub use glam;
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

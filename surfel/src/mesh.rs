@@ -22,12 +22,12 @@ pub(crate) struct Mesh<'a> {
 impl<'a> Mesh<'a> {
     pub(crate) fn new(positions: &'a [DVec3], triangles: &'a [[u32; 3]]) -> Result<Self, SurfelError> {
         if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
-            return Err(SurfelError::NotFinite { index });
+            return Err(SurfelError::VertexNotFinite { index, value: positions[index].to_array() });
         }
         let count = positions.len();
         for (triangle, corners) in triangles.iter().enumerate() {
-            if let Some(&index) = corners.iter().find(|&&v| v as usize >= count) {
-                return Err(SurfelError::IndexOutOfRange { triangle, index, count });
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= count) {
+                return Err(SurfelError::VertexOutOfRange { triangle, vertex, count });
             }
         }
         let crosses = parallel::map(triangles.len(), |t| {

@@ -60,7 +60,7 @@ impl Node {
     }
 
     /// A coordinate of a cell of its box in steps of half a side over [`STEPS`], from the middle.
-    pub(crate) fn place(&self, axis: usize, cell: u32) -> i16 {
+    pub(crate) fn relative_cell(&self, axis: usize, cell: u32) -> i16 {
         (offset(self.origin[axis], cell) / self.half[axis] * STEPS).round() as i16
     }
 

@@ -17,6 +17,7 @@ pub enum Procedure {
 
 /// Where light comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Light {
     /// From the eye.
     #[default]
@@ -41,7 +42,7 @@ pub struct Options {
     pub culling: bool,
     /// Default: [`Light::Eye`].
     pub light: Light,
-    /// Share of the light that comes from everywhere, 0 to 1. Default: 0.1.
+    /// Ambient share of the light, 0 to 1; the rest is diffuse light from `light`. Default: 0.1.
     pub ambient: f32,
     /// Color of points that have none, linear RGB. Default: 0.8.
     pub base: Vec3,
@@ -103,7 +104,7 @@ impl Options {
         self
     }
 
-    /// Sets the share of the light that comes from everywhere, 0 to 1.
+    /// Sets the ambient share of the light, 0 to 1.
     #[must_use]
     pub const fn with_ambient(mut self, ambient: f32) -> Self {
         self.ambient = ambient;

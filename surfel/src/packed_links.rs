@@ -22,7 +22,9 @@ impl PackedLinks {
         let with_nodes =
             || nodes.iter().zip(links).flat_map(|(node, list)| list.iter().map(move |l| (node, l)));
         let place = |axis: usize| {
-            with_nodes().map(|(node, link): (&Node, &Link)| node.place(axis, link.cell[axis])).collect()
+            with_nodes()
+                .map(|(node, link): (&Node, &Link)| node.relative_cell(axis, link.cell[axis]))
+                .collect()
         };
         Self {
             points: all().map(|l| l.point).collect(),

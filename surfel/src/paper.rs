@@ -11,7 +11,7 @@
 
 use crate::camera::Camera;
 use crate::frame::Band;
-use crate::grid::{HEIGHT, Place};
+use crate::grid::{HEIGHT, TileRect};
 use crate::kernel;
 use crate::layer::{LANES, Layer, PITCH, Touched};
 use crate::project::Projector;
@@ -32,7 +32,7 @@ const WIDEST_PX: f32 = 64.0;
 
 /// A disc in the pixel of its centre.
 #[derive(Clone, Copy, Debug)]
-struct Link {
+struct PaperLink {
     /// +∞ if there is none.
     depth: f32,
     /// With depth of field, pixels.
@@ -42,7 +42,7 @@ struct Link {
     color: Vec3,
 }
 
-impl Link {
+impl PaperLink {
     const NONE: Self = Self { depth: f32::INFINITY, radius: 0.0, normal: Vec3::ZERO, color: Vec3::ZERO };
 
     fn of(s: &Splat) -> Self {
@@ -52,16 +52,16 @@ impl Link {
 
 /// A pixel between the two steps.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Cell {
+pub(crate) struct PaperPixel {
     /// Nearest depth of discs with r₀ and with r.
     near: [f32; 2],
     /// Of the disc that is nearest with r: its radius in pixels, and whether it is blurred.
     radius: f32,
-    link: Link,
+    link: PaperLink,
 }
 
-impl Cell {
-    const EMPTY: Self = Self { near: [f32::INFINITY; 2], radius: 0.0, link: Link::NONE };
+impl PaperPixel {
+    const EMPTY: Self = Self { near: [f32::INFINITY; 2], radius: 0.0, link: PaperLink::NONE };
 }
 
 /// Working memory for tiles.
@@ -82,26 +82,26 @@ impl PaperTile {
     pub(crate) fn project(
         &mut self,
         scene: &Scene<'_>,
-        place: &Place,
+        rect: &TileRect,
         nodes: &[Selected],
-        (cells, width): (&mut [Cell], usize),
+        (cells, width): (&mut [PaperPixel], usize),
     ) {
-        let at = |row: usize, column: usize| row * width + place.x + column;
-        for row in 0..place.height {
-            cells[at(row, 0)..at(row, place.width)].fill(Cell::EMPTY);
+        let at = |row: usize, column: usize| row * width + rect.x + column;
+        for row in 0..rect.height {
+            cells[at(row, 0)..at(row, rect.width)].fill(PaperPixel::EMPTY);
         }
         // Without depth of field both z-buffers are the same.
         let second = (scene.camera.blur > 0.0).then_some(Shape::WIDENED_DISC);
         for (k, shape) in [Some(Shape::DISC), second].into_iter().flatten().enumerate() {
             self.splats.clear();
             for selected in nodes {
-                self.projector.project(scene, selected, &shape, place, &mut self.splats);
+                self.projector.project(scene, selected, &shape, rect, &mut self.splats);
             }
             self.layer.clear_near(&Touched::ALL);
             kernel::nearest(&mut self.layer, self.splats.as_slice());
             kernel::sharpness_of_nearest(&mut self.layer, self.splats.as_slice());
-            for row in 0..place.height {
-                for column in 0..place.width {
+            for row in 0..rect.height {
+                for column in 0..rect.width {
                     let cell = &mut cells[at(row, column)];
                     let (block, lane) = (row * PITCH + column / LANES, column % LANES);
                     cell.near[k..].fill(self.layer.depths[block].near[lane]);
@@ -112,21 +112,21 @@ impl PaperTile {
         // The splats are those with r: a link knows its filter.
         for s in self.splats.as_slice() {
             let (x, y) = (s.x.floor(), s.y.floor());
-            let inside = x >= 0.0 && y >= 0.0 && x < place.width as f32 && y < place.height as f32;
+            let inside = x >= 0.0 && y >= 0.0 && x < rect.width as f32 && y < rect.height as f32;
             if !inside {
                 continue;
             }
             let (column, row) = (x as usize, y as usize);
             let cell = &mut cells[at(row, column)];
             if s.depth <= cell.near[0] + s.thickness && s.depth < cell.link.depth {
-                cell.link = Link::of(s);
+                cell.link = PaperLink::of(s);
             }
         }
     }
 }
 
 /// Step 2: filters all pixels of a band.
-pub(crate) fn reconstruct(scene: &Scene<'_>, cells: &[Cell], band: &mut Band<'_>) {
+pub(crate) fn reconstruct(scene: &Scene<'_>, cells: &[PaperPixel], band: &mut Band<'_>) {
     let width = band.width;
     let height = cells.len() / width;
     for row in 0..band.rows() {
@@ -155,13 +155,13 @@ struct Filtered {
 /// The filter over one pixel.
 struct Filter<'a> {
     camera: &'a Camera,
-    cells: &'a [Cell],
+    cells: &'a [PaperPixel],
     size: (usize, usize),
     at: (usize, usize),
 }
 
 impl<'a> Filter<'a> {
-    fn new(scene: &'a Scene<'_>, cells: &'a [Cell], size: (usize, usize), at: (usize, usize)) -> Self {
+    fn new(scene: &'a Scene<'_>, cells: &'a [PaperPixel], size: (usize, usize), at: (usize, usize)) -> Self {
         Self { camera: &scene.camera, cells, size, at }
     }
 
@@ -202,7 +202,7 @@ impl<'a> Filter<'a> {
     }
 
     /// Calls `each` with all pixels within `radius` and their squared distances.
-    fn neighbours(&self, radius: f32, mut each: impl FnMut(&Cell, f32)) {
+    fn neighbours(&self, radius: f32, mut each: impl FnMut(&PaperPixel, f32)) {
         let reach = radius.ceil() as usize;
         let range = |at: usize, size: usize| at.saturating_sub(reach)..(at + reach + 1).min(size);
         for y in range(self.at.1, self.size.1) {
@@ -219,7 +219,7 @@ impl<'a> Filter<'a> {
 
     /// The nearest link within twice the radius.
     fn nearest_link(&self, radius: f32, depth: f32) -> Option<Filtered> {
-        let mut nearest: Option<(f32, Link)> = None;
+        let mut nearest: Option<(f32, PaperLink)> = None;
         self.neighbours(2.0 * radius + 1.0, |other, distance2| {
             let is_nearer = nearest.is_none_or(|(best, _)| distance2 < best);
             if other.link.depth < f32::INFINITY && is_nearer {
@@ -246,7 +246,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, link: &Link, weight: f32) {
+    fn add(&mut self, link: &PaperLink, weight: f32) {
         self.weight += weight;
         self.color += link.color * weight;
         self.normal += link.normal * weight;
@@ -254,11 +254,11 @@ impl Sums {
 }
 
 /// Makes room for a frame.
-pub(crate) fn reshape(cells: &mut Vec<Cell>, width: usize, height: usize) {
-    cells.resize(width * height, Cell::EMPTY);
+pub(crate) fn reshape(cells: &mut Vec<PaperPixel>, width: usize, height: usize) {
+    cells.resize(width * height, PaperPixel::EMPTY);
 }
 
 /// Rows of cells for each band of tiles.
-pub(crate) fn rows(cells: &mut [Cell], width: usize) -> impl Iterator<Item = &mut [Cell]> {
+pub(crate) fn rows(cells: &mut [PaperPixel], width: usize) -> impl Iterator<Item = &mut [PaperPixel]> {
     cells.chunks_mut(width * HEIGHT)
 }

@@ -1,7 +1,7 @@
 //! Where the items of a node are on the picture, and which way they face.
 
 use crate::camera::Camera;
-use crate::grid::Place;
+use crate::grid::TileRect;
 use crate::node::Node;
 use crate::vector::Vector;
 use glam::{DVec3, Vec3};
@@ -23,7 +23,7 @@ pub(crate) struct Map {
 
 impl Map {
     /// `margin` is how far from its centre any disc of `node` may touch pixels.
-    pub(crate) fn new(camera: &Camera, node: &Node, margin: f32, tile: &Place, two_sided: bool) -> Self {
+    pub(crate) fn new(camera: &Camera, node: &Node, margin: f32, tile: &TileRect, two_sided: bool) -> Self {
         let f = f64::from(camera.focal);
         let (right, down, forward) = (camera.view.right(), -camera.view.up(), camera.view.forward());
         let origin = camera.local(node);

@@ -47,6 +47,9 @@ impl<'a> Points<'a> {
     /// Most points of a cloud: numbers of points are 32 bits wide, and some stay free.
     pub const MOST: usize = 1 << 30;
 
+    /// Largest absolute value of a coordinate, a quarter of `f64::MAX`: differences of coordinates, and twice those, are finite.
+    pub const FARTHEST: f64 = 0.25 * f64::MAX;
+
     /// Largest channel of a color: weighted sums of it are still numbers.
     pub const BRIGHTEST: f32 = 1e30;
 
@@ -56,7 +59,7 @@ impl<'a> Points<'a> {
             return Err(SurfelError::NoPoints);
         }
         if count > Self::MOST {
-            return Err(SurfelError::TooMany { count: count as f64, most: Self::MOST });
+            return Err(SurfelError::TooManyPoints { count: count as f64, limit: Self::MOST });
         }
         let lengths = [
             ("normals", self.normals.map(<[_]>::len)),
@@ -68,11 +71,14 @@ impl<'a> Points<'a> {
                 return Err(SurfelError::LengthMismatch { what, length, count });
             }
         }
-        // Half of the largest number: differences of coordinates must be numbers too.
         // Not `max_element`, which passes over NaN.
-        let good = |p: &DVec3| p.abs().cmple(DVec3::splat(0.25 * f64::MAX)).all();
+        let good = |p: &DVec3| p.abs().cmple(DVec3::splat(Self::FARTHEST)).all();
         if let Some(index) = self.positions.iter().position(|p| !good(p)) {
-            return Err(SurfelError::NotFinite { index });
+            let (finite, value) = (self.positions[index].is_finite(), self.positions[index].to_array());
+            return Err(match finite {
+                true => SurfelError::PointTooFar { index, value },
+                false => SurfelError::PointNotFinite { index, value },
+            });
         }
         self.check_attributes()
     }

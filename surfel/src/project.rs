@@ -2,7 +2,7 @@
 
 use crate::batch::{Projected, Value};
 use crate::ellipse::project;
-use crate::grid::Place;
+use crate::grid::TileRect;
 use crate::items::{Items, Run, Values};
 use crate::placed::{Map, Placed};
 use crate::scene::Scene;
@@ -29,7 +29,7 @@ impl Projector {
         scene: &Scene<'_>,
         selected: &Selected,
         shape: &Shape,
-        tile: &Place,
+        tile: &TileRect,
         splats: &mut Splats,
     ) {
         let node = &scene.cloud.nodes[selected.node as usize];

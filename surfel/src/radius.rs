@@ -41,7 +41,7 @@ pub(crate) fn assign(points: &mut [SurfacePoint], reach: f64, on_border: f64, do
             done(finished as f64 / points.len() as f64);
         }
         // Most cells are small: a part of the reach finds all that cuts them, in a part of the time.
-        let cell2 = |part: f64| Cell::in_rows(&rows, &normals, place, part * reach).farthest2();
+        let cell2 = |part: f64| VoronoiCell::in_rows(&rows, &normals, place, part * reach).farthest2();
         let is_closed = |part: f64, cell2: f64| cell2 <= (part * reach).powi(2);
         let early = PARTS.into_iter().map(|part| (part, cell2(part))).find(|&(part, c)| is_closed(part, c));
         let (part, cell2) = early.unwrap_or_else(|| (1.0, cell2(1.0)));
@@ -135,7 +135,7 @@ fn disc(places: &Places, sides: &Sides, side: usize) -> Disc {
         if i > 0 {
             places.nearest(place as usize, count, 2.0 * reach, &mut near);
         }
-        let (cell, is_done) = Cell::in_cloud(places, sides, side, &near, reach);
+        let (cell, is_done) = VoronoiCell::in_cloud(places, sides, side, &near, reach);
         disc.radius = cell.farthest_within(reach);
         if is_done || near.len() < count {
             break;
@@ -153,12 +153,12 @@ struct Neighbour {
 
 /// A Voronoi cell in a tangent plane, about its point.
 #[derive(Default)]
-struct Cell {
+struct VoronoiCell {
     corners: Vec<DVec2>,
     scratch: Vec<DVec2>,
 }
 
-impl Cell {
+impl VoronoiCell {
     /// The cell among these neighbours, nearest first, within a square of half side `reach`. Whether there are neighbours that
     /// are too far to cut any more comes with it.
     fn among(neighbours: impl Iterator<Item = Neighbour>, normal: DVec3, reach: f64) -> (Self, bool) {
@@ -197,7 +197,7 @@ impl Cell {
         Self::among(near.into_iter().map(neighbour), normal, reach).0
     }
 
-    /// The cell among the points of a cloud, as [`Cell::among`] gives it.
+    /// The cell among the points of a cloud, as [`VoronoiCell::among`] gives it.
     fn in_cloud(places: &Places, sides: &Sides, side: usize, near: &[Near], reach: f64) -> (Self, bool) {
         let (place, normal) = (sides.places[side] as usize, sides.normals[side]);
         let neighbours = near.iter().filter(|n| n.place != place).flat_map(|n| {

@@ -4,9 +4,9 @@ use crate::camera::Camera;
 use crate::cloud::Cloud;
 use crate::error::SurfelError;
 use crate::frame::{Frame, FrameCounts};
-use crate::grid::Place;
+use crate::grid::TileRect;
 use crate::options::{Options, Procedure};
-use crate::paper::{self, Cell, PaperTile};
+use crate::paper::{self, PaperPixel, PaperTile};
 use crate::scene::Scene;
 use crate::select::{self, Selected};
 use crate::shade::Shader;
@@ -25,7 +25,7 @@ pub struct Renderer {
     tiles: Pool<Tile>,
     paper_tiles: Pool<PaperTile>,
     /// Of the paper's procedure: the picture between its two steps.
-    cells: Vec<Cell>,
+    cells: Vec<PaperPixel>,
 }
 
 impl Renderer {
@@ -83,12 +83,12 @@ impl Renderer {
             let of_band: Vec<Selected> = nodes_in(&self.selected, &band.whole()).collect();
             self.tiles.with(|tile| {
                 for number in 0..band.drawn.len() {
-                    let place = band.place(number);
-                    let nodes = nodes_in(&of_band, &place);
+                    let rect = band.rect(number);
+                    let nodes = nodes_in(&of_band, &rect);
                     if nodes.clone().next().is_none() {
                         band.clear(number);
                     } else {
-                        tile.draw(scene, &place, nodes, band);
+                        tile.draw(scene, &rect, nodes, band);
                     }
                 }
             });
@@ -103,9 +103,9 @@ impl Renderer {
         parallel::for_each_mut_heavy(&mut rows, |(cells, band)| {
             self.paper_tiles.with(|tile| {
                 for number in 0..band.drawn.len() {
-                    let place = band.place(number);
-                    let nodes: Vec<Selected> = nodes_in(&self.selected, &place).collect();
-                    tile.project(scene, &place, &nodes, (&mut **cells, width));
+                    let rect = band.rect(number);
+                    let nodes: Vec<Selected> = nodes_in(&self.selected, &rect).collect();
+                    tile.project(scene, &rect, &nodes, (&mut **cells, width));
                 }
             });
         });
@@ -115,8 +115,8 @@ impl Renderer {
 }
 
 /// The nodes with parts in some of the pixels.
-fn nodes_in(selected: &[Selected], place: &Place) -> impl Iterator<Item = Selected> + Clone {
-    let (x, y) = (place.x..place.x + place.width, place.y..place.y + place.height);
+fn nodes_in(selected: &[Selected], rect: &TileRect) -> impl Iterator<Item = Selected> + Clone {
+    let (x, y) = (rect.x..rect.x + rect.width, rect.y..rect.y + rect.height);
     let meets = |ends: [u16; 2], range: &Range<usize>| {
         usize::from(ends[0]) < range.end && usize::from(ends[1]) >= range.start
     };

@@ -1,7 +1,7 @@
 //! From the sums of a layer to the colors of its pixels, a block at a time.
 
 use crate::frame::Band;
-use crate::grid::{Place, WIDTH};
+use crate::grid::{TileRect, WIDTH};
 use crate::layer::{LANES, Lanes, Layer, Open, PITCH, Pixels, Touched};
 use crate::shade::{INDEPENDENT, LEAST_LIGHT, Shader, opacity};
 use crate::vector::Vector;
@@ -18,22 +18,22 @@ const LEAST_INSIDE: f32 = 0.25;
 pub(crate) fn resolve<const FIRST: bool, const WANTED: bool>(
     layer: &mut Layer,
     pixels: &mut [Pixels],
-    place: &Place,
+    rect: &TileRect,
     touched: &Touched,
 ) -> Open {
-    Arch::new().dispatch(Resolve::<FIRST, WANTED> { layer, pixels, place, touched })
+    Arch::new().dispatch(Resolve::<FIRST, WANTED> { layer, pixels, rect, touched })
 }
 
 /// Puts the pixels of a tile into the picture.
-pub(crate) fn write(pixels: &[Pixels], shader: &Shader, place: &Place, band: &mut Band<'_>) {
-    band.drawn[place.x / WIDTH] = true;
-    Arch::new().dispatch(Write { pixels, shader, place, band });
+pub(crate) fn write(pixels: &[Pixels], shader: &Shader, rect: &TileRect, band: &mut Band<'_>) {
+    band.drawn[rect.x / WIDTH] = true;
+    Arch::new().dispatch(Write { pixels, shader, rect, band });
 }
 
 struct Resolve<'a, const FIRST: bool, const WANTED: bool> {
     layer: &'a mut Layer,
     pixels: &'a mut [Pixels],
-    place: &'a Place,
+    rect: &'a TileRect,
     touched: &'a Touched,
 }
 
@@ -42,11 +42,11 @@ impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANT
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Open {
-        let Self { layer, pixels, place, touched } = self;
+        let Self { layer, pixels, rect, touched } = self;
         let mut lines = Lines::new();
         let mut open = Open::NOWHERE;
         for row in touched.rows() {
-            lines.take::<S, FIRST>(simd, layer, place, touched, row);
+            lines.take::<S, FIRST>(simd, layer, rect, touched, row);
             if row > touched.rows().start {
                 // Rows below need it no more.
                 layer.clear_sums::<WANTED>(touched.blocks(row - 1));
@@ -162,15 +162,15 @@ impl Lines {
         &mut self,
         simd: S,
         layer: &Layer,
-        place: &Place,
+        rect: &TileRect,
         touched: &Touched,
         row: usize,
     ) {
-        let rows = [row.saturating_sub(1), row, (row + 1).min(place.height - 1)];
+        let rows = [row.saturating_sub(1), row, (row + 1).min(rect.height - 1)];
         let is_first = row == 0 || row == touched.rows().start;
         let columns = touched.columns();
         let first = columns.start.saturating_sub(1);
-        let last = (columns.end + 1).min(place.width.div_ceil(LANES));
+        let last = (columns.end + 1).min(rect.width.div_ceil(LANES));
         for column in first..last {
             for i in 0..LANES / S::F32_LANES {
                 // No closures: what is compiled on its own stays narrow.
@@ -193,7 +193,7 @@ impl Lines {
         }
         for line in [&mut self.sums, &mut self.least, &mut self.counts] {
             line[LANES - 1] = line[LANES];
-            line[LANES + place.width] = line[LANES + place.width - 1];
+            line[LANES + rect.width] = line[LANES + rect.width - 1];
         }
     }
 
@@ -280,7 +280,7 @@ impl Pixels {
 struct Write<'a, 'b> {
     pixels: &'a [Pixels],
     shader: &'a Shader,
-    place: &'a Place,
+    rect: &'a TileRect,
     band: &'a mut Band<'b>,
 }
 
@@ -289,10 +289,10 @@ impl NullaryFnOnce for Write<'_, '_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { pixels, shader, place, band } = self;
-        for row in 0..place.height {
+        let Self { pixels, shader, rect, band } = self;
+        for row in 0..rect.height {
             let from = &pixels[row * PITCH..];
-            let to = row * band.width + place.x..row * band.width + place.x + place.width;
+            let to = row * band.width + rect.x..row * band.width + rect.x + rect.width;
             let colors = band.color[to.clone()].chunks_mut(LANES);
             let depths = band.depth[to.clone()].chunks_mut(LANES);
             for ((pixels, colors), depths) in from.iter().zip(colors).zip(depths) {

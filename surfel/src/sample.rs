@@ -9,6 +9,7 @@ pub const MAX_COUNT: usize = 1 << 28;
 
 /// How many points.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Amount {
     /// This many, at least 1. [`Method::Poisson`] makes exactly this many; [`Method::Ldi`] takes the spacing at which this
     /// many are to be expected.
@@ -20,6 +21,7 @@ pub enum Amount {
 
 /// How points are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Method {
     /// By rays along the three axes: regular, independent of the order of triangles.
     Ldi,
@@ -141,5 +143,9 @@ pub fn sample_with(
 }
 
 fn within_limit(count: f64) -> Result<f64, SurfelError> {
-    if count <= MAX_COUNT as f64 { Ok(count) } else { Err(SurfelError::TooMany { count, most: MAX_COUNT }) }
+    if count <= MAX_COUNT as f64 {
+        Ok(count)
+    } else {
+        Err(SurfelError::TooManyPoints { count, limit: MAX_COUNT })
+    }
 }

@@ -5,7 +5,7 @@
 //! discs, up to the rounding of sums, and that is fixed by the order of nodes.
 
 use crate::frame::Band;
-use crate::grid::{HEIGHT, Place, SQUARE, WIDTH};
+use crate::grid::{HEIGHT, SQUARE, TileRect, WIDTH};
 use crate::kernel;
 use crate::layer::{Layer, Open, PITCH, Pixels, Touched};
 use crate::project::Projector;
@@ -56,41 +56,41 @@ impl Tile {
     pub(crate) fn draw(
         &mut self,
         scene: &Scene<'_>,
-        place: &Place,
+        rect: &TileRect,
         nodes: impl Iterator<Item = Selected> + Clone,
         band: &mut Band<'_>,
     ) {
         self.splats.clear();
         self.hidden.clear();
         let mut touched = Touched::NOTHING;
-        nodes.clone().for_each(|s| touched.add(columns_of(&s, place), rows_of(&s, place)));
+        nodes.clone().for_each(|s| touched.add(columns_of(&s, rect), rows_of(&s, rect)));
         self.layer.clear_near(&touched.in_squares());
         self.farthest = [[Some(f32::INFINITY); SQUARES[0]]; SQUARES[1]];
         for selected in nodes {
-            if scene.culling && self.hides(&selected, place) {
+            if scene.culling && self.hides(&selected, rect) {
                 self.hidden.push(selected);
                 continue;
             }
             let first = self.splats.as_slice().len();
-            self.project(scene, place, &selected);
+            self.project(scene, rect, &selected);
             kernel::nearest(&mut self.layer, &self.splats.as_slice()[first..]);
-            self.forget_farthest(&selected, place);
+            self.forget_farthest(&selected, rect);
         }
         if self.splats.as_slice().is_empty() {
-            band.clear(place.x / WIDTH);
+            band.clear(rect.x / WIDTH);
             return;
         }
         if scene.normals {
-            self.draw_layers::<true>(scene, place, touched);
+            self.draw_layers::<true>(scene, rect, touched);
         } else {
-            self.draw_layers::<false>(scene, place, touched);
+            self.draw_layers::<false>(scene, rect, touched);
         }
-        write(&self.pixels, &scene.shader, place, band);
+        write(&self.pixels, &scene.shader, rect, band);
     }
 
     /// From the splats of the first layer, which touch these pixels, to the colors of all, with normals if they are `WANTED`.
-    fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, place: &Place, mut touched: Touched) {
-        for blocks in touched.others(place.height) {
+    fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, rect: &TileRect, mut touched: Touched) {
+        for blocks in touched.others(rect.height) {
             self.pixels[blocks.clone()].fill(Pixels::EMPTY);
             self.layer.open(blocks);
         }
@@ -104,38 +104,38 @@ impl Tile {
             &mut self.behind,
             (&open, 0.0),
         );
-        open = resolve::<true, WANTED>(&mut self.layer, &mut self.pixels, place, &touched);
+        open = resolve::<true, WANTED>(&mut self.layer, &mut self.pixels, rect, &touched);
         for number in 1..MOST_LAYERS {
             if open.is_nowhere() {
                 break;
             }
-            touched = self.add_hidden(scene, place, &open);
+            touched = self.add_hidden(scene, rect, &open);
             if self.behind.is_empty() {
                 break;
             }
             let slack = if number + 1 == MOST_LAYERS { f32::INFINITY } else { 0.0 };
-            open = self.next_layer::<WANTED>(place, touched, (&open, slack));
+            open = self.next_layer::<WANTED>(rect, touched, (&open, slack));
         }
     }
 
-    fn project(&mut self, scene: &Scene<'_>, place: &Place, selected: &Selected) {
+    fn project(&mut self, scene: &Scene<'_>, rect: &TileRect, selected: &Selected) {
         scene.shown[selected.place as usize].store(true, Ordering::Relaxed);
-        self.projector.project(scene, selected, &Shape::BLENDED, place, &mut self.splats);
+        self.projector.project(scene, selected, &Shape::BLENDED, rect, &mut self.splats);
     }
 
     /// Leaves those of the discs behind that may be seen through `open` pixels, and adds those of hidden nodes, in the order
     /// of nodes. Returns all that they may touch.
-    fn add_hidden(&mut self, scene: &Scene<'_>, place: &Place, open: &Open) -> Touched {
+    fn add_hidden(&mut self, scene: &Scene<'_>, rect: &TileRect, open: &Open) -> Touched {
         let drawn = self.splats.as_slice().len();
         let mut hidden = std::mem::take(&mut self.hidden);
         hidden.retain(|selected| {
             let mut touched = Touched::NOTHING;
-            touched.add(columns_of(selected, place), rows_of(selected, place));
+            touched.add(columns_of(selected, rect), rows_of(selected, rect));
             if !open.meets(touched.columns(), touched.rows()) {
                 return true;
             }
             let first = self.splats.as_slice().len() as u32;
-            self.project(scene, place, selected);
+            self.project(scene, rect, selected);
             self.behind.extend(first..self.splats.as_slice().len() as u32);
             false
         });
@@ -159,7 +159,7 @@ impl Tile {
 
     fn next_layer<const WANTED: bool>(
         &mut self,
-        place: &Place,
+        rect: &TileRect,
         touched: Touched,
         limits: (&Open, f32),
     ) -> Open {
@@ -174,33 +174,33 @@ impl Tile {
             &mut self.behind,
             limits,
         );
-        resolve::<false, WANTED>(&mut self.layer, &mut self.pixels, place, &touched)
+        resolve::<false, WANTED>(&mut self.layer, &mut self.pixels, rect, &touched)
     }
 
-    fn hides(&mut self, selected: &Selected, place: &Place) -> bool {
+    fn hides(&mut self, selected: &Selected, rect: &TileRect) -> bool {
         let limit = selected.nearest - selected.thickness;
-        let [columns, rows] = squares_of(selected, place);
-        rows.into_iter().all(|row| columns.clone().all(|column| self.farthest(place, column, row) < limit))
+        let [columns, rows] = squares_of(selected, rect);
+        rows.into_iter().all(|row| columns.clone().all(|column| self.farthest(rect, column, row) < limit))
     }
 
-    fn farthest(&mut self, place: &Place, column: usize, row: usize) -> f32 {
+    fn farthest(&mut self, rect: &TileRect, column: usize, row: usize) -> f32 {
         *self.farthest[row][column]
-            .get_or_insert_with(|| kernel::farthest(&self.layer, column, rows_of_square(place, row)))
+            .get_or_insert_with(|| kernel::farthest(&self.layer, column, rows_of_square(rect, row)))
     }
 
-    fn forget_farthest(&mut self, selected: &Selected, place: &Place) {
-        let [columns, rows] = squares_of(selected, place);
+    fn forget_farthest(&mut self, selected: &Selected, rect: &TileRect) {
+        let [columns, rows] = squares_of(selected, rect);
         self.farthest[rows].iter_mut().for_each(|row| row[columns.clone()].fill(None));
     }
 }
 
 /// The pixels of a tile that a node touches, the last not included: columns, rows.
-fn columns_of(selected: &Selected, place: &Place) -> [usize; 2] {
-    within(selected.x, place.x, place.width)
+fn columns_of(selected: &Selected, rect: &TileRect) -> [usize; 2] {
+    within(selected.x, rect.x, rect.width)
 }
 
-fn rows_of(selected: &Selected, place: &Place) -> [usize; 2] {
-    within(selected.y, place.y, place.height)
+fn rows_of(selected: &Selected, rect: &TileRect) -> [usize; 2] {
+    within(selected.y, rect.y, rect.height)
 }
 
 fn within([first, last]: [u16; 2], start: usize, size: usize) -> [usize; 2] {
@@ -209,11 +209,11 @@ fn within([first, last]: [u16; 2], start: usize, size: usize) -> [usize; 2] {
 }
 
 /// Rows of pixels.
-fn rows_of_square(place: &Place, row: usize) -> Range<usize> {
-    row * SQUARE..((row + 1) * SQUARE).min(place.height)
+fn rows_of_square(rect: &TileRect, row: usize) -> Range<usize> {
+    row * SQUARE..((row + 1) * SQUARE).min(rect.height)
 }
 
 /// The squares of a tile that a node touches.
-fn squares_of(selected: &Selected, place: &Place) -> [Range<usize>; 2] {
-    [columns_of(selected, place), rows_of(selected, place)].map(|[a, b]| a / SQUARE..b.div_ceil(SQUARE))
+fn squares_of(selected: &Selected, rect: &TileRect) -> [Range<usize>; 2] {
+    [columns_of(selected, rect), rows_of(selected, rect)].map(|[a, b]| a / SQUARE..b.div_ceil(SQUARE))
 }

@@ -22,12 +22,19 @@ fn a_cloud_without_points_is_refused() {
 
 #[test]
 fn a_position_that_is_not_finite_is_named() {
-    // Beyond a quarter of the largest number, differences may not be numbers.
-    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308] {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e308] {
         for axis in 0..3 {
             let mut points = [DVec3::ZERO, DVec3::ONE, DVec3::X];
             points[2][axis] = bad;
-            assert_eq!(refused(&Points::new(&points)), SurfelError::NotFinite { index: 2 });
+            match refused(&Points::new(&points)) {
+                SurfelError::PointNotFinite { index: 2, value } => {
+                    assert!(!bad.is_finite() && value[axis].to_bits() == bad.to_bits());
+                }
+                SurfelError::PointTooFar { index: 2, value } => {
+                    assert!(bad.is_finite() && value == points[2].to_array());
+                }
+                other => panic!("{other:?}"),
+            }
         }
     }
     assert!(Cloud::new(&Points::new(&[DVec3::splat(-4e307), DVec3::splat(4e307)])).is_ok());
@@ -171,8 +178,11 @@ fn a_renderer_that_refused_goes_on() {
 fn every_error_says_something() {
     let errors = [
         SurfelError::NoPoints,
-        SurfelError::NotFinite { index: 7 },
-        SurfelError::TooMany { count: 1e12, most: Points::MOST },
+        SurfelError::PointNotFinite { index: 7, value: [f64::NAN; 3] },
+        SurfelError::PointTooFar { index: 7, value: [1e308; 3] },
+        SurfelError::VertexNotFinite { index: 7, value: [f64::NAN; 3] },
+        SurfelError::VertexOutOfRange { triangle: 7, vertex: 7, count: 7 },
+        SurfelError::TooManyPoints { count: 1e12, limit: Points::MOST },
         SurfelError::LengthMismatch { what: "radii", length: 3, count: 7 },
         SurfelError::BadNormal { index: 7 },
         SurfelError::BadColor { index: 7 },
@@ -183,7 +193,7 @@ fn every_error_says_something() {
     for error in errors {
         let text = error.to_string();
         assert!(
-            text.contains('7') || matches!(error, SurfelError::NoPoints | SurfelError::TooMany { .. }),
+            text.contains('7') || matches!(error, SurfelError::NoPoints | SurfelError::TooManyPoints { .. }),
             "{text}"
         );
     }

@@ -270,15 +270,16 @@ fn what_cannot_be_sampled_is_refused() {
     let refused = |p: &[DVec3], t: &[[u32; 3]], o: SampleOptions| sample(p, t, &o).unwrap_err();
     let ok = |o| refused(&positions, &triangles, o);
     assert_eq!(ok(NOISE.with_count(0)), SurfelError::ZeroCount);
-    assert!(matches!(ok(NOISE.with_count(MAX_COUNT + 1)), SurfelError::TooMany { .. }));
-    assert!(matches!(ok(RAYS.with_spacing(1e-6)), SurfelError::TooMany { .. }));
+    assert!(matches!(ok(NOISE.with_count(MAX_COUNT + 1)), SurfelError::TooManyPoints { .. }));
+    assert!(matches!(ok(RAYS.with_spacing(1e-6)), SurfelError::TooManyPoints { .. }));
     for spacing in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(ok(NOISE.with_spacing(spacing)), SurfelError::BadSpacing { .. }));
     }
     let mut broken = positions.clone();
     broken[2].y = f64::NAN;
-    assert_eq!(refused(&broken, &triangles, NOISE), SurfelError::NotFinite { index: 2 });
-    let error = SurfelError::IndexOutOfRange { triangle: 1, index: 4, count: 4 };
+    let error = refused(&broken, &triangles, NOISE);
+    assert!(matches!(error, SurfelError::VertexNotFinite { index: 2, .. }), "{error:?}");
+    let error = SurfelError::VertexOutOfRange { triangle: 1, vertex: 4, count: 4 };
     assert_eq!(refused(&positions, &[[0, 1, 2], [0, 4, 1]], NOISE), error);
     assert!(matches!(refused(&positions, &[], NOISE), SurfelError::NoArea { .. }));
     assert!(matches!(refused(&positions, &[[0, 1, 1]], RAYS), SurfelError::NoArea { .. }));

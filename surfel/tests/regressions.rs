@@ -19,7 +19,8 @@ fn disc(at: DVec3, normal: Vec3, radius: f32) -> OwnedPoints {
 #[test]
 fn one_coordinate_that_is_nan_is_refused() {
     let points = OwnedPoints::loose(vec![DVec3::ZERO, dvec3(0.0, f64::NAN, 0.0)]);
-    assert_eq!(cloud(&points).unwrap_err(), SurfelError::NotFinite { index: 1 });
+    let error = cloud(&points).unwrap_err();
+    assert!(matches!(error, SurfelError::PointNotFinite { index: 1, .. }), "{error:?}");
 }
 
 /// Runs of eight pixels added up what lay beyond a disc's columns; nobody took it away, and the next tile showed it.

@@ -1,7 +1,17 @@
-//! Facts that hold for every view, as functions that answer `Err` with what is wrong.
+//! Facts that hold for every view, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
 //!
-//! For property testers and fuzzers. Any finite arguments are allowed: where a result is beyond the range of `f64`, or rounding
-//! has swallowed the depth, a function has nothing to check.
+//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a crate
+//! that builds on it, with the feature `invariants`. Any finite arguments are allowed: where a result is
+//! beyond the range of `f64`, or rounding has swallowed the depth, a function has nothing to check.
+//!
+//! ```
+//! use pointillist_view::{Projection, View, invariants::unprojecting_gives_the_point};
+//! # use glam::DVec3;
+//!
+//! let view = View::look_at(DVec3::ONE, DVec3::ZERO, DVec3::Y, Projection::Orthographic { height: 4.0 }, 64, 48).unwrap();
+//! unprojecting_gives_the_point(&view, DVec3::new(0.1, 0.2, 0.3))?;
+//! # Ok::<(), String>(())
+//! ```
 
 use crate::{PixelRect, Projected, Projection, View};
 use glam::{DMat3, DVec2, DVec3};

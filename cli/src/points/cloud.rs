@@ -103,7 +103,8 @@ impl PointSet {
     /// Names the file and the point within it.
     fn blame(&self, error: &SurfelError) -> InputError {
         let index = match error {
-            SurfelError::NotFinite { index }
+            SurfelError::PointNotFinite { index, .. }
+            | SurfelError::PointTooFar { index, .. }
             | SurfelError::BadNormal { index }
             | SurfelError::BadColor { index }
             | SurfelError::BadRadius { index, .. } => *index,
@@ -121,7 +122,7 @@ impl PointSet {
                 format!("the radius of point {number} (from 0) is {radius}; it must be above 0"),
                 "a file without the property `radius` has radii estimated",
             ),
-            SurfelError::NotFinite { .. } => (
+            SurfelError::PointTooFar { .. } => (
                 format!("point {number} (from 0) is too far away for numbers"),
                 "coordinates up to 4e307 can be used",
             ),

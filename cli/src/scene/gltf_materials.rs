@@ -5,7 +5,7 @@ use super::{Channel, Details, Map, Material};
 use crate::input_error::InputError;
 use crate::mesh_io::gltf::{AlphaMode, GltfBytes, GltfMaterial, GltfModel, GltfTexture};
 use glam::Vec3;
-use pointillist_shade::{self as shade, Model, Wrap};
+use pointillist_shade::{self as shade, Wrap};
 use std::path::Path;
 
 /// Builds a material of the model in the file `path`.
@@ -21,21 +21,15 @@ pub(super) fn build(
     let base = pictures.optional(material.base_texture, color)?;
     let mut details = Details::default();
     details.one_sided = !material.double_sided;
-    let mut surface = shade::Material {
-        model: Model::Ggx,
-        specular: Vec3::splat(material.reflectance),
-        roughness: material.roughness,
-        opacity: if material.alpha_mode == AlphaMode::Blend { material.alpha } else { 1.0 },
-        emission: material.emissive,
-        ..shade::Material::lambert(material.base_color)
-    };
+    let reflectance = Vec3::splat(material.reflectance);
+    let opacity = if material.alpha_mode == AlphaMode::Blend { material.alpha } else { 1.0 };
+    let mut surface = shade::Material::ggx(material.base_color, reflectance, material.roughness)
+        .with_opacity(opacity)
+        .with_emission(material.emissive);
     if material.unlit {
         // Seen as it is: the base colour is what it sends out.
-        surface = shade::Material {
-            emission: material.base_color,
-            opacity: surface.opacity,
-            ..shade::Material::lambert(Vec3::ZERO)
-        };
+        surface =
+            shade::Material::lambert(Vec3::ZERO).with_emission(material.base_color).with_opacity(opacity);
         details.emission_map = pictures.map(material.base_texture, color, Channel::Mean)?;
     } else {
         details.metallic = Some(material.metallic);

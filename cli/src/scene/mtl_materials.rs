@@ -77,16 +77,13 @@ fn surface(material: &MtlMaterial, details: &mut Details) -> shade::Material {
     let shininess = material.shininess.unwrap_or(0.0);
     let illumination = material.illumination.unwrap_or(HIGHLIGHT);
     let highlight = illumination >= HIGHLIGHT && specular != Vec3::ZERO && shininess > 0.0;
-    let mut surface = shade::Material {
-        model: if highlight { Model::NormalizedBlinnPhong } else { Model::Lambert },
-        diffuse: material.diffuse.unwrap_or(Vec3::splat(default_albedo)),
-        specular,
-        shininess,
+    let model = if highlight { Model::NormalizedBlinnPhong } else { Model::Lambert };
+    let mut surface = shade::Material::lambert(material.diffuse.unwrap_or(Vec3::splat(default_albedo)))
+        .with_specular(model, specular, shininess)
         // Of what it mirrors, if it does.
-        roughness: 0.0,
-        emission: or_map(material.emission, details.emission_map.is_some()),
-        opacity: material.opacity.unwrap_or(1.0),
-    };
+        .with_roughness(0.0)
+        .with_emission(or_map(material.emission, details.emission_map.is_some()))
+        .with_opacity(material.opacity.unwrap_or(1.0));
     let physical = material.roughness.is_some()
         || material.metallic.is_some()
         || details.roughness_map.is_some()

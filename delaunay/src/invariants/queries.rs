@@ -15,6 +15,9 @@ fn divided(points: &[DVec3]) -> Option<(Delaunay, Partition)> {
 }
 
 /// Every neighbour has the cell for a neighbour, across the same corners, and cells are numbered as listed.
+///
+/// # Errors
+/// The first cell and side.
 pub fn neighbours_are_mutual(points: &[DVec3]) -> Result<(), String> {
     let Some((_, partition)) = divided(points) else { return Ok(()) };
     for (i, cell) in partition.cells().enumerate() {
@@ -38,6 +41,9 @@ pub fn neighbours_are_mutual(points: &[DVec3]) -> Result<(), String> {
 }
 
 /// Edges are the pairs of corners of all cells, each once, and vertices around a vertex are the other ends of its edges.
+///
+/// # Errors
+/// What differs.
 pub fn edges_are_those_of_cells(points: &[DVec3]) -> Result<(), String> {
     let Some((_, partition)) = divided(points) else { return Ok(()) };
     let mut expected = BTreeSet::new();
@@ -60,6 +66,9 @@ pub fn edges_are_those_of_cells(points: &[DVec3]) -> Result<(), String> {
 }
 
 /// No point lies beyond a facet of the hull, exactly, and facets close up: every corner is one of two facets or more.
+///
+/// # Errors
+/// The first facet.
 pub fn hull_facets_have_all_points_on_one_side(points: &[DVec3]) -> Result<(), String> {
     let Some((delaunay, partition)) = divided(points) else { return Ok(()) };
     let exact = Points::new(points);
@@ -108,6 +117,9 @@ fn is_beyond(exact: &Points, partition: &Partition, facet: &Facet, v: u32) -> bo
 }
 
 /// Centres are as far from all corners of their cell, within 1e-10 of the radius and 4 ulp of the largest coordinate.
+///
+/// # Errors
+/// The first cell, and its distances.
 pub fn circumcentres_are_equidistant(points: &[DVec3]) -> Result<(), String> {
     let Some((_, partition)) = divided(points) else { return Ok(()) };
     for cell in partition.cells() {
@@ -130,6 +142,9 @@ pub fn circumcentres_are_equidistant(points: &[DVec3]) -> Result<(), String> {
 }
 
 /// The nearest vertex is the one that a search among all points finds, exactly, from wherever the walk starts.
+///
+/// # Errors
+/// The first query, and both answers.
 pub fn nearest_is_that_of_a_search(points: &[DVec3], queries: &[DVec3]) -> Result<(), String> {
     let Some((delaunay, partition)) = divided(points) else { return Ok(()) };
     let nearest = NearestVertex::new(points, &partition).map_err(|e| e.to_string())?;
@@ -156,6 +171,9 @@ pub fn nearest_is_that_of_a_search(points: &[DVec3], queries: &[DVec3]) -> Resul
 }
 
 /// What is built is found valid; with two corners of one cell swapped, a cell that shows it is named: that one or a neighbour.
+///
+/// # Errors
+/// What [`Partition::verify`](crate::Partition::verify) answered instead.
 pub fn damage_is_found(points: &[DVec3], which: usize) -> Result<(), String> {
     let Some((delaunay, partition)) = divided(points) else { return Ok(()) };
     partition.verify(delaunay.points()).map_err(|e| e.to_string())?;
@@ -180,6 +198,9 @@ pub fn damage_is_found(points: &[DVec3], which: usize) -> Result<(), String> {
 }
 
 /// Compacting keeps what is left in its order, and its cells; more can be inserted and removed after it.
+///
+/// # Errors
+/// What differs.
 pub fn compaction_is_building(points: &[DVec3], removed: &[usize]) -> Result<(), String> {
     let text = |e: DelaunayError| e.to_string();
     let Ok(mut delaunay) = Delaunay::new(points) else { return Ok(()) };

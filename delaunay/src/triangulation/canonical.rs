@@ -68,7 +68,7 @@ fn ranks(solid: &Solid) -> Vec<u32> {
     // Scaled positions may have come together: the scale is that of all points there ever were.
     let position = |v: Vertex| solid.sites.exact_position(v);
     let curve = Curve::new(vertices.iter().map(|&v| position(v)));
-    let mut keyed = parallel::map(vertices.len(), |k| (curve.place(position(vertices[k])), vertices[k]));
+    let mut keyed = parallel::map(vertices.len(), |k| (curve.index(position(vertices[k])), vertices[k]));
     parallel::sort_by(&mut keyed, |(p, v), (q, w)| p.cmp(q).then_with(|| solid.sites.compare(*v, *w)));
     let mut ranks = vec![0; solid.index.len()];
     for (rank, (_, v)) in (1..).zip(keyed) {

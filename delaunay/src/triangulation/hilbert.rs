@@ -55,7 +55,7 @@ const STEPS: [u16; 8 * 24] = {
 };
 
 /// Place on the curve through a cube of 2^19 cells a side.
-fn place([x, y, z]: [u32; 3]) -> u64 {
+fn hilbert_index([x, y, z]: [u32; 3]) -> u64 {
     let (mut state, mut place) = (0, 0);
     for level in (0..LEVELS).rev() {
         let bit = |v: u32| (v >> level & 1) as usize;
@@ -88,9 +88,9 @@ impl Curve {
 
     /// Where on the curve a point lies; many may share a place.
     #[inline]
-    pub(super) fn place(&self, p: DVec3) -> u64 {
+    pub(super) fn index(&self, p: DVec3) -> u64 {
         let cell = (self.scale.apply(p) - self.lo) * self.cells_per_length;
-        place([cell.x as u32, cell.y as u32, cell.z as u32])
+        hilbert_index([cell.x as u32, cell.y as u32, cell.z as u32])
     }
 }
 
@@ -108,7 +108,7 @@ pub(super) fn insertion_order(points: &[DVec3], indices: &[u32]) -> Vec<u32> {
     let mut keyed = parallel::map(indices.len(), |k| {
         let i = indices[k];
         let early = (scrambled(i).trailing_zeros() / ROUND_BITS).min(LAST_ROUND);
-        (u64::from(LAST_ROUND - early) << ROUND_SHIFT | curve.place(points[i as usize]), i)
+        (u64::from(LAST_ROUND - early) << ROUND_SHIFT | curve.index(points[i as usize]), i)
     });
     parallel::sort_by(&mut keyed, |a, b| a.cmp(b));
     sort_crowded(points, &mut keyed);
@@ -124,7 +124,7 @@ fn sort_crowded(points: &[DVec3], keyed: &mut [(u64, u32)]) {
             let end = start + run.len();
             if run.len() > CROWD {
                 let curve = Curve::new(run.iter().map(|(_, i)| points[*i as usize]));
-                run.iter_mut().for_each(|(place, i)| *place = curve.place(points[*i as usize]));
+                run.iter_mut().for_each(|(place, i)| *place = curve.index(points[*i as usize]));
                 run.sort_unstable();
                 // Unless all are in one place.
                 if run[0].0 != run[run.len() - 1].0 {
@@ -146,7 +146,7 @@ mod tests {
         let shift = LEVELS - 3;
         let all = (0..side).flat_map(|x| (0..side).flat_map(move |y| (0..side).map(move |z| [x, y, z])));
         let mut cells: Vec<[u32; 3]> = all.collect();
-        cells.sort_by_key(|c| place(c.map(|v| v << shift)));
+        cells.sort_by_key(|c| hilbert_index(c.map(|v| v << shift)));
         for pair in cells.windows(2) {
             let apart: u32 = (0..3).map(|k| pair[0][k].abs_diff(pair[1][k])).sum();
             assert_eq!(apart, 1, "{pair:?}");

@@ -35,6 +35,7 @@ mod simplex;
 mod sites;
 mod solid;
 
+use crate::partition::check_count;
 use crate::{DelaunayError, OUTSIDE, Partition};
 pub(crate) use cell::Vertex;
 pub(crate) use sites::Sites;
@@ -42,9 +43,6 @@ pub(crate) use sites::Sites;
 use build::Shape;
 use glam::DVec3;
 use solid::Added;
-
-/// As many points as one triangulation takes: random ones have about seven cells each.
-const MAX_POINTS: usize = 1 << 27;
 
 /// A Delaunay triangulation that grows and shrinks: of space, or of the plane or line in which all points lie.
 #[derive(Clone, Debug)]
@@ -97,6 +95,7 @@ impl Delaunay {
     }
 
     /// 3 if the points span space, 2 if they lie in a plane, 1 on a line, 0 if they coincide.
+    #[must_use]
     pub fn dimension(&self) -> usize {
         match &self.shape {
             Shape::Point(_) => 0,
@@ -106,16 +105,19 @@ impl Delaunay {
     }
 
     /// For each point given, the first that coincides with it, mostly itself; [`OUTSIDE`] if it was removed.
+    #[must_use]
     pub fn representative(&self) -> &[u32] {
         &self.representative
     }
 
     /// The points given, those removed too.
+    #[must_use]
     pub fn points(&self) -> &[DVec3] {
         &self.points
     }
 
     /// The cells. For the same points it is the same value, however they came to be there.
+    #[must_use]
     pub fn partition(&self) -> Partition {
         match &self.shape {
             Shape::Point(index) => Partition::Point(*index),
@@ -125,6 +127,7 @@ impl Delaunay {
     }
 
     /// How many points there are, without those removed.
+    #[must_use]
     pub const fn live_count(&self) -> usize {
         self.live
     }
@@ -254,9 +257,4 @@ impl Delaunay {
 
 fn check_finite(index: usize, p: DVec3) -> Result<(), DelaunayError> {
     if p.is_finite() { Ok(()) } else { Err(DelaunayError::PointNotFinite { index }) }
-}
-
-fn check_count(count: usize) -> Result<(), DelaunayError> {
-    let limit = MAX_POINTS;
-    if count <= limit { Ok(()) } else { Err(DelaunayError::TooManyPoints { count, limit }) }
 }

@@ -9,6 +9,7 @@ use glam::{DVec3, Vec3, dvec3};
 /// # Panics
 ///
 /// For a face beyond 5.
+#[must_use]
 pub fn cube_direction(face: usize, s: f64, t: f64) -> DVec3 {
     match face {
         0 => dvec3(1.0, -t, -s),
@@ -22,7 +23,7 @@ pub fn cube_direction(face: usize, s: f64, t: f64) -> DVec3 {
 }
 
 /// Face, s and t of a direction; directions without one count as +X.
-fn place(d: DVec3) -> (usize, f64, f64) {
+fn face_point(d: DVec3) -> (usize, f64, f64) {
     let a = d.abs();
     let (face, s, t, major) = if a.x >= a.y && a.x >= a.z {
         if d.x >= 0.0 { (0, -d.z, -d.y, a.x) } else { (1, d.z, -d.y, a.x) }
@@ -54,7 +55,8 @@ impl CubeMap {
     ///
     /// No texels, or another number of them.
     pub fn new(size: u32, texels: &[Vec3]) -> Result<Self, ShadeError> {
-        if size == 0 || texels.len() as u64 != 6 * u64::from(size) * u64::from(size) {
+        // Six faces of 2³² texels a side overflow 64 bits.
+        if size == 0 || texels.len() as u128 != 6 * u128::from(size) * u128::from(size) {
             return Err(ShadeError::TextureSize {
                 len: texels.len(),
                 width: size,
@@ -66,6 +68,7 @@ impl CubeMap {
     }
 
     /// A map of what a function says about the middle of each texel, as a unit vector. A `size` of 0 counts as 1.
+    #[must_use]
     pub fn from_function(size: u32, radiance: impl Fn(DVec3) -> Vec3) -> Self {
         let size = size.max(1) as usize;
         Self::build(size, |face, x, y| radiance(texel_direction(size, face, x, y).normalize()))
@@ -111,7 +114,7 @@ impl CubeMap {
         // A hair across the edge: there it is the neighbour's outermost texel, in the same place along the edge.
         let hair = 1.0 + 1e-3 / self.size as f64;
         let out = |c: f64| if c.abs() == 1.0 { c * hair } else { c };
-        let (other, s, t) = place(cube_direction(face, out(s), out(t)));
+        let (other, s, t) = face_point(cube_direction(face, out(s), out(t)));
         let texel = |c: f64| (((c + 1.0) * 0.5 * self.size as f64) as usize).min(self.size - 1) + 1;
         self.texels[self.index(other, texel(s), texel(t))]
     }
@@ -123,6 +126,7 @@ impl CubeMap {
     }
 
     /// Texels on a side of a face.
+    #[must_use]
     pub fn size(&self) -> u32 {
         self.size as u32
     }
@@ -132,6 +136,7 @@ impl CubeMap {
     /// # Panics
     ///
     /// Outside the face.
+    #[must_use]
     pub fn texel(&self, face: usize, x: u32, y: u32) -> Vec3 {
         let (x, y) = (x as usize, y as usize);
         assert!(face < 6 && x < self.size && y < self.size, "texel {x}, {y} of face {face} is not there");
@@ -139,8 +144,9 @@ impl CubeMap {
     }
 
     /// Radiance from a direction of any length, interpolated between four texels; continuous everywhere.
+    #[must_use]
     pub fn sample(&self, direction: DVec3) -> Vec3 {
-        let (face, s, t) = place(direction);
+        let (face, s, t) = face_point(direction);
         let n = self.size as f64;
         // In texels from the middle of the border's.
         let at = |c: f64| ((c + 1.0) * 0.5 * n + 0.5).clamp(0.0, n + 0.999_999);

@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Where a direction lies on the map, as shares of width and height: row 0 is +Y, the centre column looks along −Z,
 /// columns run to +X. Any length but zero will do.
+#[must_use]
 pub fn equirectangular_uv(direction: DVec3) -> DVec2 {
     let d = direction;
     let u = 0.5 + d.x.atan2(-d.z) / TAU;
@@ -14,6 +15,7 @@ pub fn equirectangular_uv(direction: DVec3) -> DVec2 {
 }
 
 /// The unit vector of a place on the map; the inverse of [`equirectangular_uv`].
+#[must_use]
 pub fn equirectangular_direction(uv: DVec2) -> DVec3 {
     let longitude = (uv.x - 0.5) * TAU;
     let latitude = (0.5 - uv.y) * PI;
@@ -49,6 +51,7 @@ impl<'a> Equirectangular<'a> {
 
     /// Radiance from a direction, interpolated between four texels: continuous everywhere, over the ±180° column and the poles,
     /// too.
+    #[must_use]
     pub fn sample(&self, direction: DVec3) -> Vec3 {
         let uv = equirectangular_uv(direction);
         let x = uv.x * self.width as f64 - 0.5;

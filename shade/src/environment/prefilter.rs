@@ -2,7 +2,7 @@
 
 use super::CubeMap;
 use super::cube::texel_direction;
-use crate::ggx;
+use crate::roughness::{self, SMALLEST_ROUGHNESS};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
 
@@ -41,6 +41,7 @@ pub struct Environment {
 
 impl Environment {
     /// A map for mirrors only: [`Environment::radiance`] is then sharp at any roughness.
+    #[must_use]
     pub fn sharp(map: CubeMap) -> Self {
         Self { sharp: map, rough: Vec::new(), irradiance: None }
     }
@@ -66,16 +67,17 @@ impl Environment {
     }
 
     /// Radiance that a surface of this perceptual roughness mirrors from about a direction.
+    #[must_use]
     pub fn radiance(&self, direction: Vec3, roughness: f32) -> Vec3 {
         let direction = direction.as_dvec3();
         let sharp = || self.sharp.sample(direction);
-        let smooth = roughness.is_nan() || roughness <= ggx::SMALLEST_ROUGHNESS;
+        let smooth = roughness.is_nan() || roughness <= SMALLEST_ROUGHNESS;
         if self.rough.is_empty() || smooth {
             return sharp();
         }
         let above = LEVELS.iter().position(|l| roughness < l.0).unwrap_or(LEVELS.len() - 1);
         let (low, below) = match above {
-            0 => (ggx::SMALLEST_ROUGHNESS, sharp()),
+            0 => (SMALLEST_ROUGHNESS, sharp()),
             k => (LEVELS[k - 1].0, self.rough[k - 1].sample(direction)),
         };
         let share = (roughness.min(1.0) - low) / (LEVELS[above].0 - low);
@@ -83,6 +85,7 @@ impl Environment {
     }
 
     /// Irradiance of a surface that faces this way; 0 without [`Environment::with_irradiance`].
+    #[must_use]
     pub fn irradiance(&self, normal: Vec3) -> Vec3 {
         self.irradiance.as_ref().map_or(Vec3::ZERO, |map| map.sample(normal.as_dvec3()))
     }
@@ -105,7 +108,7 @@ struct Sample {
 }
 
 fn level(chain: &[CubeMap], roughness: f32, size: u32, samples: u32) -> CubeMap {
-    let alpha = f64::from(ggx::alpha(roughness));
+    let alpha = f64::from(roughness::alpha(roughness));
     let texel_area = 4.0 * PI / (6.0 * f64::from(chain[0].size()).powi(2));
     let samples = lobe(alpha, samples, texel_area);
     let total: f64 = samples.iter().map(|s| s.weight).sum();

@@ -1,11 +1,11 @@
 //! Placement driven by the error of interpolation.
 
 use super::thin::thin;
-use super::trial::{Bench, Candidates, Outcome};
+use super::trial::{Bench, Candidates, Outcome, check_amount};
 use crate::{ProbeError, parallel};
 use std::collections::BTreeMap;
 
-/// When [`adaptive`] stops, and what counts as an error.
+/// When [`adaptive`] stops, and how errors are weighted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AdaptiveOptions {
@@ -69,6 +69,7 @@ impl Default for AdaptiveOptions {
 
 /// Which candidates became probes.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Adaptive {
     /// Indices of candidates, rising.
     pub chosen: Vec<u32>,
@@ -88,9 +89,11 @@ pub struct Adaptive {
 /// Interpolation is that of [`Field`](crate::Field), with what probes see. Does not depend on threads.
 ///
 /// # Errors
-/// No candidates, lists of different lengths, positions that are not finite, coefficients of mixed orders.
+/// [`ProbeError::NoProbes`], [`ProbeError::CountMismatch`], [`ProbeError::PositionNotFinite`], [`ProbeError::MixedOrders`],
+/// [`ProbeError::BadRadiance`], [`ProbeError::BadWeight`], [`ProbeError::BadOption`].
 pub fn adaptive(candidates: Candidates<'_>, options: &AdaptiveOptions) -> Result<Adaptive, ProbeError> {
     let bench = Bench::new(candidates, options.balance)?;
+    check_amount("max_error", options.max_error)?;
     let limit = options.max_count.clamp(1, bench.count());
     let thinned = thin(&bench, limit, options.max_error * options.max_error)?;
     let mut state = State { chosen: thinned.chosen, outcome: Some(thinned.outcome) };

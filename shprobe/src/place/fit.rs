@@ -1,6 +1,6 @@
-//! What probes should hold so that what lies between them is lit right.
+//! Coefficients of probes, fitted to the light between them by least squares.
 
-use super::trial::{Bench, Candidates};
+use super::trial::{Bench, Candidates, check_amount};
 use crate::sh::Sh;
 use crate::sight::Shares;
 use crate::{ProbeError, parallel};
@@ -59,6 +59,7 @@ const MOST_STEPS: usize = 500;
 /// As [`adaptive`](super::adaptive), and [`ProbeError::NoSuchProbe`] for a number that is no candidate.
 pub fn fit(candidates: Candidates<'_>, chosen: &[u32], options: &FitOptions) -> Result<Vec<Sh>, ProbeError> {
     let bench = Bench::new(candidates, options.balance)?;
+    check_amount("hold", options.hold)?;
     if let Some(&index) = chosen.iter().find(|&&i| i as usize >= bench.count()) {
         return Err(ProbeError::NoSuchProbe { index });
     }

@@ -1,4 +1,4 @@
-//! Placement that does not know the light.
+//! Placement by geometry alone: grids, random positions, and spread subsets.
 
 use glam::{DVec3, dvec3};
 
@@ -6,13 +6,21 @@ use glam::{DVec3, dvec3};
 const INSET: f64 = 0.1;
 
 /// `nx · ny · nz` probes evenly in a box, x fastest; the outer ones a tenth of a cell inside of it. One along an axis lies in the middle.
+///
+/// # Panics
+/// If there are more than `usize` can count, or than memory holds.
+#[must_use]
 pub fn grid(low: DVec3, high: DVec3, [nx, ny, nz]: [usize; 3]) -> Vec<DVec3> {
     let at = |i: usize, n: usize, axis: usize| {
         let inset = INSET * (high[axis] - low[axis]) / n as f64;
         let t = if n > 1 { i as f64 / (n - 1) as f64 } else { 0.5 };
         (low[axis] + inset) * (1.0 - t) + (high[axis] - inset) * t
     };
-    let mut probes = Vec::with_capacity(nx * ny * nz);
+    let count = nx
+        .checked_mul(ny)
+        .and_then(|n| n.checked_mul(nz))
+        .expect("a grid has as many probes as can be counted");
+    let mut probes = Vec::with_capacity(count);
     for z in 0..nz {
         for y in 0..ny {
             probes.extend((0..nx).map(|x| dvec3(at(x, nx, 0), at(y, ny, 1), at(z, nz, 2))));
@@ -22,6 +30,7 @@ pub fn grid(low: DVec3, high: DVec3, [nx, ny, nz]: [usize; 3]) -> Vec<DVec3> {
 }
 
 /// `count` probes anywhere in a box, each place as likely as any other.
+#[must_use]
 pub fn random(low: DVec3, high: DVec3, count: usize, seed: u64) -> Vec<DVec3> {
     let mut state = seed;
     let mut unit = || {
@@ -37,15 +46,19 @@ pub fn random(low: DVec3, high: DVec3, count: usize, seed: u64) -> Vec<DVec3> {
 }
 
 /// Up to `count` of the candidates, each as far as possible from those before it (Gonzalez 1985); the first is the one nearest to the
-/// middle. Equal candidates are taken once.
+/// middle. Equal candidates are taken once, and those that are not finite never.
+#[must_use]
 pub fn spread(candidates: &[DVec3], count: usize) -> Vec<usize> {
-    let middle = candidates.iter().copied().sum::<DVec3>() / candidates.len().max(1) as f64;
+    let finite = || candidates.iter().copied().filter(|p| p.is_finite());
+    let middle = finite().sum::<DVec3>() / finite().count().max(1) as f64;
     let nearest = |a: &usize, b: &usize| {
         candidates[*a].distance_squared(middle).total_cmp(&candidates[*b].distance_squared(middle))
     };
-    let mut dist2 = vec![f64::INFINITY; candidates.len()];
+    // A distance of 0 is never chosen.
+    let start = |p: &DVec3| if p.is_finite() { f64::INFINITY } else { 0.0 };
+    let mut dist2: Vec<f64> = candidates.iter().map(start).collect();
     let mut chosen = vec![];
-    let mut next = (0..candidates.len()).min_by(nearest);
+    let mut next = (0..candidates.len()).filter(|&i| candidates[i].is_finite()).min_by(nearest);
     while let Some(new) = next.filter(|&n| chosen.len() < count && dist2[n] > 0.0) {
         chosen.push(new);
         for (d, p) in dist2.iter_mut().zip(candidates) {

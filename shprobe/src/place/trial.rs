@@ -1,4 +1,4 @@
-//! How well some candidates light all of them.
+//! The error of light interpolated between some of the candidates, over all of them.
 
 use crate::delaunay::{Blend, Delaunay, Hint, Locator, Partition};
 use crate::field::{common_order, help};
@@ -7,8 +7,9 @@ use crate::sight::{Near, Shares, by_sight};
 use crate::{DistanceMap, ProbeError};
 use glam::DVec3;
 
-/// Positions at which probes may be, and the light there.
+/// Positions at which probes may be, and the light there. Start from [`Candidates::new`]: further fields may come.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Candidates<'a> {
     /// Where they are.
     pub positions: &'a [DVec3],
@@ -18,6 +19,28 @@ pub struct Candidates<'a> {
     pub distances: Option<&'a [DistanceMap]>,
     /// What the error at each counts, for example the volume it stands for; 1 without.
     pub weights: Option<&'a [f64]>,
+}
+
+impl<'a> Candidates<'a> {
+    /// Positions and as many functions, all of one order; light passes through walls, and all count alike.
+    #[must_use]
+    pub const fn new(positions: &'a [DVec3], radiance: &'a [Sh]) -> Self {
+        Self { positions, radiance, distances: None, weights: None }
+    }
+
+    /// Sets how far each sees: one map per position.
+    #[must_use]
+    pub const fn with_distances(mut self, distances: &'a [DistanceMap]) -> Self {
+        self.distances = Some(distances);
+        self
+    }
+
+    /// Sets what the error at each counts: one finite number of at least 0 per position, not all 0.
+    #[must_use]
+    pub const fn with_weights(mut self, weights: &'a [f64]) -> Self {
+        self.weights = Some(weights);
+        self
+    }
 }
 
 /// Candidates ready to be tried.
@@ -32,7 +55,7 @@ pub(super) struct Bench<'a> {
 /// Light weaker than this share of the RMS counts as this much, so that errors where it is dark do not count without end.
 const DARK: f64 = 0.02;
 
-/// What a set of probes leaves wrong.
+/// The error of a set of probes.
 pub(super) struct Outcome {
     /// Square of the relative error over all candidates.
     pub(super) error2: f64,
@@ -41,6 +64,29 @@ pub(super) struct Outcome {
     /// For each candidate the probes of the cell it is in, as indices into those chosen.
     pub(super) cells: Vec<[u32; 4]>,
     pub(super) partition: Partition,
+}
+
+/// Weights are finite and not negative, and something counts.
+fn check_weights(weights: Option<&[f64]>) -> Result<(), ProbeError> {
+    let Some(weights) = weights else { return Ok(()) };
+    let is_bad = |w: &f64| !(*w >= 0.0 && w.is_finite());
+    let nothing = || (!weights.iter().any(|w| *w > 0.0)).then_some(0);
+    match weights.iter().position(is_bad).or_else(nothing) {
+        Some(index) => Err(ProbeError::BadWeight { index, weight: weights[index] }),
+        None => Ok(()),
+    }
+}
+
+/// Refuses what is not from 0 to 1.
+fn check_share(name: &'static str, value: f64) -> Result<(), ProbeError> {
+    let is_share = (0.0..=1.0).contains(&value);
+    if is_share { Ok(()) } else { Err(ProbeError::BadOption { name, value, range: "it must be 0 to 1" }) }
+}
+
+/// Refuses what is negative or not finite.
+pub(super) fn check_amount(name: &'static str, value: f64) -> Result<(), ProbeError> {
+    let range = "it must be finite and at least 0";
+    if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(ProbeError::BadOption { name, value, range }) }
 }
 
 impl<'a> Bench<'a> {
@@ -61,6 +107,8 @@ impl<'a> Bench<'a> {
             return Err(ProbeError::PositionNotFinite { index });
         }
         common_order(candidates.radiance)?;
+        check_weights(candidates.weights)?;
+        check_share("balance", balance)?;
         let norm = (4.0 * std::f64::consts::PI).sqrt();
         let normed = |sh: &Sh| sh.convolved(&Lobe::COSINE).scaled(1.0 / norm).into_coefficients();
         let irradiance: Vec<Vec<DVec3>> = candidates.radiance.iter().map(normed).collect();

@@ -25,13 +25,13 @@ impl Sketch {
 
     /// A surface that shows this colour whatever the light.
     pub(crate) fn emissive(&mut self, color: Vec3, opacity: f32) -> u32 {
-        let surface = shade::Material { emission: color, opacity, ..shade::Material::lambert(Vec3::ZERO) };
+        let surface = shade::Material::lambert(Vec3::ZERO).with_emission(color).with_opacity(opacity);
         self.material(surface, None)
     }
 
     /// A matt surface.
     pub(crate) fn matt(&mut self, albedo: f32, opacity: f32) -> u32 {
-        self.material(shade::Material { opacity, ..shade::Material::lambert(Vec3::splat(albedo)) }, None)
+        self.material(shade::Material::lambert(Vec3::splat(albedo)).with_opacity(opacity), None)
     }
 
     pub(crate) fn material(&mut self, surface: shade::Material, diffuse_map: Option<usize>) -> u32 {

@@ -134,12 +134,8 @@ impl<'a> Survey<'a> {
     /// The candidates that adaptive placement takes.
     pub(crate) fn chosen(&self, count: usize, distances: bool) -> Result<Chosen, Fault> {
         let all = self.candidates()?;
-        let candidates = Candidates {
-            positions: &all.positions,
-            radiance: &all.radiance,
-            distances: distances.then_some(all.distances.as_slice()),
-            weights: None,
-        };
+        let mut candidates = Candidates::new(&all.positions, &all.radiance);
+        candidates.distances = distances.then_some(all.distances.as_slice());
         let balance = self.ground.site.balance;
         let options = AdaptiveOptions::DEFAULT.with_max_count(count).with_balance(balance);
         let chosen = adaptive(candidates, &options)?.chosen;

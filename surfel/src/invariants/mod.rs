@@ -1,7 +1,16 @@
-//! Facts that hold for every mesh, cloud, view and set of options, as functions: property tests and fuzz targets call the
-//! same ones.
+//! Facts that hold for every mesh, cloud, view and set of options, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
 //!
-//! Each takes any input at all. What is refused satisfies every fact.
+//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a crate
+//! that builds on it, with the feature `invariants`. Each takes any input at all; what is refused satisfies
+//! every fact.
+//!
+//! ```
+//! use pointillist_surfel::invariants::{OwnedPoints, octrees_are_sound};
+//!
+//! let points = OwnedPoints::sphere(glam::DVec3::ZERO, 1.0, 500).jittered(glam::DVec3::X * 0.1, 1);
+//! octrees_are_sound(&points)?;
+//! # Ok::<(), String>(())
+//! ```
 
 mod drawing;
 mod estimates;

@@ -194,12 +194,7 @@ fn cluster(
     let again = || look_again(prepared, &candidates, look, Ambient::Probes(&field), &seen, &watch);
     let (radiance, distances) = split(stats.stage("look", again).map_err(failed)?);
     progress.finish();
-    let known = place::Candidates {
-        positions: &candidates,
-        radiance: &radiance,
-        distances: Some(&distances),
-        weights: None,
-    };
+    let known = place::Candidates::new(&candidates, &radiance).with_distances(&distances);
     let limits =
         place::AdaptiveOptions::DEFAULT.with_max_count(options.count as usize).with_max_error(options.error);
     let chosen = stats.stage("choose", || place::adaptive(known, &limits)).map_err(broken)?;

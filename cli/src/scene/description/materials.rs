@@ -193,15 +193,15 @@ fn read_surface(
             "it is for model = \"ggx\", or for a surface with `reflection`",
         ));
     }
-    Ok(Material {
-        model: if let ModelName::Formula(model) = model { model } else { Model::Lambert },
-        diffuse: table.color("diffuse")?.unwrap_or(Vec3::splat(default_albedo)),
-        specular,
-        shininess: shininess.unwrap_or(default_shininess) as f32,
-        roughness: roughness.unwrap_or(default_roughness) as f32,
-        emission: table.color("emission")?.unwrap_or(default_emission),
-        opacity: table.number_where("opacity", "from 0 to 1", is_share)?.unwrap_or(1.0) as f32,
-    })
+    let model = if let ModelName::Formula(model) = model { model } else { Model::Lambert };
+    let diffuse = table.color("diffuse")?.unwrap_or(Vec3::splat(default_albedo));
+    let emission = table.color("emission")?.unwrap_or(default_emission);
+    let opacity = table.number_where("opacity", "from 0 to 1", is_share)?.unwrap_or(1.0);
+    Ok(Material::lambert(diffuse)
+        .with_specular(model, specular, shininess.unwrap_or(default_shininess) as f32)
+        .with_roughness(roughness.unwrap_or(default_roughness) as f32)
+        .with_emission(emission)
+        .with_opacity(opacity as f32))
 }
 
 /// Keys that would do nothing with this model.

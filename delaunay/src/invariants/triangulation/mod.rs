@@ -10,12 +10,18 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// The partition divides the convex hull of these points as a Delaunay triangulation does, with each distinct point a corner.
+///
+/// # Errors
+/// The first cell, facet or point that breaks it.
 pub fn partition_is_delaunay(points: &[DVec3]) -> Result<(), String> {
     let Ok(delaunay) = Delaunay::new(points) else { return Ok(()) };
     triangulation_is_delaunay(&delaunay)
 }
 
 /// As [`partition_is_delaunay`], of one that may have grown and shrunk.
+///
+/// # Errors
+/// The first cell, facet or point that breaks it.
 pub fn triangulation_is_delaunay(delaunay: &Delaunay) -> Result<(), String> {
     representatives_come_first(delaunay)?;
     let points = Points::new(delaunay.points());
@@ -33,6 +39,9 @@ pub fn triangulation_is_delaunay(delaunay: &Delaunay) -> Result<(), String> {
 }
 
 /// Inserting these points one by one into a triangulation of the first gives what building gives.
+///
+/// # Errors
+/// What differs.
 pub fn insertion_is_building(points: &[DVec3]) -> Result<(), String> {
     let Ok(built) = Delaunay::new(points) else { return Ok(()) };
     let mut grown = Delaunay::new(&points[..1]).map_err(|e| e.to_string())?;
@@ -45,6 +54,9 @@ pub fn insertion_is_building(points: &[DVec3]) -> Result<(), String> {
 }
 
 /// Removing a point gives what building without it gives.
+///
+/// # Errors
+/// The point without which the two differ.
 pub fn removal_is_building(points: &[DVec3], removed: &[usize]) -> Result<(), String> {
     let Ok(mut shrunk) = Delaunay::new(points) else { return Ok(()) };
     let mut left: Vec<u32> = (0..points.len() as u32).collect();
@@ -62,6 +74,7 @@ pub fn removal_is_building(points: &[DVec3], removed: &[usize]) -> Result<(), St
 }
 
 /// The same partition with other names for its points, which keep their order.
+#[must_use]
 pub fn renamed(mut partition: Partition, names: &[u32]) -> Partition {
     let rename = |corner: &mut u32| *corner = names[*corner as usize];
     match &mut partition {
