@@ -138,7 +138,8 @@ pub fn accumulate(
 ///
 /// Rings that do not meet are as exact as in [`accumulate`]: each cell's area is the exact one, rounded once. A single ring that does not meet
 /// itself gives what [`accumulate`] gives, bit for bit. Where rings cross, the height of the crossing is rounded to `f64`, and the areas of
-/// the cells there are off by about the square of that rounding.
+/// the cells there are off by about the square of that rounding. Rings nearer to one another than the rounding of their coordinates count as
+/// touching; then areas may be off by such a gap times its length.
 ///
 /// Cost beside that of [`accumulate`]: about n log n for the n edges of rings that do not meet, as maps have them. Rings that
 /// meet or cross themselves or others cost, for each of their corners, the edges at its height.

@@ -9,7 +9,8 @@
 //!    back, the edge is boundary.
 //!
 //! A crossing is rounded to `f64` only as the height at which one edge ends to be boundary and the other begins; the edges themselves stay
-//! what they are. So the area at a crossing is off by about the square of the last place of the coordinates.
+//! what they are. So the area at a crossing is off by about the square of the last place of the coordinates. Edges whose distance in the
+//! middle of a slab is within rounding may be sorted the wrong way round, which misplaces the area between them.
 
 use glam::DVec2;
 
