@@ -88,6 +88,8 @@ mod slabs;
 mod split;
 mod window;
 
+pub use glam;
+
 pub use accumulate::{Accumulator, Run, accumulate, accumulate_filled};
 pub use clip::{clip_ring, share_before_crossing};
 pub use code::{Code, CodeKind};

@@ -54,6 +54,8 @@ mod tile;
 mod visit;
 mod volume;
 
+pub use glam;
+
 pub use bounds::Bounds;
 pub use error::MicropointError;
 pub use face::{Face, GridRect, PlainOpacity, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity};

@@ -67,6 +67,8 @@ mod transport;
 mod tree;
 mod visible;
 
+pub use glam;
+
 pub use bake::{Baked, BakedTriangle, BakedVertex};
 pub use error::{PolygonError, RadiosityError};
 pub use factor::{FactorOptions, FormFactor, form_factor};

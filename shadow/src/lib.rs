@@ -37,6 +37,10 @@ mod scratch;
 mod screen;
 mod target;
 
+pub use glam;
+/// What the viewer sees, and what casts shadows.
+pub use pointillist_micropoint as micropoint;
+
 pub use counts::ShadowCounts;
 pub use error::ShadowError;
 pub use light::ShadowLight;

@@ -270,7 +270,9 @@ impl Refusal {
 
 fn way_out(error: DiceError) -> &'static str {
     match error {
-        DiceError::BadGrid { .. } => "give grid.cell two positive numbers and grid.origin two finite ones",
+        DiceError::BadGrid { .. } => {
+            "give grid.cell two numbers that are not 0 (negative ones count cells downward or to the left) and grid.origin two finite ones"
+        }
         DiceError::TooManyCells { .. } => {
             "use a larger grid.cell, or limit the answer with grid.size, the numbers of columns and rows"
         }

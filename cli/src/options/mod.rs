@@ -132,7 +132,7 @@ pub enum Command {
         long_about = "Cut polygons by a grid: JSON lines in, JSON lines out\n\n\
             Each line of the input is {\"polygon\":[[x,y],…],\"grid\":{\"origin\":[x0,y0],\"cell\":[dx,dy]}}, with unit \
             cells at the origin if there is no grid. \"size\":[nx,ny] in the grid limits the answer, and the time it \
-            takes, to cells 0 ≤ i < nx, 0 ≤ j < ny. Each line of the result is \
+            takes, to cells 0 ≤ i < nx, 0 ≤ j < ny; with a negative dy, j counts rows downward, as in a raster. Each line of the result is \
             {\"pieces\":[{\"cell\":[i,j],\"area\":a,\"vertices\":[[x,y],…]},…]}, or with --areas \
             {\"cells\":[{\"cell\":[i,j],\"area\":a,\"centroid\":[x,y]},…]}.",
         after_help = "Example:\n  \

@@ -27,7 +27,9 @@ pub(crate) fn all() -> Vec<Check> {
     transforms(&mut rows);
     at_the_eye(&mut rows);
     coincident(&mut rows);
+    shared_edges(&mut rows);
     not_finite(&mut rows);
+    out_of_range(&mut rows);
     not_finite_in_files(&mut rows);
     lights(&mut rows);
     rows
@@ -310,6 +312,9 @@ fn coincident(rows: &mut Vec<Check>) {
             Verdict::within("largest error of the sum", off, 1e-9)
         },
     );
+}
+
+fn shared_edges(rows: &mut Vec<Check>) {
     row(rows, "T-junctions: 7 squares beside 1, 11 below", "no crack, largest error ≤ 1e-9", || {
         let mut s = Sketch::new(dvec3(0.3, 0.2, 3.0), DVec3::ZERO, 40.0, 48);
         let white = s.emissive(Vec3::ONE, 1.0);
@@ -402,6 +407,9 @@ fn not_finite(rows: &mut Vec<Check>) {
             },
         );
     }
+}
+
+fn out_of_range(rows: &mut Vec<Check>) {
     row(rows, "eye = target", "a typed error", || {
         let mut scene = scenes::quads(16);
         scene.camera.target = scene.camera.eye;
