@@ -47,7 +47,7 @@ fn usage() -> String {
     for (name, what, _) in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n\n`surfel quick` and `shprobe quick` are trials that take a minute and write elsewhere. `shprobe --pictures DIR` draws, too.\n"
+    text + "  all         all of these\n\n`micropoint quick` prints a trial of a minute; `surfel quick` and `shprobe quick` take as long and write elsewhere. `shprobe --pictures DIR` draws, too.\n"
 }
 
 fn main() -> ExitCode {
@@ -65,6 +65,7 @@ fn main() -> ExitCode {
             return if ended { ExitCode::SUCCESS } else { ExitCode::FAILURE };
         }
         ["surfel", "quick"] => return code(surfel::run_quick()),
+        ["micropoint", "quick"] => return code(micropoint::run_quick()),
         ["shprobe", _, ..] => return code(shprobe::run_with(&out_dir, &arguments[1..])),
         [name] if name == "all" || STUDIES.iter().any(|s| s.0 == name) => name,
         _ => {
