@@ -53,16 +53,19 @@ impl Uvs {
     }
 }
 
+/// Most corners of what is seen of a micropoint: as many as `pointillist-dice`'s convex polygons hold.
+const MOST_CORNERS: usize = 16;
+
 /// Corners of a polygon in a texture, on the stack.
 struct Corners {
-    list: [TexelCorner; 16],
+    list: [TexelCorner; MOST_CORNERS],
     len: usize,
 }
 
 impl Default for Corners {
     fn default() -> Self {
         let zero = TexelCorner { grid: DVec2::ZERO, rational: 1.0, texel: DVec2::ZERO };
-        Self { list: [zero; 16], len: 0 }
+        Self { list: [zero; MOST_CORNERS], len: 0 }
     }
 }
 
