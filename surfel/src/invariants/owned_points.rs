@@ -9,11 +9,11 @@ use std::f64::consts::TAU;
 pub struct OwnedPoints {
     /// World.
     pub positions: Vec<DVec3>,
-    /// See [`Points::normals`].
+    /// See [`Points::with_normals`].
     pub normals: Option<Vec<Vec3>>,
-    /// See [`Points::colors`].
+    /// See [`Points::with_colors`].
     pub colors: Option<Vec<[f32; 3]>>,
-    /// See [`Points::radii`].
+    /// See [`Points::with_radii`].
     pub radii: Option<Vec<f32>>,
 }
 
