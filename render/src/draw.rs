@@ -8,7 +8,7 @@ use crate::canvas::Canvas;
 use crate::error::RenderError;
 use crate::frame::{Frame, LayerKind};
 use crate::lights::light_samples;
-use crate::monitor::Monitor;
+use crate::monitor::{Monitor, go_on};
 use crate::prepared::Prepared;
 use crate::shader::{Shader, Style};
 use crate::shading::ShaderScratch;
@@ -111,7 +111,7 @@ impl Prepared<'_> {
             totals.0 += tile.counts();
             totals.1 += scratch.take_counts();
             monitor.advance(1);
-            if monitor.is_cancelled() { Err(RenderError::Cancelled) } else { Ok(()) }
+            go_on(monitor)
         })?;
         let (tile_counts, shadow_counts) = *lock(&totals);
         record(monitor, &tile_counts, &shadow_counts);

@@ -1,5 +1,6 @@
 //! How a caller watches long work, and ends it.
 
+use crate::error::RenderError;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Watches work that takes long. Every method does nothing by default, and may be called from any thread.
@@ -17,7 +18,7 @@ pub trait Monitor: Sync {
         let _ = units;
     }
 
-    /// Whether to stop; asked after every tile. The work then ends with [`crate::RenderError::Cancelled`].
+    /// Whether to stop; asked between stages, before every position that is looked from, and after every tile. The work then ends with [`crate::RenderError::Cancelled`].
     fn is_cancelled(&self) -> bool {
         false
     }
@@ -49,6 +50,11 @@ pub trait Monitor: Sync {
 
 /// Watches nothing.
 impl Monitor for () {}
+
+/// Whether work is to go on.
+pub(crate) fn go_on(monitor: &dyn Monitor) -> Result<(), RenderError> {
+    if monitor.is_cancelled() { Err(RenderError::Cancelled) } else { Ok(()) }
+}
 
 /// [`Monitor::stage`] for work that gives something.
 pub(crate) fn stage<T>(monitor: &dyn Monitor, name: &'static str, work: impl FnOnce() -> T) -> T {

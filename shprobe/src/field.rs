@@ -102,11 +102,13 @@ impl Field {
         })
     }
 
-    /// Divides space anew, after positions have changed.
-    pub(crate) fn divide(&mut self) -> Result<(), ProbeError> {
-        check_positions(&self.positions)?;
-        self.partition = Delaunay::new(&self.positions)?.partition();
-        self.locator = Locator::new(&self.positions, &self.partition)?;
+    /// Divides space between other positions; if they are refused, the field is as it was.
+    pub(crate) fn divide(&mut self, positions: Vec<DVec3>) -> Result<(), ProbeError> {
+        check_positions(&positions)?;
+        let partition = Delaunay::new(&positions)?.partition();
+        self.locator = Locator::new(&positions, &partition)?;
+        self.partition = partition;
+        self.positions = positions;
         self.spacing = spacing(&self.positions, &self.partition);
         if self.distances.is_some() {
             self.near = Near::new(&self.positions, HELP * self.spacing);

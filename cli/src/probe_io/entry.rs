@@ -20,6 +20,9 @@ pub struct ProbeEntry {
     /// The share of sky, in the same basis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sky: Option<Vec<f64>>,
+    /// The share of all directions in which it sees the back of a surface.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub back: Option<f64>,
     /// Whether it lies inside of a wall, and lights nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buried: Option<bool>,

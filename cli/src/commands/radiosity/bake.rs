@@ -270,8 +270,7 @@ impl Bake<'_> {
         }
         let mut file = BakedFile::new(baked, &self.surfaces.faces);
         file.geometry = format!("{:016x}", fingerprint::of_geometry(&self.scene.mesh));
-        let Scene { materials, textures, lights, .. } = self.scene;
-        file.light = format!("{:016x}", fingerprint::of_sources(materials, textures, lights));
+        file.light = format!("{:016x}", fingerprint::of_sources(self.scene));
         file.patches = transport.patch_count();
         file.bound = solution.bound;
         let path = &options.output;
