@@ -24,7 +24,7 @@ const TILE_SIZE: u32 = 16;
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct DrawOptions {
-    /// The part of the picture; `None`, the default, is all of it. Parts outside of the picture do not exist.
+    /// The part of the picture, clipped to it; `None`, the default, is all of it.
     pub window: Option<PixelRect>,
     /// What to deliver beside colour and depth, in this order. Default: nothing.
     pub layers: Vec<LayerKind>,

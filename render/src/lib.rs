@@ -39,14 +39,14 @@
 //! * [`fingerprint`]: hashes by which unchanged pictures need not be drawn again.
 //!
 //! # Conventions
-//! Right-handed, +Y up, the camera looks along its −Z. Colours are linear and premultiplied; radiance, irradiance and intensity are in
-//! any one unit. Positions are `DVec3`; colours and unit normals are `Vec3`. Pixels are row by row from the top left corner.
+//! Right-handed, +Y up, the camera looks along its −Z. Colours are linear; R G B of a pixel is what is seen
+//! of surfaces and of the background, A the share that surfaces cover. Radiance, irradiance and intensity are in any one unit. Positions are `DVec3`; colours and unit normals are `Vec3`. Pixels are row by row from the top left corner.
 //!
 //! # Accuracy and cost
 //! Coverage, texture means and shadows are computed over the exact regions of pixels, not at samples; `pointillist-micropoint` and
 //! `pointillist-shadow` say how exactly. Each visible micropoint is shaded once, with the means of its maps, so what varies nonlinearly
 //! within one cell (a highlight sharper than that, a normal map under a lamp) is approximated. Memory is that of the scene, its
-//! textures as sums (8 bytes per channel and texel), the frame, and one tile per thread.
+//! textures as sums (about 7 bytes per channel and texel), the frame, and one tile per thread.
 //!
 //! Figures are of programs built with `lto = "thin"` and `codegen-units = 1`, which inline the kernels of the crates below; the
 //! profile of your own workspace decides.

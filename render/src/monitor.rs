@@ -8,7 +8,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// This crate has no clock. A caller who wants times measures them: stages that run once are passed to [`Monitor::stage`];
 /// stages that alternate on a thread are told apart by [`Monitor::start_lap`] and [`Monitor::lap`].
 pub trait Monitor: Sync {
-    /// Work of so many units (tiles of a picture) begins.
+    /// Work of so many units begins: tiles of a picture ([`Prepared::draw`](crate::Prepared::draw)), positions and rounds of a bake
+    /// ([`bake_probes`](crate::bake_probes), [`choose_places`](crate::choose_places)). [`look_all`](crate::look_all) and
+    /// [`fingerprints`](crate::fingerprints()) leave the call to their caller and only advance.
     fn begin(&self, units: u64) {
         let _ = units;
     }
@@ -127,7 +129,7 @@ impl Monitor for Watch<'_> {
     }
 }
 
-/// Hides the progress of a part from the monitor of the whole.
+/// Forwards everything but progress: for a part of work whose units the caller counts.
 pub(crate) struct Part<'a>(pub(crate) &'a dyn Monitor);
 
 impl Monitor for Part<'_> {

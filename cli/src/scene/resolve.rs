@@ -134,7 +134,7 @@ fn ambient(
                 let error = description.document.error(file.span, message).with_help(help);
                 return Err(InputError { mismatched: true, ..error });
             }
-            let sources = fingerprint::of_sources(&scene);
+            let sources = fingerprint::of_sources(scene);
             if baked.light != format!("{sources:016x}") {
                 warnings.push(format!(
                     "`{name}` was baked with other lights or materials; bake again to see them"

@@ -15,7 +15,7 @@ pub struct Details {
     pub shininess_map: Option<Map>,
     /// Multiplies the roughness.
     pub roughness_map: Option<Map>,
-    /// Multiplies `metallic`.
+    /// Multiplies `metallic`; ignored without it.
     pub metallic_map: Option<Map>,
     /// Multiplies the emission.
     pub emission_map: Option<Map>,
