@@ -1,4 +1,7 @@
 //! The picture.
+//!
+//! `pointillist-surfel` has a frame of the same form in its own `frame.rs`: both keep their layers private and fill them in different ways
+//! (strips here, tiles there), so a shared type would have to let everybody write to its layers, to save five one-line functions.
 
 /// A drawn frame: layers of `width · height` entries, row by row from the top left pixel.
 ///

@@ -81,8 +81,8 @@ mod spacing;
 pub use cloud::Cloud;
 pub use error::IbprError;
 pub use frame::{Frame, FrameCounts};
-pub use options::{Culling, EyeDome, Light, Normals, Options, Passes, Scale, Translucency, Weighting};
-pub use pointillist_view::{PixelRect, Projected, Projection, Ray, View, ViewError};
+pub use options::{Culling, EyeDome, Normals, Options, Passes, Scale, Translucency, Weighting};
+pub use pointillist_view::{Light, PixelRect, Projected, Projection, Ray, View, ViewError};
 pub use render::Renderer;
 pub use scan::Scan;
 

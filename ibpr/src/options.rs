@@ -1,8 +1,9 @@
 //! What a frame is made with.
 
 use crate::error::IbprError;
-use crate::scan::{Scan, unit};
-use glam::{DVec3, Vec3};
+use crate::scan::Scan;
+use glam::Vec3;
+use pointillist_view::Light;
 
 /// Size of a buffer pixel in picture pixels (the paper's S).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,16 +105,6 @@ impl Translucency {
         self.threshold = threshold;
         self
     }
-}
-
-/// Where light comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Light {
-    /// From the eye.
-    Eye,
-    /// From far away: direction towards the light, world space.
-    Towards(DVec3),
 }
 
 /// Depth shading that needs no normals: pixels behind their surroundings darken (Boucheny 2009).
@@ -333,10 +324,8 @@ impl Options {
             check("radius", e.radius as f32, (1..=64).contains(&e.radius), "it must be 1 to 64")?;
         }
         check_base(self.base)?;
-        if let Light::Towards(d) = self.light
-            && unit(d).is_none()
-        {
-            check("light", d.x as f32, false, "the direction must be finite and not zero")?;
+        if let Light::Towards(d) = self.light {
+            check("light", d.x as f32, self.light.is_valid(), "the direction must be finite and not zero")?;
         }
         Ok(())
     }

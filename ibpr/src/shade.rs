@@ -1,11 +1,12 @@
 //! From surfaces to colors.
 
 use crate::buffer_map::BufferMap;
-use crate::options::{Light, Options};
+use crate::options::Options;
 use crate::pixels::{Fragment, Nearest};
 use crate::raster::Paint;
 use crate::scan::unit;
 use glam::{DVec3, Vec3};
+use pointillist_view::Light;
 
 /// Shading and output of a frame: everything in the camera's frame (right, up, back).
 pub(crate) struct Shader {

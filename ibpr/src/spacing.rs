@@ -1,7 +1,8 @@
 //! How far points lie from their neighbours.
 
-use crate::order::{BITS, Lattice, Ordered};
+use crate::order::{Lattice, Ordered};
 use crate::scan::Scan;
+use pointillist_view::MORTON_BITS;
 
 /// Points whose nearest neighbour is looked for.
 const SAMPLE: usize = 1024;
@@ -68,8 +69,8 @@ pub(crate) fn of_all(ordered: &[Ordered], lattice: &Lattice, spacing: f64, point
     if !(spacing > 0.0 && lattice.extent > spacing) {
         return spacing;
     }
-    let level = (lattice.extent / (2.5 * spacing)).log2().round().clamp(1.0, f64::from(BITS)) as u32;
-    let shift = 3 * (BITS - level);
+    let level = (lattice.extent / (2.5 * spacing)).log2().round().clamp(1.0, f64::from(MORTON_BITS)) as u32;
+    let shift = 3 * (MORTON_BITS - level);
     let mut cells = vec![];
     for o in ordered {
         let start = cells.len();

@@ -5,6 +5,7 @@ use crate::closed::{OPEN, Solid, find_solids, solid_angle};
 use crate::error::MicropointError;
 use crate::lens::{Lens, LensKind};
 use glam::DVec3;
+use pointillist_view::morton_code;
 
 /// How a surface lets light through; the rest of a material is the shader's business.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -443,6 +444,9 @@ fn check(
     Ok(())
 }
 
+/// Last cell per axis of the lattice that orders triangles: codes of 3 · 10 bits leave 32 for the number of the triangle.
+const LAST_CELL: u32 = 1023;
+
 /// Triangle numbers along a Morton curve of their centres.
 fn morton_order(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<u32> {
     let mut bounds = Bounds::EMPTY;
@@ -452,24 +456,15 @@ fn morton_order(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<u32> {
     }
     // One scale for all axes keeps clusters compact in flat scenes.
     let size = (bounds.high - bounds.low).max_element();
-    let scale = if size > 0.0 { 1023.0 / size } else { 0.0 };
+    let scale = if size > 0.0 { f64::from(LAST_CELL) / size } else { 0.0 };
     let key = |(i, t): (usize, &[u32; 3])| {
         let q = (centre(t) - bounds.low) * scale;
-        let code = spread(q.x as u32) | spread(q.y as u32) << 1 | spread(q.z as u32) << 2;
-        u64::from(code) << 32 | i as u64
+        let cell = q.to_array().map(|c| (c as u32).min(LAST_CELL));
+        morton_code(cell) << 32 | i as u64
     };
     let mut keys: Vec<u64> = triangles.iter().enumerate().map(key).collect();
     keys.sort_unstable();
     keys.into_iter().map(|k| k as u32).collect()
-}
-
-/// Spreads ten bits so that two zero bits follow each.
-fn spread(v: u32) -> u32 {
-    let v = v.min(1023);
-    let v = (v | v << 16) & 0x0300_00ff;
-    let v = (v | v << 8) & 0x0300_f00f;
-    let v = (v | v << 4) & 0x030c_30c3;
-    (v | v << 2) & 0x0924_9249
 }
 
 /// Numbers the vertices of one cluster from 0, in order of first use.

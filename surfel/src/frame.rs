@@ -1,4 +1,4 @@
-//! The picture.
+//! The picture, in tiles. `ibpr/src/frame.rs` says why `pointillist-ibpr` has one of its own.
 
 use crate::grid::{HEIGHT, TileRect, WIDTH};
 

@@ -4,9 +4,7 @@
 //! in the cloud are exact before they become `f32`.
 
 use glam::{DVec3, Vec3};
-
-/// Bits of a cell number that go into a Morton code: three times this fits into 64.
-pub(crate) const CODE_BITS: u32 = 21;
+use pointillist_view::{MORTON_BITS, morton_code};
 
 /// Cells per side of the cube.
 const CELLS: f64 = 4_294_967_296.0;
@@ -67,18 +65,7 @@ pub(crate) fn offset(from: u32, to: u32) -> f32 {
     to.wrapping_sub(from) as i32 as f32 * (1.0 / CELLS as f32)
 }
 
-/// Cells in an order in which those of a cube of the octree follow one another.
+/// The Morton code of a cell, from the highest bits of its numbers: the cells of a node of the octree follow one another.
 pub(crate) fn morton(cell: [u32; 3]) -> u64 {
-    let [x, y, z] = cell.map(|c| spread(u64::from(c >> (32 - CODE_BITS))));
-    x | y << 1 | z << 2
-}
-
-/// Puts two zeros between the bits of a number of [`CODE_BITS`] bits.
-fn spread(x: u64) -> u64 {
-    let mut x = x & 0x1f_ffff;
-    x = (x | x << 32) & 0x1f_0000_0000_ffff;
-    x = (x | x << 16) & 0x1f_0000_ff00_00ff;
-    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-    (x | x << 2) & 0x1249_2492_4924_9249
+    morton_code(cell.map(|c| c >> (32 - MORTON_BITS)))
 }

@@ -4,10 +4,11 @@
 //! area is the sum, as the prefiltered textures of \[1\] are, so that a coarse level is not a noisy one.
 
 use crate::attributes::Attributes;
-use crate::lattice::{CODE_BITS, between, morton, moved};
+use crate::lattice::{between, morton, moved};
 use crate::octree::Cube;
 use glam::Vec3;
 use pointillist_parallel as parallel;
+use pointillist_view::MORTON_BITS;
 
 /// A cube of the octree is divided into 2^DIVISIONS cells a side; each cell in which there is surface gets a link for every
 /// side that the surface has there.
@@ -71,7 +72,7 @@ fn links_of(cube: &Cube, cubes: &[Cube], links: &[Vec<Link>], points: &Attribute
             finer.extend_from_slice(&links[child]);
         }
     }
-    let below = CODE_BITS.saturating_sub(cube.level + DIVISIONS);
+    let below = MORTON_BITS.saturating_sub(cube.level + DIVISIONS);
     let cell = |link: &Link| morton(points.cell(link.point as usize)) >> (3 * below);
     let mut made = vec![];
     for of_cell in finer.chunk_by_mut(|a, b| cell(a) == cell(b)) {

@@ -3,7 +3,8 @@
 use crate::error::SurfelError;
 use crate::focus::Focus;
 use crate::points::Points;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
+use pointillist_view::Light;
 
 /// How discs become a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -13,17 +14,6 @@ pub enum Procedure {
     Blended,
     /// The paper's: a z-buffer of discs, links in the pixels of their centres, a Gaussian filter over holes.
     Paper,
-}
-
-/// Where light comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub enum Light {
-    /// From the eye.
-    #[default]
-    Eye,
-    /// From far away: direction towards the light, world space.
-    Towards(DVec3),
 }
 
 /// How a frame is drawn.
@@ -135,10 +125,8 @@ impl Options {
         for c in self.base.to_array() {
             check("base", c, (0.0..=Points::BRIGHTEST).contains(&c), "it must be 0 to 1e30")?;
         }
-        if let Light::Towards(d) = self.light
-            && !(d.is_finite() && d != DVec3::ZERO)
-        {
-            check("light", d.x as f32, false, "the direction must be finite and not zero")?;
+        if let Light::Towards(d) = self.light {
+            check("light", d.x as f32, self.light.is_valid(), "the direction must be finite and not zero")?;
         }
         Ok(())
     }

@@ -1,9 +1,10 @@
 //! Light on surfaces, and how much of a pixel they cover.
 
 use crate::camera::{Camera, turned};
-use crate::options::{Light, Options};
+use crate::options::Options;
 use crate::vector::{Real, Vector};
 use glam::Vec3;
+use pointillist_view::Light;
 use pulp::Simd;
 
 /// Light that passes all layers and is less than this is not followed: half a step of 8 bits.

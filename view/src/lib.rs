@@ -53,11 +53,15 @@ mod axes;
 mod error;
 #[cfg(feature = "invariants")]
 pub mod invariants;
+mod light;
+mod morton;
 mod pixel_rect;
 mod projection;
 mod view;
 
 pub use error::ViewError;
+pub use light::Light;
+pub use morton::{MORTON_BITS, morton_code};
 pub use pixel_rect::PixelRect;
 pub use projection::Projection;
 pub use view::{Projected, Ray, View};
