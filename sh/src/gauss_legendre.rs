@@ -1,4 +1,8 @@
 //! Gauss–Legendre quadrature.
+//!
+//! `radiosity/src/kernel/gauss.rs` has rules of its own, on [0, 1] and kept by order: the two crates have no crate below both that is about
+//! numbers, and twenty lines do not pay for one. The crate `gauss-quad` brings `nalgebra`, and 272 of the 300 weights of its rules of up
+//! to 24 nodes differ from these in the last bits.
 
 use std::f64::consts::PI;
 
