@@ -32,8 +32,8 @@
 //! hull. Ten thousand moving objects take 0.6 ms on two threads, 1.7 ms with distances.
 //!
 //! # Features
-//! `rayon` (default) uses all cores; it never changes a result. Facts for property tests and fuzzing are in [`sh`] and [`delaunay`], with
-//! the feature `invariants` of those crates.
+//! `rayon` (default) uses all cores; it never changes a result. `invariants`: the module of that name, facts for property tests and fuzzing,
+//! also of crates that build on this one; those about cells and harmonics are in [`delaunay`] and [`sh`], with their feature of that name.
 //!
 //! Builds for `wasm32-unknown-unknown` without default features. Cells and [`place::grid`], [`place::random`] and [`place::spread`] are the
 //! same to the bit there; last bits of light, and with them ties of [`place::adaptive`], may differ, because `sh` uses sines and powers of
@@ -53,6 +53,8 @@ mod distance;
 mod edit;
 mod error;
 mod field;
+#[cfg(feature = "invariants")]
+pub mod invariants;
 mod octahedron;
 pub mod place;
 mod sight;
