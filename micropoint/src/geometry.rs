@@ -33,6 +33,15 @@ impl Surface {
     }
 }
 
+/// Where a triangle is in a [`Geometry`], which sorts triangles into clusters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClusterTriangle {
+    /// Number of the cluster.
+    pub cluster: u32,
+    /// Position of the triangle in the cluster.
+    pub index: u32,
+}
+
 /// A prepared triangle; its corners index the vertices of its cluster.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle {
@@ -251,12 +260,15 @@ impl Geometry {
         (&c.bounds, vertices, triangles)
     }
 
-    /// Corners of a prepared triangle in the world; `cluster` and `index` as visited.
+    /// Corners of a prepared triangle in the world.
+    ///
+    /// # Panics
+    /// If `triangle` is not that of a face of this geometry.
     #[must_use]
     #[inline]
-    pub fn corners(&self, cluster: u32, index: u32) -> [DVec3; 3] {
-        let (_, vertices, triangles) = self.cluster(cluster);
-        triangles[index as usize].corners.map(|c| vertices[usize::from(c)])
+    pub fn corners(&self, triangle: ClusterTriangle) -> [DVec3; 3] {
+        let (_, vertices, triangles) = self.cluster(triangle.cluster);
+        triangles[triangle.index as usize].corners.map(|c| vertices[usize::from(c)])
     }
 
     /// Whether all of a cluster is hidden from a viewer because it is the side of a solid that the viewer
@@ -290,7 +302,7 @@ impl Geometry {
         let open = |i: usize, s: &Solid| match lens.kind {
             LensKind::Orthographic => {
                 let bounds = Bounds { low: s.low, high: s.high };
-                bounds.extent_along(lens.origin, lens.forward).0 < 0.0
+                bounds.extent_along(lens.origin, lens.forward).least < 0.0
             }
             LensKind::Perspective => {
                 let margin = 1e-9 * (s.high - s.low).length();
