@@ -32,13 +32,13 @@ impl<T: Channel> Sh<T> {
         Ok(Self { coefficients, order })
     }
 
-    /// From coefficients that are as many as an order needs, and finite.
+    /// Takes coefficients that the caller has checked: their number is that of an order, and they are finite.
     pub(crate) fn from_parts(coefficients: Vec<T>, order: usize) -> Self {
         debug_assert_eq!(coefficients.len(), coefficient_count(order), "one coefficient per function");
         Self { coefficients, order }
     }
 
-    /// 0 in all directions.
+    /// The function that is 0 in all directions.
     ///
     /// # Errors
     /// `OrderTooHigh`.
@@ -47,7 +47,7 @@ impl<T: Channel> Sh<T> {
         Ok(Self::from_parts(vec![T::default(); coefficient_count(order)], order))
     }
 
-    /// The same in all directions.
+    /// The function that has this value in all directions.
     ///
     /// # Errors
     /// `OrderTooHigh`, `CoefficientNotFinite`.
@@ -196,7 +196,7 @@ impl<T: Channel> Sh<T> {
         Ok(Self::from_parts(coefficients, order))
     }
 
-    /// Convolved with a lobe about the direction asked for: each band times its factor.
+    /// The convolution with a lobe: each band is multiplied by the lobe's factor.
     #[must_use]
     pub fn convolved(&self, lobe: &Lobe) -> Self {
         self.map_bands(|l| lobe.bands()[l])

@@ -1,4 +1,4 @@
-//! The brightest light apart from the rest.
+//! Splits radiance into one directional light and a rest.
 
 use crate::ShError;
 use crate::basis::{checked_order, coefficient_count};
@@ -43,9 +43,9 @@ impl DominantLight {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Split {
-    /// The light, if there is reason for one.
+    /// The directional light; none if neither sharp features nor negative irradiance ask for one.
     pub light: Option<DominantLight>,
-    /// What is left, deringed where that was still needed.
+    /// Radiance without the light; deringed if its irradiance was still negative somewhere.
     pub rest: Sh,
 }
 
@@ -109,11 +109,13 @@ impl Sh {
         let least = |light: &DominantLight, share: f64| without(light, share).1.least_irradiance();
         let sharp = self.sharp_light(order);
         let is_bright = rest.least_irradiance() >= 0.0;
-        // 1. What is sharp, or as much of it as there is light for.
+        // 1. Take out the light that higher bands show to be sharp, or the largest share of it that leaves irradiance
+        //    non-negative.
         let (light, share) = match sharp {
             Some(light) if least(&light, 1.0) >= 0.0 => (light, 1.0),
             Some(light) if is_bright => (light, most_share(|share| least(&light, share))),
-            // 2. Irradiance is negative: as little light as helps.
+            // 2. Irradiance is negative somewhere: take out the least light that makes it non-negative, or as much as
+            //    raises its minimum most.
             _ if !is_bright => match rest.light_at(sharp.map(|light| light.direction)) {
                 Some(light) => (light, least_share(|share| least(&light, share))),
                 None => return Ok(Split { light: None, rest: rest.deringed() }),
@@ -165,7 +167,7 @@ fn least_share(f: impl Fn(f64) -> f64) -> f64 {
     if f(0.0) >= 0.0 {
         return 0.0;
     }
-    // 1. Thirds, until a place that is not negative is found: the largest value lies in what is kept.
+    // 1. Ternary search for a point that is not negative: the maximum lies in the interval that is kept.
     let (mut low, mut high) = (0.0, 1.0);
     let mut found = None;
     for _ in 0..SEARCH_STEPS {
@@ -178,7 +180,7 @@ fn least_share(f: impl Fn(f64) -> f64) -> f64 {
         (low, high) = if fa < fb { (a, high) } else { (low, b) };
     }
     let Some(mut enough) = found else { return 0.5 * (low + high) };
-    // 2. Halves, to the least.
+    // 2. Bisection for the least such point.
     let mut too_little = 0.0;
     for _ in 0..SEARCH_STEPS {
         let middle = 0.5 * (too_little + enough);

@@ -21,10 +21,10 @@ use crate::{
 use glam::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// All rules.
+/// All weighting rules.
 pub const WEIGHTS: [Weights; 3] = [Weights::Gregory, Weights::Exact, Weights::Paper];
 
-/// What rounding may leave, relative to the largest number involved.
+/// Bound on rounding errors, relative to the largest number involved.
 const ROUNDING: f64 = 1e-12;
 
 fn check(holds: bool, message: impl FnOnce() -> String) -> Result<(), String> {
@@ -89,7 +89,7 @@ pub fn rotation_turns(sh: &Sh, rotation: DQuat, direction: DVec3) -> Result<(), 
     check(error <= ROUNDING, || format!("{there} is not {back}, error {error:e}"))
 }
 
-/// To turn twice is to turn by the product.
+/// Two rotations in a row equal the rotation by their product.
 ///
 /// # Errors
 /// The largest difference.
@@ -116,7 +116,7 @@ pub fn solid_angles_fill_the_sphere(size: usize) -> Result<(), String> {
 /// The rule, and what it gives.
 pub fn constant_sky_gives_pi(radiance: DVec3, size: usize, normal: DVec3) -> Result<(), String> {
     let Some(normal) = normal.try_normalize() else { return Ok(()) };
-    // As an image can hold it.
+    // Rounded to `f32`, as an image stores it.
     let radiance = radiance.as_vec3().as_dvec3();
     let cube = CubeMap::from_fn(size, |_| radiance);
     let panorama = Panorama::from_fn(2 * size, size, |_| radiance);
@@ -240,7 +240,7 @@ pub fn product_multiplies(left: &Sh, right: &Sh<f64>, direction: DVec3) -> Resul
     check(error <= 100.0 * ROUNDING, || format!("error {error:e}"))
 }
 
-/// A way to a point of a face leads back there, also across edges: then to the same point in space.
+/// The vector to a point of a face leads back to that point; across an edge, to the same point in space.
 ///
 /// # Errors
 /// Where it leads.

@@ -16,7 +16,7 @@ pub struct Rotation {
 }
 
 impl Rotation {
-    /// Turns what is seen along d to where R·d points, for bands 0 to `order`.
+    /// The rotation R for bands 0 to `order`: what was seen along d is seen along R·d afterwards.
     ///
     /// # Errors
     /// `OrderTooHigh`; `NotARotation` if the columns are not orthonormal within 1e-6, or mirror. Errors that small are kept:
@@ -25,7 +25,7 @@ impl Rotation {
         checked_order(order)?;
         let rest = rotation.transpose() * rotation - DMat3::IDENTITY;
         let error = rest.to_cols_array().iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-        // A NaN is not below it.
+        // Written so that NaN, which compares false, is refused.
         if !(rotation.is_finite() && error < ROTATION_TOLERANCE && rotation.determinant() > 0.0) {
             return Err(ShError::NotARotation);
         }

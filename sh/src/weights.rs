@@ -60,7 +60,7 @@ impl Weights {
         let half = size.div_ceil(2);
         let mut weights = vec![0.0; half * half];
         let mut sum = 0.0;
-        // How often a row or column is there: the middle one of an odd number once.
+        // Number of rows or columns that have these weights: one for the middle one of an odd number, otherwise two.
         let times = |i: usize| if 2 * i + 1 == size { 1.0 } else { 2.0 };
         for y in 0..half {
             // A texel and the one across the diagonal weigh the same: an eighth of the face is computed.
