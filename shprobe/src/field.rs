@@ -21,7 +21,7 @@ pub struct Field {
     /// The same up to band 2, for objects.
     pub(crate) lights: Vec<Irradiance>,
     pub(crate) distances: Option<Vec<DistanceMap>>,
-    /// Where probes are that help out, once it is known what they see.
+    /// Positions of probes by box, once their distances are known.
     near: Near,
     /// Mean distance between neighbouring probes.
     spacing: f64,
@@ -49,7 +49,7 @@ impl LitObject {
     }
 }
 
-/// How far away probes may be that help out where those of a cell see nothing, over the mean spacing of probes.
+/// Largest distance of probes that light a position where those of its cell see nothing, in mean spacings of probes.
 const HELP: f64 = 2.0;
 
 /// Default distance, over the mean spacing of probes, by which positions on a surface are lifted off it.
@@ -154,7 +154,7 @@ impl Field {
         &self.partition
     }
 
-    /// Finds cells, without regard to what is seen.
+    /// Finds the cell of a position. It does not take visibility into account.
     #[must_use]
     pub const fn locator(&self) -> &Locator {
         &self.locator
@@ -172,7 +172,7 @@ impl Field {
         self.lights.len()
     }
 
-    /// From which probes a position takes how much; continuous in the position.
+    /// The probes that light a position with their shares, which are above 0 and sum to 1; continuous in the position.
     ///
     /// # Errors
     /// [`ProbeError::QueryNotFinite`].
@@ -270,7 +270,7 @@ pub(crate) fn expect_count(probes: usize, given: usize) -> Result<(), ProbeError
     if probes == given { Ok(()) } else { Err(ProbeError::CountMismatch { probes, given }) }
 }
 
-/// Refuses positions whose distances have no squares. What is not finite is left to the triangulation.
+/// Refuses positions whose squared distances would overflow. Coordinates that are not finite are refused by the triangulation.
 fn check_positions(positions: &[DVec3]) -> Result<(), ProbeError> {
     let is_far = |p: &DVec3| p.is_finite() && p.abs().max_element() > Field::FARTHEST;
     match positions.iter().position(is_far) {
@@ -301,7 +301,7 @@ pub(crate) fn check_radiance(index: usize, sh: &Sh, expected: usize) -> Result<(
     if sh.coefficients().iter().all(is_good) { Ok(()) } else { Err(ProbeError::BadRadiance { index }) }
 }
 
-/// How far away a probe may be and still help.
+/// The distance, world units, up to which a probe outside of the cell can light a position.
 pub(crate) fn help(positions: &[DVec3], partition: &Partition) -> f64 {
     HELP * spacing(positions, partition)
 }

@@ -1,4 +1,4 @@
-//! Light between probes: from what light arrives at some points in space, as spherical harmonics, that at any other.
+//! Light between probes: the light that arrives at some points in space, as spherical harmonics, is interpolated at any other.
 //!
 //! ```
 //! use glam::{DVec3, Vec3, dvec3};

@@ -1,9 +1,9 @@
-//! Takes out probes that are missed least.
+//! Removes the probes whose loss costs least.
 
 use super::trial::{Bench, Outcome};
 use crate::{ProbeError, parallel};
 
-/// What is left, and how the error grew.
+/// The probes that are left, and the error after each round.
 pub(super) struct Thinned {
     pub(super) chosen: Vec<u32>,
     pub(super) outcome: Outcome,
@@ -18,7 +18,7 @@ pub(super) fn thin(bench: &Bench<'_>, limit: usize, enough: f64) -> Result<Thinn
     let mut chosen: Vec<u32> = (0..bench.count() as u32).collect();
     let mut outcome = bench.outcome(&chosen)?;
     let mut errors = vec![(chosen.len(), outcome.error2.sqrt())];
-    // Rounds get smaller where a large one went too far.
+    // Rounds become smaller after one that went beyond the error allowed.
     let mut most = usize::MAX;
     while chosen.len() > 1 {
         let wanted = chosen.len().saturating_sub(limit);
@@ -63,11 +63,12 @@ fn cheapest(
             }
         }
     }
-    // Where a probe was, cells between its neighbours are new, and they are Delaunay cells of the neighbours alone, too.
+    // The cells that appear where a probe was lie between its neighbours, and are Delaunay cells of the neighbours
+    // alone.
     let cost = |probe: usize| -> Result<f64, ProbeError> {
         let around: Vec<u32> = graph.around(probe as u32).iter().map(|&n| chosen[n as usize]).collect();
         if around.is_empty() {
-            // It shares its place with another, which lights what it did.
+            // It coincides with another probe, which takes over its positions at no cost.
             return Ok(0.0);
         }
         let before: f64 = lit_by[probe].iter().map(|&i| outcome.parts[i as usize]).sum();
