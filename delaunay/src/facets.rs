@@ -46,7 +46,7 @@ impl Facet {
         self.side
     }
 
-    /// Its corners in rising order, the unused ones last: the same for both cells that share it.
+    /// Its corners in rising order, unused entries last: the same for both cells that share it.
     pub(crate) fn key(&self) -> [u32; 3] {
         let mut key = [u32::MAX; 3];
         key[..self.count].copy_from_slice(self.corners());

@@ -78,8 +78,8 @@ impl Graph {
         self.first.len() - 1
     }
 
-    /// The vertices that share an edge with this one, rising; none of a point that is no vertex: one removed, or one that another in
-    /// the same place stands for.
+    /// The vertices that share an edge with this one, rising. Empty for a point that is no vertex: one that was
+    /// removed, or one that coincides with a vertex.
     #[must_use]
     pub fn around(&self, vertex: u32) -> &[u32] {
         let v = vertex as usize;

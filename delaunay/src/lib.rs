@@ -32,15 +32,17 @@
 //! * [`NearestVertex`]: the point nearest to a position.
 //!
 //! # Accuracy
-//! Every decision of [`Delaunay`], [`NearestVertex`] and [`Partition::verify`] is exact, for all finite coordinates. What is computed with are the
-//! coordinates times a power of two, counted from the least where that does not round. A determinant in `f64` decides where it
-//! exceeds its error; where not, one of
+//! Every decision of [`Delaunay`], [`NearestVertex`] and [`Partition::verify`] is exact, for all finite coordinates.
+//! Coordinates are multiplied by a power of two and, where that does not round, counted from the least of their axis. A
+//! determinant in `f64` decides where it exceeds its error bound. Elsewhere,
 //!
-//! * nothing, where differences are integers up to 659 after scaling, as those of most grids: `f64` does not round there;
-//! * `i128`, for integers up to about 2²⁴;
-//! * differences cut to integers of 61 bits, where that is exact or what is cut off cannot change the sign; and Shewchuk's
-//!   expansions (\[5\]) for the rest, while the lowest bit of all coordinates is worth at least 2⁻²⁰⁰ of the largest coordinate;
-//! * integers of any size, for all else: 1e-300 beside 1, or 1e300 beside 1e-300.
+//! * differences that are integers up to 659 after scaling, as those of most grids, need nothing more: `f64` does not
+//!   round there;
+//! * integers up to about 2²⁴ are decided in `i128`;
+//! * other differences are cut to integers of 61 bits, where that is exact or what is cut off cannot change the sign,
+//!   and the rest goes to Shewchuk's expansions (\[5\]), while the lowest bit of all coordinates is worth at least
+//!   2⁻²⁰⁰ of the largest coordinate;
+//! * all else, such as 1e-300 beside 1 or 1e300 beside 1e-300, is decided in integers of any size.
 //!
 //! Points on a common sphere are divided by a symbolic perturbation (\[3\]): the later of two points in lexicographic order counts as
 //! lifted infinitely more. So there is one result for every set of points, it has no flat cell, and order, threads and history do not
@@ -48,7 +50,10 @@
 //!
 //! Points in a plane get the exact Delaunay triangles of that plane, also of a tilted one. Points on a line are ordered along it.
 //!
-//! [`Locator`] computes in `f64`: weights sum to 1 within 1e-14 and reproduce linear functions up to rounding. [`circumcentre`] states its bound.
+//! [`Locator`] computes in `f64`: weights sum to 1 within 1e-14 and reproduce linear functions up to rounding. Known to
+//! be weak: where a cell is flat up to rounding, as between points of a tilted plane with rounded coordinates, its
+//! barycentric coordinates have no correct digits. Weights there still lie in [0, 1] and sum to 1, but may be those of
+//! another position in the cell. [`circumcentre`] states its bound.
 //!
 //! # Cost
 //! About linear for points spread evenly in space, and for grids; in the worst case, points on a curve, the number of tetrahedra is quadratic.

@@ -25,7 +25,7 @@ use std::collections::BTreeSet;
 pub struct NearestVertex {
     points: Vec<DVec3>,
     graph: Graph,
-    /// About the cube root of the number of vertices: a walk starts from the nearest of them.
+    /// Vertices, about the cube root of their number; a walk starts from the nearest of these.
     starts: Vec<u32>,
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Set in a neighbour's number: it is a facet of the hull, not a cell.
+/// Bit that marks a neighbour's number as that of a facet of the hull.
 pub(crate) const HULL: u32 = 1 << 31;
 
 /// A tetrahedron, or a triangle or segment, whose unused corners have weight 0 everywhere.

@@ -73,7 +73,7 @@ pub(crate) fn to_f64(numerator: &BigInt, denominator: &BigInt) -> f64 {
     let dropped = q.bits().saturating_sub(64);
     let first = (&q >> dropped).iter_u64_digits().next().unwrap_or(0);
     let exponent = dropped as i64 - lift as i64 - 1074;
-    // In two steps, since the power alone may be no number.
+    // In two steps, since the power alone may overflow.
     let half = exponent.clamp(-2000, 2000) as i32 / 2;
     let size = first as f64 * 2.0_f64.powi(half) * 2.0_f64.powi(exponent.clamp(-2000, 2000) as i32 - half);
     if numerator.sign() == denominator.sign() { size } else { -size }

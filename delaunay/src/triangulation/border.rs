@@ -50,7 +50,8 @@ fn reaches(mesh: &Mesh, sites: &Sites, id: CellId, lo: DVec3, hi: DVec3) -> bool
         return sphere_reaches(corners.map(|v| sites.position(v)), lo, hi);
     }
     let (beyond, error) = sites.reach_beyond([a, b, c], lo, hi);
-    // Of integers without error, a box that touches the plane is told from one that does not: there the tetrahedron behind decides.
+    // With exact integers a box that touches the plane is told from one that does not; then the tetrahedron behind
+    // decides.
     if beyond == 0.0 && error == 0.0 {
         return reaches(mesh, sites, links[3].cell(), lo, hi);
     }

@@ -5,7 +5,7 @@ use super::cell::{Cell, CellId, FACE, Link, Vertex, replaced};
 /// The table of edges has at most 2 to this power rows and columns, 4 MiB; edges of larger rims are sorted.
 const MAX_SHIFT: u32 = 10;
 
-/// A cell has so many faces: room for them is made before it is looked at.
+/// Faces of a cell: memory for them is reserved before the cell is visited.
 const FACES: usize = 4;
 
 /// A face of the rim, and the cell to be that joins it to the new vertex.

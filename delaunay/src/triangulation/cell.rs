@@ -80,7 +80,7 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    /// In the place of a cell that is no more. A live one never has its first corner at infinity.
+    /// Marks a freed cell. A live one never has its first corner at infinity.
     pub(super) const DEAD: Self = Self { corners: [Vertex::INFINITE; 4], links: [Link(0); 4] };
 
     /// Whether it lies beyond the hull.
@@ -89,7 +89,7 @@ impl Cell {
         self.corners[3].0 == Vertex::INFINITE.0
     }
 
-    /// Whether it is one, ghost or not.
+    /// Whether it is live: a tetrahedron or a ghost.
     #[inline]
     pub(super) const fn is_live(&self) -> bool {
         self.corners[0].0 != Vertex::INFINITE.0

@@ -1,11 +1,14 @@
-//! Meshes built in halves at once, then joined (after Funke and Sanders).
+//! Meshes built in halves on several threads, then joined (after Funke and Sanders).
 //!
-//! The vertices are divided by a plane. A cell of either half whose sphere holds no vertex of the other is a cell of the whole.
-//! The vertices of the rest, the *border*, are triangulated once more, together. What is Delaunay among those and has corners in both
-//! halves is so among all: had it not been empty, inserting one half into the other would not have touched all of its corners. What has
-//! its corners in one half is, if it was a cell of the border. That all this fits together rests on there being one
-//! triangulation only, also of points on a common sphere. The border takes an eighth more work at a million points and a third more
-//! at a hundred thousand.
+//! 1. The vertices are divided by a plane, and both halves are triangulated at the same time. A cell of either half whose sphere holds
+//!    no vertex of the other half is a cell of the whole.
+//! 2. The other cells are the *border*. Their vertices are triangulated once more, together.
+//! 3. A cell of that triangulation with corners in both halves is a cell of the whole: if its sphere were not empty, inserting one half
+//!    into the other would not have touched all of its corners. One with all corners in one half is a cell of the whole if it was a
+//!    cell of the border before.
+//!
+//! The parts fit together because there is one triangulation only, also of points on a common sphere. Triangulating the border takes
+//! an eighth of the whole work more at a million points, and a third more at a hundred thousand.
 
 use super::border;
 use super::cell::{CellId, Vertex};

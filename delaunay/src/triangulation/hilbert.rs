@@ -16,7 +16,7 @@ const ROUND_SHIFT: u32 = 3 * LEVELS;
 const ROUND_BITS: u32 = 3;
 const LAST_ROUND: u32 = 6;
 
-/// So many points in one cell of the curve need no order.
+/// Up to this many points in one cell of the curve are not sorted further.
 const CROWD: usize = 16;
 
 const fn rotate_left(w: usize, by: usize) -> usize {

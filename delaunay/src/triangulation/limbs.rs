@@ -1,8 +1,9 @@
 //! Signs of determinants of differences cut to integers of 61 bits: with 64-bit products, an order of magnitude faster than expansions.
 //!
-//! Differences of coordinates that are not too unlike are such integers, in a unit of their own, and then the sign is exact. If not,
-//! it is right where the determinant is larger than what the cuts can change, about 2⁻⁵⁰ of the largest there can be: that is less
-//! than the rounding of coordinates is worth to points that would lie on a common sphere without it.
+//! Differences of coordinates of similar magnitude are such integers, in a common unit, and the sign is exact.
+//! Otherwise the sign is right where the determinant exceeds what the cuts can change, about 2⁻⁵⁰ of the largest
+//! possible determinant. Points that would lie on a common sphere without the rounding of their coordinates have larger
+//! determinants than that.
 
 use glam::DVec3;
 
@@ -75,7 +76,7 @@ impl Triple {
     }
 }
 
-/// A sum of products, in six digits of 64 bits whose carries are not yet carried.
+/// A sum of products, in six digits of 64 bits whose carries are not yet propagated.
 #[derive(Clone, Copy, Default)]
 struct Sum([i128; 6]);
 
@@ -101,7 +102,7 @@ impl Sum {
         }
     }
 
-    /// Carries. Returns how often 2²⁵⁶ goes into it, rounded down, and whether it is 0.
+    /// Propagates carries. Returns the quotient by 2²⁵⁶, rounded down, and whether the sum is 0.
     fn carried(mut self) -> (i128, bool) {
         let mut is_zero = true;
         for place in 0..5 {

@@ -1,4 +1,4 @@
-//! Where the border is cut out of the two halves, and what is sewn in.
+//! Cuts the border out of the two halves and inserts the new cells between them.
 
 use super::cell::{Cell, CellId, Link, MAX_CELLS, Vertex};
 use super::mesh::Mesh;
@@ -29,7 +29,7 @@ fn face_key(cell: &Cell, k: usize) -> [u32; 3] {
     sorted([1, 2, 3].map(|j| cell.corners[(k + j) % 4]))
 }
 
-/// What has been cut out.
+/// The cells that were cut out, and what they leave open.
 pub(super) struct Seam {
     /// Faces of cells left that are open now, by corners.
     open: HashMap<[u32; 3], Link>,

@@ -17,7 +17,7 @@ pub(super) enum Simplex {
 }
 
 impl Simplex {
-    /// One pass: however many lie in a plane, each is looked at once.
+    /// One pass: each point is visited once, however many lie in a plane.
     pub(super) fn new(sites: &Sites, vertices: &[Vertex]) -> Self {
         let mut rest = vertices.iter().copied();
         let Some(a) = rest.next() else { return Self::Point };

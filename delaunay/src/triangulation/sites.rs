@@ -1,4 +1,4 @@
-//! Where the vertices are, and the two questions asked of them: on which side of a plane, in or out of a sphere.
+//! Positions of the vertices and the two predicates on them: the side of a plane, and inside or outside of a sphere.
 //!
 //! Both are answered exactly. A determinant in `f64` decides whenever it is larger than its error can be, for which one
 //! bound serves all points: it follows from the longest side of their box. On small integers there is no error, so the bound is 0. What
@@ -46,7 +46,7 @@ const SPHERE_ERROR: f64 = LARGEST_SPHERE_DET * 17.0 * (f64::EPSILON / 2.0);
 /// Differences shorter than this are too near to underflow for a bound that follows from them.
 const LEAST_LENGTH: f64 = 1e-50;
 
-/// No bound is less, but 0: products that underflow add less error than this.
+/// Smallest error bound other than 0: products that underflow add less error than this.
 const LEAST_BOUND: f64 = 1e-200;
 
 /// The sum of the absolute values of the products in [`sphere_det`], for differences of at most 1: no partial sum is larger.
@@ -106,7 +106,7 @@ fn sphere_det(corners: [DVec3; 4], p: DVec3) -> f64 {
 /// their lexicographic order.
 fn breaks_small_tie(corners: [DVec3; 4], p: DVec3) -> bool {
     let (_, volume) = lifts_and_volumes(corners, p);
-    // Corners in the plane of the others and p have no say; p itself has 0.
+    // Corners in the plane of the others and p do not decide; p itself has 0.
     let lateness = lanes(|i| {
         let d = corners[i] - p;
         if volume[i] == 0.0 { -1.0 } else { (d.x * 1024.0 + d.y) * 1024.0 + d.z }
@@ -161,7 +161,7 @@ impl Sites {
         self.sphere_bound = bound(SPHERE_ERROR * side.powi(5));
     }
 
-    /// One more vertex, or nothing if the scale does not fit it: then all have to be scaled anew.
+    /// Adds a vertex; `None` if the scale does not fit it, so that all have to be scaled anew.
     pub(super) fn push(&mut self, p: DVec3) -> Option<Vertex> {
         let (scale, lo, hi, exact) = (self.scale, self.lo, self.hi, self.exact);
         let scaled = self.scale.apply_new(p)?;

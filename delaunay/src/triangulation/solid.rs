@@ -27,7 +27,7 @@ pub(super) struct Solid {
     hole: Hole,
 }
 
-/// What happened to a point that was to be inserted.
+/// The result of inserting a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Added {
     /// It is a vertex of the mesh.
@@ -105,7 +105,8 @@ impl Solid {
         self.sites.orient(base.expect("a mesh has tetrahedra")) == 0.0
     }
 
-    /// Takes out the point of this index, the only one in its place. False, and nothing done, if the rest may span less.
+    /// Removes the point of this index, the only one at its position. Returns false and changes nothing if the rest may
+    /// span fewer dimensions.
     pub(super) fn remove(&mut self, index: u32) -> Result<bool, DelaunayError> {
         let v = self.vertex[index as usize];
         let removed = self.mesh.remove(&self.sites, &mut self.cavity, &mut self.hole, v)?;
