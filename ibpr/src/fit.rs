@@ -36,7 +36,8 @@ pub(crate) struct Chunk<'a, const RESIDUAL: bool> {
 impl<const RESIDUAL: bool> NullaryFnOnce for Chunk<'_, RESIDUAL> {
     type Output = [Fit; LANES];
 
-    // A closure would not be inlined into the vectorised caller, and what is not inlined stays narrow.
+    // Not a closure: it would not be inlined into the vectorised caller, and would be compiled without the wide
+    // instructions.
     #[inline(always)]
     fn call(self) -> [Fit; LANES] {
         let mut step = [0.0; LANES];
@@ -99,11 +100,11 @@ fn sum_window(b: &Buffer, first: usize, step: &Lanes, radius: isize) -> Window {
     s
 }
 
-/// A pixel with more points counts no more than this: its mean is as good as it gets.
+/// Largest weight of a pixel in a fit, in points: the means of pixels with more points are hardly more accurate.
 const MOST_WEIGHT: f32 = 8.0;
 
-/// Added to the diagonal of the curved terms, relative to the sum of the weights: where a window has too
-/// few points to tell a curve, it fits a plane.
+/// Added to the diagonal of the curved terms, relative to the sum of the weights: where a window has too few points to
+/// determine curvature, the fit is a plane.
 const STIFFNESS: f32 = 0.02;
 
 impl Window {
@@ -172,7 +173,7 @@ const CURVED: usize = 3;
 
 /// `m` becomes L with D on the diagonal, `rhs` becomes D⁻¹·L⁻¹·rhs.
 ///
-/// Lanes are the innermost loops: those are the ones that the compiler makes vectors of.
+/// Lanes are the innermost loops, which the compiler vectorises.
 #[inline(always)]
 fn decompose(m: &mut Matrix, rhs: &mut [Lanes; TERMS]) {
     for i in 0..TERMS {

@@ -22,9 +22,9 @@ pub enum Scale {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Weighting {
-    /// `u`, eq. 2 as it survives in print: the nearest point counts (almost) nothing.
+    /// `u`, eq. 2 as printed: the nearest point has (almost) no weight.
     Printed,
-    /// `1 − u`: falls from the nearest point, and so pulls noisy surfaces towards the eye.
+    /// `1 − u`: largest for the nearest point, so the mean of a noisy surface moves towards the eye.
     Falling,
     /// 1: the plain mean of the slab.
     Even,
@@ -36,7 +36,8 @@ pub enum Weighting {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Normals {
-    /// Least-squares planes over windows that grow with the noise.
+    /// Least-squares quadratic surfaces over windows that grow with the noise; planes where a window has too few points
+    /// to determine curvature.
     Plane,
     /// The mean of up to eight triangles with consecutive neighbours, as in the paper.
     Triangles,
@@ -46,7 +47,7 @@ pub enum Normals {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Culling {
-    /// Nothing.
+    /// No culling.
     None,
     /// Scans taken from behind, as in the paper: drops points that can be seen.
     Printed,
@@ -60,7 +61,7 @@ pub enum Culling {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Passes {
-    /// One, with S.
+    /// One buffer, at the scale S.
     One,
     /// A finer one with `finer`·S under the normal one, which is drawn over it except where points are
     /// dense or the surface is nearly edge-on.

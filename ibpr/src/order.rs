@@ -1,4 +1,4 @@
-//! The order of points that every frame uses: it depends on what the points are, not on how they came.
+//! The canonical order of points that every frame uses: it depends on the points, not on the order of the input.
 
 use crate::scan::Scan;
 use glam::DVec3;

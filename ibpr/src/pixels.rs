@@ -4,7 +4,7 @@ use crate::buffer::DepthScale;
 use crate::options::Translucency;
 use crate::raster::{Paint, Pixels};
 
-/// No surface.
+/// Stands for no surface.
 const FAR: [f32; 4] = [f32::INFINITY, 0.0, 0.0, 0.0];
 
 /// The nearest surface of each pixel, and the nearest rim in front of it.

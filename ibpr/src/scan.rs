@@ -1,4 +1,4 @@
-//! One range scan as its caller holds it.
+//! One range scan, as slices of its caller.
 
 use crate::error::IbprError;
 use glam::DVec3;
@@ -39,16 +39,16 @@ impl<'a> Scan<'a> {
         self
     }
 
-    /// Direction from the object to the scanner, of any length: lets what faces away be skipped.
+    /// Direction from the object to the scanner, of any length: points that face away from the eye can then be skipped.
     #[must_use]
     pub fn with_scanner(mut self, towards: DVec3) -> Self {
         self.towards_scanner = Some(towards);
         self
     }
 
-    /// Refuses what no picture can be made of; `scan` is its place in the caller's slice.
+    /// Checks lengths, ranges and finiteness; `scan` is its index in the caller's slice.
     pub(crate) fn check(&self, scan: usize) -> Result<(), IbprError> {
-        // Not `max_element`, which passes over NaN.
+        // Not `max_element`, which ignores NaN.
         let near = |p: &DVec3| p.abs().cmple(DVec3::splat(Self::FARTHEST)).all();
         if let Some(index) = self.positions.iter().position(|p| !near(p)) {
             let (finite, value) = (self.positions[index].is_finite(), self.positions[index].to_array());

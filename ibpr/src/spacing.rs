@@ -4,11 +4,11 @@ use crate::order::{Lattice, Ordered};
 use crate::scan::Scan;
 use pointillist_view::MORTON_BITS;
 
-/// Points whose nearest neighbour is looked for.
+/// Number of points of which neighbours are measured.
 const SAMPLE: usize = 1024;
 
-/// Neighbours before and after in Morton order that are looked at: for most points they hold the
-/// nearest ones, and the median does not feel the others.
+/// Neighbours before and after in Morton order that are searched: for most points they contain the nearest ones, and
+/// the median is insensitive to the others.
 const WINDOW: usize = 96;
 
 /// The neighbour whose distance is taken: on a square grid it is the spacing, and for points thrown at
@@ -88,6 +88,6 @@ pub(crate) fn of_all(ordered: &[Ordered], lattice: &Lattice, spacing: f64, point
     cells.sort_unstable();
     cells.dedup();
     let side = lattice.extent / f64::from(1u32 << level);
-    // Not the root of the area, whose square of `side` may leave the range of numbers.
+    // Not the root of the area: the square of `side` could overflow or underflow.
     side * (cells.len() as f64 / CELLS_PER_AREA / points as f64).sqrt()
 }
