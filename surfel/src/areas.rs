@@ -29,19 +29,19 @@ pub(crate) const SIGMA_PER_RADIUS: f64 = 0.75;
 /// kernels do.
 const SWEEPS: usize = 3;
 
-/// Most that an area exceeds the mean of the first guesses in its kernel by: points on a border would grow to fill what
-/// lies beyond.
+/// Largest ratio of an area to the mean of the first guesses in its kernel: without it, areas of points on a border
+/// would grow to fill what lies beyond.
 const MOST_GROWTH: f64 = 2.0;
 
-/// Most places that a kernel meets. Where there are more, a narrower kernel tells their areas as well; the time stays
-/// linear for discs that are far too large.
+/// Most places that a kernel meets. Where there are more, a narrower kernel gives their areas as well, and the time
+/// stays linear for discs that are far too large.
 const MOST_NEAR: usize = 64;
 
 /// Square of the reach of `∫ Kᵢ Kⱼ`, in parts of twice the root mean square of the kernels' radii: beyond it lies less than
 /// 0.2 % of the whole, `(1 − 0.6)⁷`.
 const CORRELATION_REACH2: f64 = 0.6;
 
-/// Radii in places' units are kept where their squares are normal numbers.
+/// Radii, in units of the places, are limited to numbers whose squares are normal.
 const RADII: (f64, f64) = (1e-150, 1e150);
 
 /// The area of each point of a cloud, in the caller's order and the square of the cloud's unit, from normals and radii of

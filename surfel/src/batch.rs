@@ -88,7 +88,8 @@ impl Projected {
     }
 }
 
-/// Added to a number of pixels, it leaves no bits for fractions: the sum is that of the nearest whole number, which is in its last bits.
+/// Adding this rounds a number of pixels to the nearest whole number, which is then in the last bits of the sum: no
+/// bits are left for fractions.
 pub(crate) const WHOLE: f32 = 8_388_608.0;
 
 /// The whole number to which [`WHOLE`] was added.

@@ -12,7 +12,7 @@ const OVERSAMPLING: usize = 5;
 /// experiment: corners of cubes are the worst, where points of other faces take the place (`discs_of_blue_noise_leave_no_gap` in `tests/properties.rs`).
 pub(crate) const COVER: f64 = 3.0;
 
-/// Radius on a border, in the same unit: so far reaches the surface there at most.
+/// Radius on a border, in the same unit: the surface reaches at most this far there.
 pub(crate) const ON_BORDER: f64 = 2.0;
 
 /// Area that a point has to itself in a hexagonal lattice of unit spacing: √3/2.
@@ -40,7 +40,7 @@ pub(crate) fn points(mesh: &Mesh<'_>, count: usize, seed: u64, done: &dyn Fn(f64
 fn candidate(mesh: &Mesh<'_>, i: usize, count: usize, seed: u64) -> SurfacePoint {
     let [slice, u, v] = [0, 1, 2].map(|dimension| unit(seed, 3 * i as u64 + dimension));
     let triangle = mesh.triangle_at((i as f64 + slice) / count as f64 * mesh.area());
-    // The square root makes a unit square of a triangle with all areas kept.
+    // The square root maps the unit square to the triangle uniformly by area.
     let u = u.sqrt();
     mesh.point(triangle, DVec3::new(1.0 - u, u * (1.0 - v), u * v))
 }

@@ -1,4 +1,4 @@
-//! A cloud, made ready for drawing.
+//! A cloud, prepared for drawing.
 
 use crate::attributes::{Attributes, in_order};
 use crate::error::SurfelError;
@@ -23,7 +23,7 @@ pub struct Cloud {
 }
 
 impl Cloud {
-    /// Sorts points into an octree; estimates what they lack.
+    /// Sorts points into an octree and estimates the attributes that are missing.
     ///
     /// # Errors
     /// [`SurfelError::NoPoints`], [`SurfelError::TooManyPoints`], [`SurfelError::LengthMismatch`], [`SurfelError::PointNotFinite`],

@@ -143,7 +143,7 @@ impl<S: Simd> Kernel<S> {
         let narrow = (v[0] + v[2]) * 0.5 - (half_difference * half_difference + v[1] * v[1]).sqrt();
         let conic = (determinant * reach2).inverse();
         let edge = (narrow / (blur + EDGE_VARIANCE)).at_least(1.0).sqrt();
-        // Discs of any size next to the eye: sums of weights have to stay numbers.
+        // Limited: discs next to the eye can have any size, and sums of weights must stay finite.
         let weight = (share / (integral * root)).at_most(1e3);
         Self { is_flat, reach2, conic, weight, edge }
     }

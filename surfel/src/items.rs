@@ -78,7 +78,7 @@ struct Take<'a> {
 impl NullaryFnOnce for Take<'_> {
     type Output = ();
 
-    // Everything is inlined: what is compiled on its own stays narrow.
+    // Everything is inlined: a function compiled on its own would not use the wide instructions.
     #[inline(always)]
     fn call(self) {
         let Self { discs, cloud, node, run } = self;
@@ -143,8 +143,9 @@ impl Items {
         }
     }
 
-    /// Makes one disc of two that follow one another: with the sum of their areas, the means by area of all else, and the
-    /// covariance that both have together. All that there is room for: a number known beforehand makes vectors of the loops.
+    /// Makes one disc of two that follow one another: with the sum of their areas, the means by area of all else, and
+    /// the covariance of both together. It computes the whole capacity, because the compiler vectorises loops of
+    /// constant length.
     #[inline(always)]
     fn unite(&mut self) {
         let (mut shares, mut deviations) = ([0.0; BATCH], [0.0; BATCH]);

@@ -54,7 +54,8 @@ struct Nearest<'a, const FIRST: bool, I> {
 impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<'_, FIRST, I> {
     type Output = ();
 
-    // Everything is inlined, and there are no closures: what is compiled on its own stays narrow.
+    // Everything is inlined, and there are no closures: a function compiled on its own would not use the wide
+    // instructions.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let (none, nothing) = (simd.splat_f32s(0.0), simd.splat_f32s(f32::INFINITY));
@@ -73,8 +74,8 @@ impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<
                         strip.step(simd);
                         let is_there = simd.greater_than_f32s(rest, none);
                         let near = &mut S::as_mut_simd_f32s(&mut block.near).0[i];
-                        // A minimum, not a choice between the old and the new: that would become a masked store, which
-                        // takes longer than all the rest.
+                        // A minimum instead of a choice between the old and the new value: the latter would become a
+                        // masked store, which takes longer than all the rest.
                         *near = simd.min_f32s(simd.select_f32s(is_there, depth, nothing), *near);
                     }
                 }

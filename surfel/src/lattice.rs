@@ -24,7 +24,7 @@ impl Lattice {
             .iter()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
         let extent = (high - low).max_element();
-        // Points in one place need some length to measure their discs in.
+        // Coincident points have no extent, but discs need a unit of length.
         let extent = if extent > 0.0 { extent.max(1e-290) } else { 1.0 };
         Self { low, side: extent }
     }
@@ -39,21 +39,22 @@ impl Lattice {
         self.way(DVec3::ZERO, cell)
     }
 
-    /// The way from a place in the world to the middle of a cell. Places near the lattice lose no digits to their distance from the
-    /// origin: the picture is the same wherever the scene lies.
+    /// The vector from a position in the world to the middle of a cell. It is computed from differences to the
+    /// lattice's corner, so that the distance to the origin of the world costs no digits: the picture is the same
+    /// wherever the scene lies.
     pub(crate) fn way(&self, from: DVec3, cell: [u32; 3]) -> DVec3 {
         let middle = DVec3::from_array(cell.map(|c| (f64::from(c) + 0.5) / CELLS));
         (self.low - from) + middle * self.side
     }
 }
 
-/// The way from one cell to another in units. Rounded once per coordinate.
+/// The vector from one cell to another, in units. Rounded once per coordinate.
 pub(crate) fn between(from: [u32; 3], to: [u32; 3]) -> Vec3 {
     let coordinate = |i: usize| (i64::from(to[i]) - i64::from(from[i])) as f32 * (1.0 / CELLS as f32);
     Vec3::from_array([0, 1, 2].map(coordinate))
 }
 
-/// The cell that is so many units away from one.
+/// The cell at this vector, in units, from another cell.
 pub(crate) fn moved(from: [u32; 3], way: Vec3) -> [u32; 3] {
     let place = |i: usize| f64::from(from[i]) + f64::from(way[i]) * CELLS;
     [0, 1, 2].map(|i| place(i).round().clamp(0.0, CELLS - 1.0) as u32)

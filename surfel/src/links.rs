@@ -84,10 +84,11 @@ fn links_of(cube: &Cube, cubes: &[Cube], links: &[Vec<Link>], points: &Attribute
     made
 }
 
-/// A link for less than this share of the mean area is none: its neighbour stands for it too.
+/// Links with less than this share of the mean area are merged into a neighbour.
 const SLIVER: f32 = 0.4;
 
-/// Surfaces cut corners off cells: links for those would lie close to others and leave gaps elsewhere.
+/// Merges links with less than [`SLIVER`] of the mean area into a neighbour. Surfaces cut corners off cells, and links for those
+/// corners would lie close to others and leave gaps elsewhere.
 fn absorb_slivers(links: &mut Vec<Link>) {
     let least = SLIVER * links.iter().map(|l| l.area).sum::<f32>() / links.len() as f32;
     // The smallest first, so that several small ones may make a large one.
@@ -123,7 +124,7 @@ fn partition(links: &mut [Link], passes: impl Fn(&Link) -> bool) -> usize {
     let mut count = 0;
     for i in 0..links.len() {
         if passes(&links[i]) {
-            // What does not pass keeps its order too: the picture must not depend on how this is done.
+            // Points that do not pass keep their order, too: the picture must not depend on how this is done.
             links[count..=i].rotate_right(1);
             count += 1;
         }

@@ -12,7 +12,7 @@ use std::cmp::Ordering;
 /// Places that are not split any further: from 6 to 16, the time of searches is the same to within what can be measured.
 const LEAF: usize = 8;
 
-/// Halves with fewer places are not worth a thread.
+/// Halves with fewer places are not worth the cost of a thread.
 const PARALLEL_LEAST: usize = 1 << 12;
 
 /// How a range of places is split: the lower half comes first.

@@ -1,4 +1,4 @@
-//! From the items of a node to discs on the picture.
+//! Projects the items of a node to discs on the picture.
 
 use crate::batch::{Projected, Value};
 use crate::ellipse::project;

@@ -80,11 +80,11 @@ const TRIES: [usize; 3] = [14, 32, 96];
 /// The radius of each point of a cloud, in the caller's order and the cloud's unit, from its normal: the discs leave no gap that a
 /// disc can close which reaches no farther than 1.5 times to the point's sixth neighbour.
 ///
-/// What lies farther from all points is a border or a hole: it does not count, and a point on a border has about
-/// the radius of one inside. Points far from all others get what becomes their neighbours: see the constants. One whose cell no
-/// neighbour limits within reach gets half the way to the nearest, and at most half the median spacing; a lone place
-/// gets 1. All radii are normal numbers of `f32`, more than 0.
-/// Points that coincide and face the same way have the same radius. Does not depend on the order of points.
+/// What lies farther from all points is a border or a hole and stays uncovered; a point on a border has about the
+/// radius of one inside. Radii of points far from all others are limited by the spacing of the other points: see the
+/// constants. A point whose cell no neighbour limits within reach gets half the distance to the nearest one, and at
+/// most half the median spacing; a single place gets 1. All radii are normal numbers of `f32`, above 0. Points that
+/// coincide and face the same way have the same radius. The result does not depend on the order of points.
 ///
 /// `two_sided`: the sign of a normal has no meaning.
 pub(crate) fn of_cloud(places: &Places, normals: &[Vec3], two_sided: bool) -> Vec<f32> {
@@ -100,14 +100,14 @@ pub(crate) fn of_cloud(places: &Places, normals: &[Vec3], two_sided: bool) -> Ve
     let radius = |disc: &Disc| {
         let around = disc.nearest.iter().map(|&place| spacings[place as usize]).fold(0.0, f64::max);
         let own = disc.radius.unwrap_or((0.5 * disc.to_nearest).min(0.5 * median));
-        // Rounded up, as for meshes, and so is what cannot be told from 0.
+        // Rounded up, as for meshes; radii below the normal numbers of `f32` become the smallest of these.
         let units = own.min(MOST_NEIGHBOURS * around).min(MOST_MEDIANS * median) / places.scale();
         rounded_up(units.min(f64::from(f32::MAX))).max(f32::MIN_POSITIVE)
     };
     sides.of_points.iter().map(|&side| radius(&discs[side as usize])).collect()
 }
 
-/// What the neighbours of a point of a cloud say of its disc; places' units.
+/// The limits that neighbours set to the disc of a point of a cloud, in units of the places.
 struct Disc {
     /// None if no neighbour limits its cell within reach.
     radius: Option<f64>,

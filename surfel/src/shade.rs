@@ -7,7 +7,7 @@ use glam::Vec3;
 use pointillist_view::Light;
 use pulp::Simd;
 
-/// Light that passes all layers and is less than this is not followed: half a step of 8 bits.
+/// Transmittance of all layers so far below which further layers are not drawn: half a step of an 8-bit picture.
 pub(crate) const LEAST_LIGHT: f32 = 1.0 / 512.0;
 
 /// How independent the edges of two layers are: between 1, where a layer covers its share of what those before leave open, and
@@ -101,9 +101,9 @@ impl Shader {
 #[inline(always)]
 pub(crate) fn opacity<S: Simd>(sum: Vector<S>, sharpness: Vector<S>) -> Vector<S> {
     let covered = (sharpness * (sum - 0.5) + 0.5).at_least(0.0).at_most(1.0);
-    // Sums inside a surface vary by a few per cent: it must not let light through for that.
+    // Sums inside a surface vary by a few per cent, which must not make it translucent.
     (covered * (covered * covered * CLOSING + 1.0)).at_most(1.0)
 }
 
-/// A coverage of 0.9 and more is taken for all.
+/// Coefficient of the cubic that closes surfaces: with it, a coverage of 0.9 and more counts as 1.
 const CLOSING: f32 = 0.15;

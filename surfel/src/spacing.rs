@@ -1,4 +1,4 @@
-//! How far apart points of a node may be: for the size of its pixels, for how it faces the eye, and for its blur.
+//! How far apart points of a node may be drawn: limited by the size of pixels, the angle to the eye, and the blur.
 
 use crate::camera::Camera;
 use crate::node::Node;
@@ -69,7 +69,7 @@ impl Angles {
         let (towards_eye, spread) = if camera.is_perspective {
             let to_eye = -camera.local(node).as_vec3();
             let (distance, radius) = (to_eye.length(), node.half.length());
-            // An eye inside the box sees it from everywhere.
+            // For an eye inside the box, all directions occur.
             let spread = if distance > radius { (radius / distance).asin() } else { PI };
             (to_eye / distance.max(f32::MIN_POSITIVE), spread)
         } else {

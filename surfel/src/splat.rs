@@ -17,8 +17,8 @@ pub(crate) const REACH2: f32 = 8.0;
 /// The same for the flatter kernel √(1 − q/R) of discs that are mostly blur: a lens blurs evenly over a disc.
 pub(crate) const FLAT_REACH2: f32 = 5.0;
 
-/// The paper's discs have hard edges. In quadrature with this radius, half the diagonal of a pixel, each covers a pixel's
-/// centre.
+/// Added in quadrature to the radius of the paper's hard-edged discs: half the diagonal of a pixel, so that each disc
+/// covers the centre of a pixel.
 pub(crate) const LEAST_RADIUS2: f32 = 0.5;
 
 /// The ellipse of these discs covers both of a pair, where they are a radius apart.

@@ -17,7 +17,7 @@ use crate::splats::Splats;
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
-/// Surfaces behind one another in a pixel. All that lies behind the last but one is taken for the last.
+/// Most layers of a pixel. All that lies behind the last but one is drawn as one layer, the last.
 const MOST_LAYERS: usize = 4;
 
 /// Squares of a tile: columns, rows.
@@ -151,7 +151,7 @@ impl Tile {
             is_seen
         });
         if self.splats.as_slice().len() > drawn {
-            // Sums are rounded: they have to be taken in the order in which they are without culling.
+            // Sums are rounded, so terms must be added in the same order as without culling.
             self.splats.sort_by_node(&mut self.behind);
         }
         touched
