@@ -12,7 +12,7 @@ use pointillist_shprobe::{DistanceMap, Field, invariants as facts};
 struct Probe {
     /// Sixteenths of it are lattice points: grids, planes, lines and repeats come often.
     position: [i8; 3],
-    radiance: [f32; 3],
+    radiance: [i16; 3],
     /// Moments of a map of two by two texels.
     moments: [[f32; 2]; 4],
 }
