@@ -1,4 +1,4 @@
-//! The items of a node that are projected together, value by value.
+//! Items of a node that are projected together, as one list per value.
 
 use crate::splat::Splat;
 use crate::vector::Vector;

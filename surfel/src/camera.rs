@@ -11,8 +11,9 @@ use pointillist_view::View;
 /// then has one depth in a pixel, and belongs to one layer. Found by experiment.
 const BLURRED_PLANE: f32 = 2.0;
 
-/// How far behind the nearest one a disc may lie and still belong to the same surface: so many radii of the disc and of its
-/// blur, and what a slanted surface gains over so many pixels and blur radii. Found by experiment.
+/// How far behind the nearest disc another may lie and still belong to the same surface, as a sum of four lengths, all found by
+/// experiment: these multiples of the disc's radius and of its blur radius, and the change of depth of a slanted surface over these
+/// multiples of a pixel and of the blur radius.
 const THICKNESS: f32 = 1.5;
 const BLURRED_DISC_THICKNESS: f32 = 1.75;
 const SLANTED_THICKNESS: f32 = 1.5;

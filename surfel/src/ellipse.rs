@@ -34,7 +34,7 @@ struct Covariance<S: Simd> {
     /// Radius of the blur and of the disc (with the blur, where the shape is widened by it), units.
     blur_radius: Vector<S>,
     radius: Vector<S>,
-    /// Of the disc alone.
+    /// Covariance of the disc alone.
     disc: [Vector<S>; 3],
     /// Variance of the blur.
     blur: Vector<S>,
@@ -94,9 +94,9 @@ impl<S: Simd> Plane<S> {
         let edge_on = (facing.at_most(-1e-6) * focal).inverse();
         let (kx, ky) = (a * edge_on, b * edge_on);
         let slope = (kx * kx + ky * ky).sqrt() * focal;
-        // Of a disc as wide as a pair.
+        // The radius of a disc as wide as the pair.
         let whole_radius = (disc_radius * disc_radius + (p * p + q * q + r * r) * 4.0).sqrt();
-        // What the pixel adds to the disc must not make its plane longer, nor may it come too near to the eye.
+        // The pixel's part of the ellipse does not extend the disc's plane, and the plane is not followed too close to the eye.
         let reach = camera.plane_reach(whole_radius * shape.deviation, blur_radius) * (scale * (1.0 / focal));
         let longest = (reach * reach).at_most(NEAREST_PLANE2) * (1.0 / shape.reach2);
         let long = along([kx, ky], [disc[0] + blur, disc[1], disc[2] + blur]).min(longest);
@@ -122,7 +122,7 @@ struct Kernel<S: Simd> {
     reach2: Vector<S>,
     /// 1/(|V|·R), which makes V⁻¹/R of V's entries.
     conic: Vector<S>,
-    /// At the centre.
+    /// Weight at the centre.
     weight: Vector<S>,
     /// How much steeper than the kernel's an edge has to be to look sharp.
     edge: Vector<S>,

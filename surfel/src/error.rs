@@ -1,4 +1,4 @@
-//! What can be wrong.
+//! Errors of meshes, clouds and options.
 
 /// What can be wrong with a mesh or a cloud, or with what is asked of them.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,4 +1,4 @@
-//! What is sharp.
+//! Depth of field: which depth is sharp, and how much others blur.
 
 use crate::error::SurfelError;
 
@@ -35,7 +35,7 @@ impl Focus {
         Self::Lens { aperture: 0.5 * focal_length / f_number, focus }
     }
 
-    /// d and f; d = 0 for sharp pictures.
+    /// The blur per distance d and the depth in focus f; d = 0 for sharp pictures.
     pub(crate) fn depth_and_focus(&self) -> (f64, f64) {
         match *self {
             Self::Everywhere => (0.0, 1.0),

@@ -172,7 +172,7 @@ impl Items {
     }
 }
 
-/// Makes vectors unit vectors. Roots for all of them at once, as vectors.
+/// Normalises vectors. The square roots are computed for a whole vector of items at once.
 #[inline(always)]
 fn normalise([x, y, z]: &mut [Values; 3], count: usize) {
     for (((x, y), z), _) in x.iter_mut().zip(y).zip(z).zip(0..count) {

@@ -1,4 +1,4 @@
-//! Positions as whole numbers: a cube of 2³² cells a side around the cloud.
+//! Positions as integers: cells of a cube with 2³² cells a side around the cloud.
 //!
 //! A position is off by less than 2⁻³² of the cloud's extent, wherever the cloud lies, and differences to any origin
 //! in the cloud are exact before they become `f32`.

@@ -1,4 +1,4 @@
-//! What a frame is made with.
+//! Options of a frame.
 
 use crate::error::SurfelError;
 use crate::focus::Focus;

@@ -1,10 +1,12 @@
 //! The paper's procedure: z-buffers of discs, links in the pixels of their centres, and a filter over the pixels between.
 //!
-//! Discs have hard edges and the radius r₀, or r = r₀ + d·|l − f| with depth of field. One z-buffer is drawn with each.
-//! A disc whose centre is not hidden in the first leaves a link in its centre's pixel. A covered pixel without a link is a
-//! hole: it gets the mean of the links around it within the radius of the disc that covers it, weighted with a
-//! Gaussian. Pixels that are out of focus are filtered in the same way. Where the two z-buffers differ, things at different
-//! depths meet, and every link is weighted with the Gaussian of its own radius.
+//! Discs have hard edges and the radius r₀, or r = r₀ + d·|l − f| with depth of field (l: depth of the disc, f: depth in focus).
+//!
+//! 1. Two z-buffers are drawn, one with r₀ and one with r. A disc whose centre is not hidden in the first leaves a link in the pixel of
+//!    its centre.
+//! 2. A covered pixel without a link is a hole: it gets the mean of the links within the radius of the disc that covers it, weighted
+//!    with a Gaussian. Pixels that are out of focus are filtered in the same way. Where the two z-buffers differ, surfaces at different
+//!    depths meet, and every link is weighted with the Gaussian of its own radius.
 //!
 //! Departures: blurred pixels are as opaque as the share of the filter that the first z-buffer covers (the paper's figures
 //! have no background to tell), and a disc is never so small that it misses all pixel centres.

@@ -16,7 +16,7 @@ use pointillist_view::View;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Draws frames. Keeps its working memory, so that later frames hardly allocate.
+/// Draws frames. Keeps its working memory, so that later frames allocate next to nothing.
 #[derive(Default)]
 pub struct Renderer {
     selected: Vec<Selected>,

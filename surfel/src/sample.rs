@@ -1,4 +1,4 @@
-//! The public door.
+//! Sampling a mesh: the public functions and their options.
 
 use crate::mesh::Mesh;
 use crate::{SurfacePoint, SurfelError, blue_noise, ldi, radius};
@@ -90,7 +90,8 @@ const CHOSEN: f64 = 0.75;
 /// ([`Method::Poisson`]). The same input gives the same points, bit for bit, on any number of threads.
 ///
 /// # Errors
-/// Positions that are not finite, indices out of range, no area, and amounts that are no amounts or too large.
+/// [`SurfelError::VertexNotFinite`], [`SurfelError::VertexOutOfRange`], [`SurfelError::NoArea`], [`SurfelError::ZeroCount`],
+/// [`SurfelError::BadSpacing`], [`SurfelError::TooManyPoints`], [`SurfelError::TooFine`].
 pub fn sample(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
@@ -99,7 +100,7 @@ pub fn sample(
     sample_with(positions, triangles, options, &|_| ())
 }
 
-/// As [`sample`], and says now and then, from any thread, which share of the work is done.
+/// As [`sample`]; `done` is called now and then, from any thread, with the share of the work that is done, 0 to 1.
 ///
 /// # Errors
 /// As [`sample`].
