@@ -18,7 +18,7 @@ impl Partition {
     /// Linear in the number of cells; while it is built it takes 48 bytes a tetrahedron.
     ///
     /// # Errors
-    /// [`DelaunayError::BadCell`] for cells that are not between so many points, as [`Partition::check`] has it.
+    /// [`DelaunayError::BadCell`] for cells with a corner that is not below `count`, and as [`Partition::check`].
     ///
     /// ```
     /// use pointillist_delaunay::Delaunay;

@@ -282,7 +282,7 @@ fn cells(points: &[DVec3], partition: &Partition, facets: &mut Facets<'_>) -> Ve
     }
 }
 
-/// A coarse grid over the hull that knows a cell near the middle of each of its boxes.
+/// A coarse grid over the hull, with a cell near the middle of each of its boxes, at which walks start.
 #[derive(Clone, Debug, Default)]
 struct Starts {
     low: DVec3,

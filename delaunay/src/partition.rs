@@ -9,8 +9,8 @@ const MAX_POINTS: usize = 1 << 27;
 /// Stands for a neighbour where there is none: the side lies on the hull.
 pub const OUTSIDE: u32 = u32::MAX;
 
-/// Cells that fill the convex hull of the points, by the dimension of that hull: plain lists, to be matched on, or walked alike in all
-/// dimensions by [`Partition::cells`], [`Partition::graph`] and [`Partition::hull`].
+/// Cells that fill the convex hull of the points, by the dimension of that hull: plain lists, to be matched on, or
+/// walked alike in all dimensions by [`Partition::cells`], [`Partition::graph`] and [`Partition::hull`].
 ///
 /// Corners are indices into the points given; of points that coincide only the first is used.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,8 +55,8 @@ impl Partition {
         }
     }
 
-    /// Checks that every corner is one of `count` points, that no cell has a corner twice, and that neighbours are mutual: what a walk from
-    /// cell to cell relies on.
+    /// Checks that every corner is one of `count` points, that no cell has a corner twice, and that neighbours are
+    /// mutual: what a walk from cell to cell relies on.
     ///
     /// # Errors
     /// [`DelaunayError::BadCell`] for the first cell that is not so; [`DelaunayError::TooManyPoints`].
@@ -84,7 +84,7 @@ impl Partition {
     }
 }
 
-/// Refuses more points than cells can be told apart between.
+/// Refuses more points than [`MAX_POINTS`].
 pub(crate) fn check_count(count: usize) -> Result<(), DelaunayError> {
     let limit = MAX_POINTS;
     if count <= limit { Ok(()) } else { Err(DelaunayError::TooManyPoints { count, limit }) }

@@ -1,5 +1,5 @@
-//! Signs of determinants of any finite coordinates, by integers of any size. Slow, and hardly ever needed: only where coordinates of
-//! one input differ by more than fifty orders of magnitude.
+//! Signs of determinants of any finite coordinates, by integers of any size. Slow, and hardly ever needed: only where
+//! coordinates of one input differ by more than fifty orders of magnitude.
 
 use glam::DVec3;
 use num_bigint::{BigInt, Sign};
@@ -61,7 +61,8 @@ pub(crate) fn normal_signs([a, b, c]: [DVec3; 3]) -> [f64; 3] {
     cross(&difference(b, a), &difference(c, a)).each_ref().map(sign)
 }
 
-/// A quotient of integers, in the unit of [`to_integer`], within an ulp; infinite if `f64` does not hold it. The denominator is not 0.
+/// A quotient of integers, in the unit of [`to_integer`], within an ulp; infinite if `f64` does not hold it. The
+/// denominator is not 0.
 pub(crate) fn to_f64(numerator: &BigInt, denominator: &BigInt) -> f64 {
     let (n, d) = (numerator.magnitude(), denominator.magnitude());
     if numerator.sign() == Sign::NoSign {

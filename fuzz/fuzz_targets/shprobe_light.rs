@@ -1,5 +1,5 @@
-//! Probes anywhere, with any light and distances: what is not refused has shares that sum to 1, keeps constant light constant, comes back
-//! after changes, and sees less farther away.
+//! Probes anywhere, with any light and distances: what is not refused has shares that sum to 1, keeps constant light
+//! constant, comes back after changes, and sees less farther away.
 #![no_main]
 
 use arbitrary::Arbitrary;

@@ -54,8 +54,9 @@ impl Cloud {
     ///
     /// # Errors
     /// [`IbprError::NoPoints`], [`IbprError::PointNotFinite`], [`IbprError::PointTooFar`], [`IbprError::BadColor`],
-    /// [`IbprError::LengthMismatch`], [`IbprError::BadSpacing`], [`IbprError::BadDirection`], [`IbprError::TooManyPoints`];
-    /// [`IbprError::BadOption`] if a channel of `base` is not from 0 to [`Scan::BRIGHTEST`].
+    /// [`IbprError::LengthMismatch`], [`IbprError::BadSpacing`], [`IbprError::BadDirection`],
+    /// [`IbprError::TooManyPoints`]; [`IbprError::BadOption`] if a channel of `base` is not from 0 to
+    /// [`Scan::BRIGHTEST`].
     pub fn new(scans: &[Scan<'_>], base: Vec3) -> Result<Self, IbprError> {
         check_base(base)?;
         let add = |sum: usize, scan: &Scan<'_>| sum.checked_add(scan.positions.len());

@@ -24,8 +24,8 @@ pub(crate) struct Fit {
     pub(crate) good: bool,
 }
 
-/// The fits of [`LANES`] neighbouring pixels, with their residuals or without, compiled once more for each kind of vector instructions: the
-/// same operations in the same order, so results do not change.
+/// The fits of [`LANES`] neighbouring pixels, with their residuals or without, compiled once more for each kind of
+/// vector instructions: the same operations in the same order, so results do not change.
 pub(crate) struct Chunk<'a, const RESIDUAL: bool> {
     pub(crate) b: &'a Buffer,
     pub(crate) first: usize,

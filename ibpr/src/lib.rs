@@ -34,12 +34,13 @@
 //! `studies/results/ibpr.md` has time against error for every option, and the paper's own times beside ours.
 //!
 //! # Features
-//! `rayon` (default): bands of the picture on all cores; results do not change. `invariants`: the module of that name, facts
-//! for property tests and fuzzing, also of crates that build on this one.
+//! `rayon` (default): bands of the picture on all cores; results do not change. `invariants`: the module of that name,
+//! facts for property tests and fuzzing, also of crates that build on this one.
 //!
-//! Builds for `wasm32-unknown-unknown` without default features; last bits of pictures may differ there, because logarithms and
-//! trigonometric functions come from another library. Figures here and in the README are with thin LTO and `codegen-units = 1` (`[profile.release]` of the
-//! program that depends on this crate): without them expect somewhat more.
+//! Builds for `wasm32-unknown-unknown` without default features; last bits of pictures may differ there, because
+//! logarithms and trigonometric functions come from another library. Figures here and in the README are with thin LTO
+//! and `codegen-units = 1` (`[profile.release]` of the program that depends on this crate): without them expect
+//! somewhat more.
 //!
 //! # References
 //! \[1\] The paper on image-based point rendering (IBPR) of several range scans: buffer, γ, eight

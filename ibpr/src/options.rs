@@ -157,7 +157,7 @@ pub struct Options {
     pub base: Vec3,
     /// Default: none.
     pub eye_dome: Option<EyeDome>,
-    /// Whether the frame gets normals and counts besides color and depth. Default: false.
+    /// Whether the frame has normals and counts besides color and depth. Default: false.
     pub surface_layers: bool,
 }
 
@@ -332,7 +332,7 @@ impl Options {
     }
 }
 
-/// Refuses a color for points without one that is not a color.
+/// Refuses a default color with a channel that is negative, NaN or above [`Scan::BRIGHTEST`].
 pub(crate) fn check_base(base: Vec3) -> Result<(), IbprError> {
     match base.to_array().into_iter().find(|c| !(0.0..=Scan::BRIGHTEST).contains(c)) {
         Some(c) => {

@@ -13,10 +13,11 @@ pub struct Scan<'a> {
 }
 
 impl<'a> Scan<'a> {
-    /// Largest absolute value of a coordinate, a quarter of `f64::MAX`: differences of coordinates, and twice those, are finite.
+    /// Largest absolute value of a coordinate, a quarter of `f64::MAX`: differences of coordinates, and twice those,
+    /// are finite.
     pub const FARTHEST: f64 = 0.25 * f64::MAX;
 
-    /// Largest channel of a color: sums over the 2³² points that a pixel may have are still numbers in single precision.
+    /// Largest channel of a color: sums over the 2³² points that a pixel may have are finite in `f32`.
     pub const BRIGHTEST: f32 = 1e28;
 
     /// Points without color, whose spacing is estimated and whose scanner is unknown.
@@ -82,7 +83,8 @@ impl<'a> Scan<'a> {
 
 /// The direction of a vector of any finite length above 0.
 pub(crate) fn unit(v: DVec3) -> Option<DVec3> {
-    // The squares of 1e200 and 1e-200 overflow and underflow: such vectors are divided by their largest coordinate first.
+    // The squares of 1e200 and 1e-200 overflow and underflow: such vectors are divided by their largest coordinate
+    // first.
     let is_normal = (1e-280..=1e280).contains(&v.length_squared());
     if is_normal { v.try_normalize() } else { (v / v.abs().max_element()).try_normalize() }
 }

@@ -315,8 +315,8 @@ impl Geometry {
         HiddenSides(self.solids.iter().enumerate().map(hidden).collect())
     }
 
-    /// The closed components with faces turned outward that a point lies in, each by a number that is its own. (Where faces are turned
-    /// inward, inside is a room.)
+    /// The closed components with faces turned outward that a point lies in, each by a number that is its own. (Where
+    /// faces are turned inward, inside is a room.)
     #[must_use]
     pub fn solids_around(&self, p: DVec3) -> Vec<u32> {
         let holds = |&i: &u32| {
@@ -456,7 +456,8 @@ fn check(
     Ok(())
 }
 
-/// Last cell per axis of the lattice that orders triangles: codes of 3 · 10 bits leave 32 for the number of the triangle.
+/// Last cell per axis of the lattice that orders triangles: codes of 3 · 10 bits leave 32 for the number of the
+/// triangle.
 const LAST_CELL: u32 = 1023;
 
 /// Triangle numbers along a Morton curve of their centres.

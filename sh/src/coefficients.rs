@@ -16,7 +16,7 @@ pub struct Sh<T = DVec3> {
 }
 
 impl<T: Channel> Sh<T> {
-    /// From coefficients in the order of the module's documentation; their number says the order.
+    /// From coefficients in the order of the module's documentation; their number determines the order.
     ///
     /// # Errors
     /// `CoefficientCount` if it is not a square from 1 to 81, `CoefficientNotFinite`.
@@ -99,8 +99,8 @@ impl<T: Channel> Sh<T> {
         dot(&self.coefficients, &values)
     }
 
-    /// Whether all coefficients are finite. [`Sh::new`] accepts no others, but factors and weights of arithmetic are not checked: NaN and
-    /// overflow show in the result.
+    /// Whether all coefficients are finite. [`Sh::new`] accepts no others, but factors and weights of arithmetic are
+    /// not checked: NaN and overflow show in the result.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.coefficients.iter().all(|c| (0..T::CHANNELS).all(|i| c.channel(i).is_finite()))
@@ -157,7 +157,7 @@ impl<T: Channel> Sh<T> {
         Ok(sum)
     }
 
-    /// As [`Sh::blend`], in the place of what is here, without a new allocation.
+    /// As [`Sh::blend`], but overwrites this function, without a new allocation.
     ///
     /// # Errors
     /// `MixedOrders`, also with the order that is here.

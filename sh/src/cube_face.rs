@@ -28,7 +28,8 @@ pub const fn cube_direction(point: CubePoint) -> DVec3 {
     }
 }
 
-/// Where a direction of any length meets the cube; on an edge, the first of the faces. `None` for 0 and what is not finite.
+/// Where a direction of any length meets the cube; on an edge, the first of the faces. `None` for 0 and what is not
+/// finite.
 #[must_use]
 pub fn cube_point(direction: DVec3) -> Option<CubePoint> {
     let size = direction.abs().max_element();

@@ -43,7 +43,7 @@ impl DominantLight {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Split {
-    /// The directional light; none if neither sharp features nor negative irradiance ask for one.
+    /// The directional light; none if there are neither sharp features nor negative irradiance.
     pub light: Option<DominantLight>,
     /// Radiance without the light; deringed if its irradiance was still negative somewhere.
     pub rest: Sh,
@@ -58,11 +58,11 @@ impl Split {
 }
 
 impl Sh {
-    /// The directional light that with an even sky comes closest to this irradiance (least squares over the sphere; \[3\],
-    /// dominant light). `None` below order 1, and where light has no direction.
+    /// The directional light that with an even sky comes closest to this irradiance (least squares over the sphere;
+    /// \[3\], dominant light). `None` below order 1, and where light has no direction.
     ///
-    /// Its direction is that of the linear band's luminance. Per color it is not below 0, and not above what the mean allows.
-    /// It is more than what a lamp or the sun gives alone: a sky brighter on one side is a light, too. To take
+    /// Its direction is that of the linear band's luminance. Per color it is not below 0, and not above what the mean
+    /// allows. It is more than what a lamp or the sun gives alone: a sky brighter on one side is a light, too. To take
     /// lights out, see [`Sh::split`].
     #[must_use]
     pub fn dominant_light(&self) -> Option<DominantLight> {
@@ -92,9 +92,9 @@ impl Sh {
     /// Bands 0 to `order` with a light apart: as much as bands above `order` show to be sharp, at their peak, and as it
     /// takes for the irradiance of the rest not to be negative. Where that is not enough, the rest is deringed.
     ///
-    /// So with coefficients of order 4 or more, split to 2, irradiance is closer than that of order 2: of ten HDR maps, the
-    /// mean error fell from 2.4…8.2 % to 0.8…4.4 % of the mean irradiance, and in none it rose. With those of order 2 alone, light is
-    /// taken out only where there would be negative irradiance: of the dominant light.
+    /// So with coefficients of order 4 or more, split to 2, irradiance is closer than that of order 2: of ten HDR maps,
+    /// the mean error fell from 2.4…8.2 % to 0.8…4.4 % of the mean irradiance, and in none it rose. With those of order
+    /// 2 alone, light is taken out only where there would be negative irradiance: of the dominant light.
     ///
     /// # Errors
     /// `OrderTooHigh`.

@@ -1,8 +1,9 @@
-//! Facts that hold for all functions on the sphere, and for all images, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
+//! Facts that hold for all functions on the sphere, and for all images, as functions
+//! `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
 //!
-//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a crate
-//! that builds on it, with the feature `invariants`. Each takes any input at all; what is refused
-//! satisfies every fact.
+//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a
+//! crate that builds on it, with the feature `invariants`. Each takes any input at all; what is refused satisfies every
+//! fact.
 //!
 //! ```
 //! use pointillist_sh::{Sh, invariants::irradiance_agrees};
@@ -257,8 +258,8 @@ pub fn cube_points_come_back(point: CubePoint) -> Result<(), String> {
     check(!inside || back.face == point.face, || format!("{point:?} came back on face {}", back.face))
 }
 
-/// What a cube map of a function holds is the function, as far as its texels and weights go: the error relative to the largest
-/// coefficient, with texels in single precision.
+/// What a cube map of a function holds is the function, as far as its texels and weights go: the error relative to the
+/// largest coefficient, with texels in single precision.
 ///
 /// # Errors
 /// What the crate refused.

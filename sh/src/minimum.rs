@@ -11,8 +11,8 @@ const HALVINGS: usize = 100;
 impl Sh<f64> {
     /// The direction and value of the minimum over all directions.
     ///
-    /// Up to order 2 it is that of a quadratic form on the sphere, from its secular equation: the value is within 1e-14 of the
-    /// largest coefficient. Above, the lowest of a search from 40 (order + 1)² even directions, refined: the
+    /// Up to order 2 it is that of a quadratic form on the sphere, from its secular equation: the value is within 1e-14
+    /// of the largest coefficient. Above, the lowest of a search from 40 (order + 1)² even directions, refined: the
     /// value of a minimum, within 1e-12; in theory one in a narrow valley could be missed.
     #[must_use]
     pub fn minimum(&self) -> (DVec3, f64) {

@@ -15,9 +15,9 @@ const MAX_SUMS: usize = 2 * MAX_ORDER + 1;
 /// Projects panoramas of one size to coefficients. Its tables are computed once and serve for many panoramas.
 ///
 /// Rows are summed with cos mφ and sin mφ of their pixels' centres, and those sums with the functions of θ; with
-/// [`Weights::Gregory`] this is exact for any sky of order up to the smaller of width and height less the order, and second
-/// order with the others. (To integrate the basis over each pixel, as if radiance were constant there, would damp
-/// band m by the factor sin(mΔ/2)/(mΔ/2), Δ = 2π/width; also of pixels that are means, which it would damp again.)
+/// [`Weights::Gregory`] this is exact for any sky of order up to the smaller of width and height less the order, and
+/// second order with the others. (To integrate the basis over each pixel, as if radiance were constant there, would
+/// damp band m by the factor sin(mΔ/2)/(mΔ/2), Δ = 2π/width; also of pixels that are means, which it would damp again.)
 pub struct PanoramaProjector {
     width: usize,
     height: usize,

@@ -19,8 +19,8 @@ impl Rotation {
     /// The rotation R for bands 0 to `order`: what was seen along d is seen along R·d afterwards.
     ///
     /// # Errors
-    /// `OrderTooHigh`; `NotARotation` if the columns are not orthonormal within 1e-6, or mirror. Errors that small are kept:
-    /// the result is exact for exact rotations.
+    /// `OrderTooHigh`; `NotARotation` if the columns are not orthonormal within 1e-6, or mirror. Errors that small are
+    /// kept: the result is exact for exact rotations.
     pub fn new(order: usize, rotation: DMat3) -> Result<Self, ShError> {
         checked_order(order)?;
         let rest = rotation.transpose() * rotation - DMat3::IDENTITY;

@@ -16,9 +16,9 @@ pub enum Window {
     Lanczos,
     /// 1/(1 + λ·l²(l+1)²), which costs the least squared error for a given curvature \[3\]; λ = s/(1 − s).
     Laplacian,
-    /// 1 − s for all bands but 0: towards the mean. Against negative irradiance this changes least: the others lose band 2
-    /// first, which in a dark direction is what keeps band 1 from going below 0. Of a map with a minimum of −1.5 % of the peak
-    /// it made the error 9 % of the mean, the others 49 to 62 %, and without it was 7.5 %.
+    /// 1 − s for all bands but 0: towards the mean. Against negative irradiance this changes least: the others lose
+    /// band 2 first, which in a dark direction is what keeps band 1 from going below 0. Of a map with a minimum of −1.5
+    /// % of the peak it made the error 9 % of the mean, the others 49 to 62 %, and without it was 7.5 %.
     #[default]
     Even,
 }

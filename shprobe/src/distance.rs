@@ -36,7 +36,8 @@ impl DistanceMap {
     /// row.
     ///
     /// # Errors
-    /// [`ProbeError::MapSize`]; [`ProbeError::BadDistances`] if there are not `size²`, or one is negative or not finite.
+    /// [`ProbeError::MapSize`]; [`ProbeError::BadDistances`] if there are not `size²`, or one is negative or not
+    /// finite.
     pub fn new(size: usize, moments: Vec<[f32; 2]>) -> Result<Self, ProbeError> {
         check_size(size)?;
         if moments.len() != size * size {
@@ -53,8 +54,8 @@ impl DistanceMap {
     /// infinite ones, count as `far`: world units, above 0, at most [`DistanceMap::FARTHEST`].
     ///
     /// # Errors
-    /// [`ProbeError::MapSize`] if either size is 0 or above [`DistanceMap::MAX_SIZE`]; [`ProbeError::BadOption`] for `far`;
-    /// [`ProbeError::BadDistances`] if there are not `6 · cube_size²`, or one is negative or NaN.
+    /// [`ProbeError::MapSize`] if either size is 0 or above [`DistanceMap::MAX_SIZE`]; [`ProbeError::BadOption`] for
+    /// `far`; [`ProbeError::BadDistances`] if there are not `6 · cube_size²`, or one is negative or NaN.
     pub fn from_cube(size: usize, cube_size: usize, distances: &[f32], far: f32) -> Result<Self, ProbeError> {
         check_size(size)?;
         check_size(cube_size)?;

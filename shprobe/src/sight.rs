@@ -11,8 +11,8 @@ pub(crate) struct Shares {
     count: usize,
 }
 
-/// Most probes that light a position: those of its cell and those nearby. Shares stay continuous with this limit in practice, since
-/// probes at the rim of the neighbourhood have almost no weight.
+/// Most probes that light a position: those of its cell and those nearby. Shares stay continuous with this limit in
+/// practice, since probes at the rim of the neighbourhood have almost no weight.
 const MOST: usize = 64;
 
 impl Shares {
@@ -40,11 +40,12 @@ impl Shares {
     }
 }
 
-/// Factor on the weight of a probe that does not see the position. It is above 0, so that a position that no probe sees is lit as if
-/// all did.
+/// Factor on the weight of a probe that does not see the position. It is above 0, so that a position that no probe sees
+/// is lit as if all did.
 const UNSEEN: f64 = 1e-4;
 
-/// If the probes of the cell that see the position have less weight than this together, nearby probes that see it get shares, too.
+/// If the probes of the cell that see the position have less weight than this together, nearby probes that see it get
+/// shares, too.
 const ENOUGH: f64 = 0.25;
 
 /// Probes by where they are.
@@ -78,8 +79,8 @@ impl Near {
     }
 }
 
-/// The shares of a position in `cell`, by what is seen: weights times visibility, and where little of the cell's weight is left,
-/// other probes nearby that see it, the nearer the more. Continuous if visibility is.
+/// The shares of a position in `cell`, by what is seen: weights times visibility, and where little of the cell's weight
+/// is left, other probes nearby that see it, the nearer the more. Continuous if visibility is.
 pub(crate) fn by_sight(
     cell: &Blend,
     p: DVec3,

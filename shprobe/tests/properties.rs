@@ -76,7 +76,9 @@ proptest! {
     }
 
     #[test]
-    fn changes_give_the_field_of_the_result(probes in probes(), gone in vec(0..30_u32, 0..6), queries in vec(query(), 1..12)) {
+    fn changes_give_the_field_of_the_result(
+        probes in probes(), gone in vec(0..30_u32, 0..6), queries in vec(query(), 1..12)
+    ) {
         let (positions, radiance, maps) = &probes;
         holds!(facts::changes_give_the_field_of_the_result(positions, radiance, maps, &gone, &queries));
     }

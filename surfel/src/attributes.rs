@@ -46,7 +46,8 @@ impl Attributes {
     }
 }
 
-/// Estimates missing attributes and sorts points by Morton code, then by attributes, so that the order of input does not matter.
+/// Estimates missing attributes and sorts points by Morton code, then by attributes, so that the order of input does
+/// not matter.
 pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, Vec<u64>) {
     let count = points.positions.len();
     let cells = parallel::map(count, |i| lattice.cell(points.positions[i]));

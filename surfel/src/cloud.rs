@@ -26,8 +26,9 @@ impl Cloud {
     /// Sorts points into an octree and estimates the attributes that are missing.
     ///
     /// # Errors
-    /// [`SurfelError::NoPoints`], [`SurfelError::TooManyPoints`], [`SurfelError::LengthMismatch`], [`SurfelError::PointNotFinite`],
-    /// [`SurfelError::PointTooFar`], [`SurfelError::BadNormal`], [`SurfelError::BadColor`], [`SurfelError::BadRadius`].
+    /// [`SurfelError::NoPoints`], [`SurfelError::TooManyPoints`], [`SurfelError::LengthMismatch`],
+    /// [`SurfelError::PointNotFinite`], [`SurfelError::PointTooFar`], [`SurfelError::BadNormal`],
+    /// [`SurfelError::BadColor`], [`SurfelError::BadRadius`].
     pub fn new(points: &Points<'_>) -> Result<Self, SurfelError> {
         points.check()?;
         let lattice = Lattice::around(points.positions);

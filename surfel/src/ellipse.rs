@@ -1,17 +1,18 @@
 //! Discs on the picture: ellipses with planes, a vector of items at a time.
 //!
-//! A disc of radius r stands for the covariance σ²·(1 − n·nᵀ) of the plane that it lies in, with unit normal n and σ a share of
-//! r. On the picture that is V = J·σ²(1 − n·nᵀ)·Jᵀ with the Jacobian J of the projection, plus the variance of the lens's blur and
-//! of the pixel, which are discs and squares of the picture itself. With d the way from the projected centre in pixels, the
-//! disc's parameter is
+//! A disc of radius r stands for the covariance σ²·(1 − n·nᵀ) of the plane that it lies in, with unit normal n and σ a
+//! share of r. On the picture that is V = J·σ²(1 − n·nᵀ)·Jᵀ with the Jacobian J of the projection, plus the variance of
+//! the lens's blur and of the pixel, which are discs and squares of the picture itself. With d the way from the
+//! projected centre in pixels, the disc's parameter is
 //!
 //! q(d) = dᵀ·V⁻¹·d / h(d)²,  h(d) = 1 + k·d,
 //!
 //! where h is the depth of the centre over the depth of the plane at d: with V of the disc alone this is the exact
 //! conic of its perspective image, evaluated about the image's own centre, and 1/h scales a depth that is affine in d.
 //!
-//! Steps 1 and 2, place and normal, are those of [`Placed`]. [`project`] goes on with 3 the covariance V, 4 the plane (k, gradient
-//! of the depth, thickness), 5 the kernel (its end, weight and edge), 6 the box of pixels that it may touch.
+//! Steps 1 and 2, place and normal, are those of [`Placed`]. [`project`] goes on with 3 the covariance V, 4 the plane
+//! (k, gradient of the depth, thickness), 5 the kernel (its end, weight and edge), 6 the box of pixels that it may
+//! touch.
 
 use crate::batch::{Projected, Value, WHOLE};
 use crate::camera::Camera;
@@ -96,7 +97,8 @@ impl<S: Simd> Plane<S> {
         let slope = (kx * kx + ky * ky).sqrt() * focal;
         // The radius of a disc as wide as the pair.
         let whole_radius = (disc_radius * disc_radius + (p * p + q * q + r * r) * 4.0).sqrt();
-        // The pixel's part of the ellipse does not extend the disc's plane, and the plane is not followed too close to the eye.
+        // The pixel's part of the ellipse does not extend the disc's plane, and the plane is not followed too close to
+        // the eye.
         let reach = camera.plane_reach(whole_radius * shape.deviation, blur_radius) * (scale * (1.0 / focal));
         let longest = (reach * reach).at_most(NEAREST_PLANE2) * (1.0 / shape.reach2);
         let long = along([kx, ky], [disc[0] + blur, disc[1], disc[2] + blur]).min(longest);
@@ -201,7 +203,8 @@ pub(crate) fn project<S: Simd>(
     }
 }
 
-/// First column, last column (not included), first row and last row of the box around q ≤ R, within a tile, with [`WHOLE`].
+/// First column, last column (not included), first row and last row of the box around q ≤ R, within a tile, with
+/// [`WHOLE`].
 ///
 /// With t = V·k and τ = R·k·t < 1, q ≤ R is an ellipse about R·t/(1 − τ) with the covariance V + R·t·tᵀ/(1 − τ), to the
 /// reach R/(1 − τ).

@@ -18,15 +18,16 @@ pub(crate) fn nearest_behind(layer: &mut Layer, splats: &[Splat], numbers: &[u32
     Arch::new().dispatch(Nearest::<false, _> { depths: &mut layer.depths, splats, open });
 }
 
-/// Puts the sharpness of the disc that is nearest into the first of the sums; the largest of those that are equally near.
+/// Puts the sharpness of the disc that is nearest into the first of the sums; the largest of those that are equally
+/// near.
 pub(crate) fn sharpness_of_nearest(layer: &mut Layer, splats: &[Splat]) {
     layer.sums.fill(Sums::NOTHING);
     Arch::new().dispatch(SharpnessOfNearest { layer, splats });
 }
 
-/// Adds up the splats with these numbers that belong to the nearest surface, in the `FIRST` layer or else in blocks that are `open`;
-/// `behind` gets the numbers of those that have parts behind it. Discs may lie behind a surface by `slack` more than their thickness
-/// (bent depth). Normals are added up if they are `WANTED`.
+/// Adds up the splats with these numbers that belong to the nearest surface, in the `FIRST` layer or else in blocks
+/// that are `open`; `behind` gets the numbers of those that have parts behind it. Discs may lie behind a surface by
+/// `slack` more than their thickness (bent depth). Normals are added up if they are `WANTED`.
 pub(crate) fn add<const FIRST: bool, const WANTED: bool>(
     layer: &mut Layer,
     splats: &[Splat],
@@ -223,8 +224,8 @@ fn add_value<S: Simd>(simd: S, value: f32, weights: S::f32s, sums: &mut S::f32s)
     *sums = simd.add_f32s(*sums, simd.mul_f32s(weights, simd.splat_f32s(value)));
 }
 
-/// A column of blocks under a splat, in one of its rows. Terms that change by a constant from row to row are advanced by an addition: a
-/// third of the operations of computing them anew, at the cost of one digit in the last of 64 rows.
+/// A column of blocks under a splat, in one of its rows. Terms that change by a constant from row to row are advanced
+/// by an addition: a third of the operations of computing them anew, at the cost of one digit in the last of 64 rows.
 struct Strip<S: Simd> {
     /// xx·dx², 2·xy·dx + yy·dy, dy, 1 + kx·dx + ky·dy and the depth.
     qx: S::f32s,

@@ -66,7 +66,8 @@ pub(crate) fn offset(from: u32, to: u32) -> f32 {
     to.wrapping_sub(from) as i32 as f32 * (1.0 / CELLS as f32)
 }
 
-/// The Morton code of a cell, from the highest bits of its numbers: the cells of a node of the octree follow one another.
+/// The Morton code of a cell, from the highest bits of its numbers: the cells of a node of the octree follow one
+/// another.
 pub(crate) fn morton(cell: [u32; 3]) -> u64 {
     morton_code(cell.map(|c| c >> (32 - MORTON_BITS)))
 }

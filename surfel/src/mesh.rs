@@ -75,7 +75,7 @@ impl<'a> Mesh<'a> {
 
     /// The triangle in which this much area, from 0 to all, is used up.
     pub(crate) fn triangle_at(&self, area: f64) -> usize {
-        // Rounding may ask for all of it, which is used up in the last triangle that adds to the sum.
+        // By rounding this may be the whole area: then it is the last triangle that adds to the sum.
         let area = area.min(self.area().next_down());
         self.area_up_to.partition_point(|&up_to| up_to <= area)
     }

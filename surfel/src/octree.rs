@@ -1,4 +1,4 @@
-//! The tree: which points lie in which cube.
+//! The octree: which points lie in which cube.
 
 use pointillist_view::MORTON_BITS;
 use std::ops::Range;

@@ -24,9 +24,9 @@ pub struct Options {
     pub focus: Focus,
     /// Default: [`Procedure::Blended`].
     pub procedure: Procedure,
-    /// Level of detail: points are taken from the coarsest level on which they are at most this many pixels apart, up to √2 times
-    /// as far where the surface is seen at an angle; 0 always takes all points. Default: 1.4, with which about one point falls on a
-    /// pixel, and never less than half a one.
+    /// Level of detail: points are taken from the coarsest level on which they are at most this many pixels apart, up
+    /// to √2 times as far where the surface is seen at an angle; 0 always takes all points. Default: 1.4, with which
+    /// about one point falls on a pixel, and never less than half a one.
     pub level: f32,
     /// Whether nodes that face away or are hidden are skipped; they never show. Default: true.
     pub culling: bool,

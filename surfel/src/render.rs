@@ -43,7 +43,8 @@ impl Renderer {
     /// The same for every order of points and for every number of threads, bit for bit.
     ///
     /// # Errors
-    /// [`SurfelError::TooLarge`] if a side of the picture is above [`Renderer::LARGEST_SIDE`]; [`SurfelError::BadOption`].
+    /// [`SurfelError::TooLarge`] if a side of the picture is above [`Renderer::LARGEST_SIDE`];
+    /// [`SurfelError::BadOption`].
     pub fn draw(
         &mut self,
         cloud: &Cloud,

@@ -13,8 +13,8 @@ const LEAST_WEIGHT: f32 = 1e-30;
 /// A pixel next to one with less weight than this lies on an edge.
 const LEAST_INSIDE: f32 = 0.25;
 
-/// Composites a layer behind what is in `pixels` (nothing before the `FIRST` layer), and clears its sums. Returns the blocks in which
-/// pixels that it touched are not yet opaque. Normals are kept if they are `WANTED`.
+/// Composites a layer behind what is in `pixels` (nothing before the `FIRST` layer), and clears its sums. Returns the
+/// blocks in which pixels that it touched are not yet opaque. Normals are kept if they are `WANTED`.
 pub(crate) fn resolve<const FIRST: bool, const WANTED: bool>(
     layer: &mut Layer,
     pixels: &mut [Pixels],
@@ -137,8 +137,8 @@ fn keep<S: Simd, const FIRST: bool>(new: Vector<S>, mask: S::m32s, empty: f32, k
 /// A value of each pixel of a row. With a block of room on either side.
 type Line = [f32; WIDTH + 2 * LANES];
 
-/// Sums and least weights of three pixels above one another, for each column of a row. Only pixels that were open before this layer
-/// count: the weights that it would have in others are unknown, and these do not count as its edge.
+/// Sums and least weights of three pixels above one another, for each column of a row. Only pixels that were open
+/// before this layer count: the weights that it would have in others are unknown, and these do not count as its edge.
 struct Lines {
     sums: Line,
     least: Line,
@@ -199,8 +199,8 @@ impl Lines {
 
     /// The weights of a vector of pixels, or, inside a surface, those of the 3×3 pixels around each if they are larger.
     ///
-    /// Weights vary between points, which the larger mean evens out. Over a blurred edge weights fall linearly, and the mean equals the
-    /// weight in the middle.
+    /// Weights vary between points, which the larger mean evens out. Over a blurred edge weights fall linearly, and the
+    /// mean equals the weight in the middle.
     #[inline(always)]
     fn evened<S: Simd, const FIRST: bool>(&self, own: Vector<S>, column: usize, i: usize) -> Vector<S> {
         let [left, middle, right] = around(&self.sums, own, column, i);

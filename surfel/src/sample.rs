@@ -11,8 +11,8 @@ pub const MAX_COUNT: usize = 1 << 28;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Amount {
-    /// This many, at least 1. [`Method::Poisson`] makes exactly this many; [`Method::Ldi`] takes the spacing at which this
-    /// many are to be expected.
+    /// This many, at least 1. [`Method::Poisson`] makes exactly this many; [`Method::Ldi`] takes the spacing at which
+    /// this many are to be expected.
     Count(usize),
     /// Points about this far from their neighbours, world units. [`Method::Ldi`]: the distance of the rays.
     /// [`Method::Poisson`]: the distance in a hexagonal lattice of as many points.
@@ -52,14 +52,14 @@ impl SampleOptions {
     /// The defaults, as a constant.
     pub const DEFAULT: Self = Self { amount: Amount::Count(100_000), method: Method::Poisson, seed: 0 };
 
-    /// Asks for so many points.
+    /// Sets the number of points.
     #[must_use]
     pub const fn with_count(mut self, count: usize) -> Self {
         self.amount = Amount::Count(count);
         self
     }
 
-    /// Asks for points so far apart.
+    /// Sets the spacing of the points, world units.
     #[must_use]
     pub const fn with_spacing(mut self, spacing: f64) -> Self {
         self.amount = Amount::Spacing(spacing);
@@ -90,8 +90,8 @@ const CHOSEN: f64 = 0.75;
 /// ([`Method::Poisson`]). The same input gives the same points, bit for bit, on any number of threads.
 ///
 /// # Errors
-/// [`SurfelError::VertexNotFinite`], [`SurfelError::VertexOutOfRange`], [`SurfelError::NoArea`], [`SurfelError::ZeroCount`],
-/// [`SurfelError::BadSpacing`], [`SurfelError::TooManyPoints`], [`SurfelError::TooFine`].
+/// [`SurfelError::VertexNotFinite`], [`SurfelError::VertexOutOfRange`], [`SurfelError::NoArea`],
+/// [`SurfelError::ZeroCount`], [`SurfelError::BadSpacing`], [`SurfelError::TooManyPoints`], [`SurfelError::TooFine`].
 pub fn sample(
     positions: &[DVec3],
     triangles: &[[u32; 3]],

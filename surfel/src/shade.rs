@@ -10,8 +10,8 @@ use pulp::Simd;
 /// Transmittance of all layers so far below which further layers are not drawn: half a step of an 8-bit picture.
 pub(crate) const LEAST_LIGHT: f32 = 1.0 / 512.0;
 
-/// How independent the edges of two layers are: between 1, where a layer covers its share of what those before leave open, and
-/// 0, where it fills that first, as parts of one surface do. Found by experiment with a lens.
+/// How independent the edges of two layers are: between 1, where a layer covers its share of what those before leave
+/// open, and 0, where it fills that first, as parts of one surface do. Found by experiment with a lens.
 pub(crate) const INDEPENDENT: f32 = 0.4;
 
 /// Shading of a frame.

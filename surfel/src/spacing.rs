@@ -5,17 +5,18 @@ use crate::node::Node;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// Points with a blur of radius R may be 3.5 + 0.4·R apart (pixels), but never more than 1.2·R. Found by experiment: wider apart
-/// they show as dots.
+/// Points with a blur of radius R may be 3.5 + 0.4·R apart (pixels), but never more than 1.2·R. Found by experiment:
+/// wider apart they show as dots.
 const BLURRED_START: f32 = 3.5;
 const BLURRED_SLOPE: f32 = 0.4;
 const BLURRED_MOST: f32 = 1.2;
 
-/// Points on a surface that is seen at an angle may be farther apart, so that as many fall on its pixels; but no farther than at this
-/// cosine of the angle.
+/// Points on a surface that is seen at an angle may be farther apart, so that as many fall on its pixels; but no
+/// farther than at this cosine of the angle.
 const LEAST_FACING: f32 = 0.5;
 
-/// How much of the half angle of a node's normals is taken off the angle of their middle: a bent surface faces the eye somewhere.
+/// How much of the half angle of a node's normals is taken off the angle of their middle: a bent surface faces the eye
+/// somewhere.
 const BENT: f32 = 0.5;
 
 /// For boxes in the axes of the picture.

@@ -55,7 +55,7 @@ pub(crate) struct Splat {
     pub(crate) rows: [u8; 2],
     /// How much steeper than the kernel's an edge has to be to look sharp.
     pub(crate) sharpness: f32,
-    /// In its light.
+    /// Color with its light.
     pub(crate) color: [f32; 3],
     /// In the picture's axes.
     pub(crate) normal: [f32; 3],
@@ -101,17 +101,17 @@ impl Splat {
     }
 }
 
-/// How discs are drawn.
+/// Parameters of how discs are drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shape {
     /// Standard deviation of the kernel over the radius, and what it gains from the spread of a pair.
     pub(crate) deviation: f32,
     pub(crate) spread: f32,
-    /// What is added for the pixel.
+    /// Variance that is added for the pixel.
     pub(crate) pixel_variance: f32,
     pub(crate) reach2: f32,
     pub(crate) flat_reach2: f32,
-    /// Blur as a kernel of its own, or as more radius.
+    /// Share of the blur that is a kernel of its own, and share that widens the radius of the disc.
     pub(crate) lens: f32,
     pub(crate) widening: f32,
     /// Whether `sharpness` is to be the radius in pixels.

@@ -1,8 +1,8 @@
 //! A tile of the picture, drawn layer by layer.
 //!
-//! Each layer is the nearest surface behind the one before, wherever pixels are not yet opaque: its depth is that of the
-//! nearest disc, and all discs that lie within their thickness behind that are averaged. Neither depends on the order of
-//! discs, up to the rounding of sums, and that is fixed by the order of nodes.
+//! Each layer is the nearest surface behind the one before, wherever pixels are not yet opaque: its depth is that of
+//! the nearest disc, and all discs that lie within their thickness behind that are averaged. Neither depends on the
+//! order of discs, up to the rounding of sums, and that is fixed by the order of nodes.
 
 use crate::frame::Band;
 use crate::grid::{HEIGHT, SQUARE, TileRect, WIDTH};
@@ -31,7 +31,8 @@ pub(crate) struct Tile {
     behind: Vec<u32>,
     layer: Layer,
     pixels: Vec<Pixels>,
-    /// Farthest depth of each square, +∞ as long as a pixel is empty. None where discs were drawn since it was last asked for.
+    /// Farthest depth of each square, +∞ as long as a pixel is empty. None where discs were drawn since it was last
+    /// asked for.
     farthest: [[Option<f32>; SQUARES[0]]; SQUARES[1]],
     /// Nodes that no pixel of the first layer shows.
     hidden: Vec<Selected>,
@@ -88,7 +89,8 @@ impl Tile {
         write(&self.pixels, &scene.shader, rect, band);
     }
 
-    /// From the splats of the first layer, which touch these pixels, to the colors of all, with normals if they are `WANTED`.
+    /// From the splats of the first layer, which touch these pixels, to the colors of all, with normals if they are
+    /// `WANTED`.
     fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, rect: &TileRect, mut touched: Touched) {
         for blocks in touched.others(rect.height) {
             self.pixels[blocks.clone()].fill(Pixels::EMPTY);
@@ -123,8 +125,8 @@ impl Tile {
         self.projector.project(scene, selected, &Shape::BLENDED, rect, &mut self.splats);
     }
 
-    /// Leaves those of the discs behind that may be seen through `open` pixels, and adds those of hidden nodes, in the order
-    /// of nodes. Returns all that they may touch.
+    /// Leaves those of the discs behind that may be seen through `open` pixels, and adds those of hidden nodes, in the
+    /// order of nodes. Returns all that they may touch.
     fn add_hidden(&mut self, scene: &Scene<'_>, rect: &TileRect, open: &Open) -> Touched {
         let drawn = self.splats.as_slice().len();
         let mut hidden = std::mem::take(&mut self.hidden);

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 /// Where the light of a simply lit picture comes from: one light without shadows, equally strong everywhere.
 ///
-/// Renderers match on it: another kind of light would be a breaking change, on purpose, since each has to say what it does.
+/// Renderers match on it: another kind of light would be a breaking change, on purpose, since each has to say what it
+/// does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Light {
     /// From the eye: at each point of a surface, from where it is seen.

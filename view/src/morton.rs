@@ -3,8 +3,8 @@
 /// Bits of a cell number that go into a [`morton_code`], per axis: three times this fits into 64 bits.
 pub const MORTON_BITS: u32 = 21;
 
-/// The Morton code of a cell of a lattice with 2^[`MORTON_BITS`] cells per axis: bit k of x, y and z is bit 3k, 3k + 1 and 3k + 2 of
-/// the code. Higher bits of the numbers are ignored.
+/// The Morton code of a cell of a lattice with 2^[`MORTON_BITS`] cells per axis: bit k of x, y and z is bit 3k, 3k + 1
+/// and 3k + 2 of the code. Higher bits of the numbers are ignored.
 ///
 /// Cells whose codes agree in all but the lowest 3k bits lie in one cube of 2^k cells per axis.
 ///

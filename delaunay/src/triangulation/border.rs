@@ -8,7 +8,8 @@ use glam::DVec3;
 /// Spheres of flatter cells than this (six times the volume over the longest side cubed) are taken to reach everywhere.
 const FLAT: f64 = 1e-6;
 
-/// Radii are taken this much larger. Rounding moves what a sphere that is not [`FLAT`] reaches by about 1e-8 of its radius.
+/// Radii are taken this much larger. Rounding moves what a sphere that is not [`FLAT`] reaches by about 1e-8 of its
+/// radius.
 const SLACK: f64 = 1e-6;
 
 /// All cells whose sphere may hold a point of a box that lies outside the hull.

@@ -10,7 +10,8 @@ use crate::DelaunayError;
 /// Vertices that coincide: one that is not in the mesh, and the one that is.
 pub(super) type Same = Vec<(Vertex, Vertex)>;
 
-/// The mesh of these vertices, built from the first, and those that are not in it, each with the one in its place that is.
+/// The mesh of these vertices, built from the first, and those that are not in it, each with the one in its place that
+/// is.
 pub(super) fn mesh(
     sites: &Sites,
     vertices: &[Vertex],

@@ -1,4 +1,5 @@
-//! Signs of determinants of differences cut to integers of 61 bits: with 64-bit products, an order of magnitude faster than expansions.
+//! Signs of determinants of differences cut to integers of 61 bits: with 64-bit products, an order of magnitude faster
+//! than expansions.
 //!
 //! Differences of coordinates of similar magnitude are such integers, in a common unit, and the sign is exact.
 //! Otherwise the sign is right where the determinant exceeds what the cuts can change, about 2⁻⁵⁰ of the largest
@@ -126,7 +127,7 @@ fn sign(high: i128, is_zero: bool) -> f64 {
     }
 }
 
-/// The sign of (b−a)×(c−a)·(d−a), if it can be told.
+/// The sign of (b−a)×(c−a)·(d−a); `None` if it is not certain.
 pub(super) fn orient([a, b, c, d]: [DVec3; 4]) -> Option<f64> {
     let cut = Cut::new([b, c, d], a)?;
     let terms = [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| Triple::product(cut.z[k], cut.area(i, j)));
@@ -136,7 +137,7 @@ pub(super) fn orient([a, b, c, d]: [DVec3; 4]) -> Option<f64> {
     is_sure.then(|| sign(high, high == 0 && low == 0))
 }
 
-/// Positive inside the sphere through the corners of a positive tetrahedron, if it can be told.
+/// Positive inside the sphere through the corners of a positive tetrahedron; `None` if the sign is not certain.
 pub(super) fn sphere(corners: [DVec3; 4], p: DVec3) -> Option<f64> {
     let cut = Cut::new(corners, p)?;
     let near = [0, 1, 2, 3].map(|i| cut.area(i, (i + 1) & 3));

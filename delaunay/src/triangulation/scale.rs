@@ -1,8 +1,8 @@
 //! Coordinates in which the predicates neither overflow nor round more than they must.
 //!
-//! Where all coordinates are multiples of one power of two, at most 2⁵³ of them apart, they become integers, counted from the
-//! least of their axis. Otherwise they are multiplied by a power of two, so that the largest is about 1. Neither rounds, but for
-//! inputs whose magnitudes span more than `f64` holds once the largest is 1.
+//! Where all coordinates are multiples of one power of two, at most 2⁵³ of them apart, they become integers, counted
+//! from the least of their axis. Otherwise they are multiplied by a power of two, so that the largest is about 1.
+//! Neither rounds, but for inputs whose magnitudes span more than `f64` holds once the largest is 1.
 
 use glam::DVec3;
 

@@ -12,8 +12,8 @@ fn sorted<const N: usize>(corners: [Vertex; N]) -> [u32; N] {
     sorted
 }
 
-/// Corners of a cell in an order that depends on nothing but the cell. A ghost's tell from which side its face is seen: with the rest of
-/// one half missing, a patch can have the same face as its hull from the other side.
+/// Corners of a cell in an order that depends on the cell alone. Those of a ghost keep the orientation of its face:
+/// with the rest of one half missing, a patch can have the same face on its hull with the opposite orientation.
 fn cell_key(cell: &Cell) -> [u32; 4] {
     if cell.is_finite() {
         return sorted(cell.corners);

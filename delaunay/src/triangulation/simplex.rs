@@ -6,7 +6,7 @@ use super::sites::Sites;
 /// What a set of points spans, by points that do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Simplex {
-    /// All coincide, or there are none.
+    /// All points coincide, or there are no points.
     Point,
     /// All lie on a line, not all in one place.
     Line,

@@ -11,13 +11,13 @@ use glam::DVec3;
 
 /// A mesh of tetrahedra, or of the triangles that are their bases.
 ///
-/// Points of a plane get one vertex more, the apex, off the plane. A sphere through three of them and the apex meets the
-/// plane in their circle, so the tetrahedra stand on the Delaunay triangles: exactly, however the plane is tilted.
+/// Points of a plane get one vertex more, the apex, off the plane. A sphere through three of them and the apex meets
+/// the plane in their circle, so the tetrahedra stand on the Delaunay triangles: exactly, however the plane is tilted.
 #[derive(Clone, Debug)]
 pub(super) struct Solid {
     pub(super) sites: Sites,
     pub(super) mesh: Mesh,
-    /// The point that a vertex is, and [`OUTSIDE`] for those that are none.
+    /// The point of each vertex; [`OUTSIDE`] for vertices without a point.
     pub(super) index: Vec<u32>,
     /// The vertex that a point is.
     vertex: Vec<Vertex>,
@@ -53,8 +53,8 @@ impl Solid {
         Self { sites, mesh, index, vertex, apex, cavity, hole: Hole::default() }
     }
 
-    /// Of points that coincide, lets the first stand for all: `same` has a vertex and the one in the mesh that lies there.
-    /// Writes who stands for whom.
+    /// Of points that coincide, lets the first stand for all: `same` has a vertex and the one in the mesh that lies
+    /// there. Writes the representative of each point.
     pub(super) fn merge(&mut self, same: &[(Vertex, Vertex)], representative: &mut [u32]) {
         for &(v, kept) in same {
             if self.index[v.slot()] < self.index[kept.slot()] {
@@ -123,8 +123,8 @@ impl Solid {
         self.index[v.slot()] = to;
     }
 
-    /// Whether a triangle of these points turns counterclockwise as seen along the first axis, of z, y and x, from which it is
-    /// not seen edge on.
+    /// Whether a triangle of these points turns counterclockwise as seen along the first axis, of z, y and x, from
+    /// which it is not seen edge on.
     pub(super) fn is_counterclockwise(&self, triangle: [u32; 3]) -> bool {
         self.sites
             .normal_signs(triangle.map(|i| self.vertex[i as usize]))

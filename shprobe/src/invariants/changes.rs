@@ -5,7 +5,8 @@ use crate::sh::Sh;
 use crate::{DistanceMap, Field, Hint};
 use glam::DVec3;
 
-/// Two fields have the same probes, cells, coefficients and distances, and give every position the same shares, all bit for bit.
+/// Two fields have the same probes, cells, coefficients and distances, and give every position the same shares, all bit
+/// for bit.
 ///
 /// # Errors
 /// What differs.
@@ -25,7 +26,8 @@ pub fn fields_are_equal(a: &Field, b: &Field, queries: &[DVec3]) -> Result<(), S
     Ok(())
 }
 
-/// Probes that are inserted and removed again leave the field as it was, bit for bit; so does an insertion that is refused.
+/// Probes that are inserted and removed again leave the field as it was, bit for bit; so does an insertion that is
+/// refused.
 ///
 /// # Errors
 /// What differs.
@@ -49,8 +51,9 @@ pub fn insert_then_remove_restores(
     fields_are_equal(field, &changed, queries)
 }
 
-/// A field to which probes are added in two steps, and from which then some are removed, is the one made of the probes that are left,
-/// bit for bit. `distances` are none, or one for each probe; entries of `gone` that are no probe are passed over.
+/// A field to which probes are added in two steps, and from which then some are removed, is the one made of the probes
+/// that are left, bit for bit. `distances` are none, or one for each probe; entries of `gone` that are no probe are
+/// passed over.
 ///
 /// # Errors
 /// What differs.

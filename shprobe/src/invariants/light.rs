@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 /// What may be missing from a sum of shares to 1: each of up to 64 is divided by their sum, and rounded.
 const SUM_ERROR: f64 = 64.0 * f64::EPSILON;
 
-/// Relative error of irradiance in a field of constant light: sums of up to 64 terms in single precision, each a product of three
-/// rounded numbers, are off by less than 70 half ulps.
+/// Relative error of irradiance in a field of constant light: sums of up to 64 terms in single precision, each a
+/// product of three rounded numbers, are off by less than 70 half ulps.
 pub const CONSTANT_ERROR: f64 = 70.0 * 0.5 * f32::EPSILON as f64;
 
 /// What such a sum is off by where its terms are below the normal numbers of `f32`.
@@ -34,8 +34,8 @@ pub fn shares_sum_to_one(field: &Field, positions: &[DVec3]) -> Result<(), Strin
     Ok(())
 }
 
-/// Where all probes hold the same radiance from everywhere, `radiance` ≥ 0, irradiance is π times that at every position and for
-/// every normal, within [`CONSTANT_ERROR`]; also for moving objects, and whatever probes see.
+/// Where all probes hold the same radiance from everywhere, `radiance` ≥ 0, irradiance is π times that at every
+/// position and for every normal, within [`CONSTANT_ERROR`]; also for moving objects, and whatever probes see.
 ///
 /// # Errors
 /// The first position at which it is not.
@@ -71,8 +71,8 @@ pub fn constant_light_stays_constant(
     Ok(())
 }
 
-/// Where a query starts decides only how long it takes: with the hint of any other position, one by one or many at once, irradiance is the
-/// same within `tolerance` of the largest that a probe holds.
+/// Where a query starts decides only how long it takes: with the hint of any other position, one by one or many at
+/// once, irradiance is the same within `tolerance` of the largest that a probe holds.
 ///
 /// # Errors
 /// The first position at which it is not.

@@ -1,4 +1,5 @@
-//! Facts that hold for every field of probes, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
+//! Facts that hold for every field of probes, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was
+//! found instead.
 //!
 //! For property testers and fuzzers: the tests of this crate and its fuzz target call them, and so can those of a crate
 //! that builds on it, with the feature `invariants`. Each takes any input at all; what is refused satisfies every fact.

@@ -7,8 +7,8 @@ use glam::DVec3;
 /// Offsets longer than this are not checked: sums of their coordinates leave the range of `f64`.
 const LONGEST: f64 = 1e300;
 
-/// Visibility is 0 to 1, 1 at the probe itself, and does not grow with the distance in one direction. Distances are doubled, which leaves the
-/// direction the same to the bit.
+/// Visibility is 0 to 1, 1 at the probe itself, and does not grow with the distance in one direction. Distances are
+/// doubled, which leaves the direction the same to the bit.
 ///
 /// # Errors
 /// The first offset from the probe at which it does.
@@ -25,8 +25,8 @@ pub fn visibility_falls_with_distance(map: &DistanceMap, offsets: &[DVec3]) -> R
     Ok(())
 }
 
-/// [`place::spread`] chooses different finite candidates, as many as are asked for if there are so many positions, and none left out is
-/// farther from those chosen than these are from one another (within 1e-12 of the distance).
+/// [`place::spread`] chooses different finite candidates, as many as are asked for if there are so many positions, and
+/// none left out is farther from those chosen than these are from one another (within 1e-12 of the distance).
 ///
 /// # Errors
 /// The candidates that are too close.

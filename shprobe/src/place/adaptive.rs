@@ -80,10 +80,11 @@ pub struct Adaptive {
     pub error: f64,
 }
 
-/// Chooses probes among candidates so that interpolation between them errs little, over all candidates and all directions.
+/// Chooses probes among candidates so that interpolation between them errs little, over all candidates and all
+/// directions.
 ///
-/// 1. All candidates are probes. Take out, round by round, those that are missed least, never two neighbours at once, until the
-///    count is reached; with an error to be reached, on until the next would go beyond it.
+/// 1. All candidates are probes. Take out, round by round, those that are missed least, never two neighbours at once,
+///    until the count is reached; with an error to be reached, on until the next would go beyond it.
 /// 2. Exchange: take out the probe that is missed least and insert what helps most, while that lowers the error.
 ///
 /// Removing probes works where inserting them fails: a small bright region needs several probes around it before the
@@ -91,8 +92,8 @@ pub struct Adaptive {
 /// are given. The result does not depend on threads.
 ///
 /// # Errors
-/// [`ProbeError::NoProbes`], [`ProbeError::CountMismatch`], [`ProbeError::PositionNotFinite`], [`ProbeError::MixedOrders`],
-/// [`ProbeError::BadRadiance`], [`ProbeError::BadWeight`], [`ProbeError::BadOption`].
+/// [`ProbeError::NoProbes`], [`ProbeError::CountMismatch`], [`ProbeError::PositionNotFinite`],
+/// [`ProbeError::MixedOrders`], [`ProbeError::BadRadiance`], [`ProbeError::BadWeight`], [`ProbeError::BadOption`].
 pub fn adaptive(candidates: Candidates<'_>, options: &AdaptiveOptions) -> Result<Adaptive, ProbeError> {
     let bench = Bench::new(candidates, options.balance)?;
     check_amount("max_error", options.max_error)?;

@@ -47,8 +47,8 @@ impl Default for FitOptions {
 const ENOUGH: f64 = 1e-8;
 const MOST_STEPS: usize = 500;
 
-/// What each of the `chosen` candidates should hold as a probe so that interpolation between them comes closest, in the sense of
-/// least squares, to what all candidates saw.
+/// What each of the `chosen` candidates should hold as a probe so that interpolation between them comes closest, in the
+/// sense of least squares, to what all candidates saw.
 ///
 /// A probe that holds what it saw is exact at its own position, but biased all around it where light has a peak or a
 /// minimum there. A fitted probe has a small error everywhere and a much smaller one on the whole. \[6\] does the same

@@ -2,10 +2,12 @@
 
 use glam::{DVec3, dvec3};
 
-/// Distance of a grid's outer probes from the box, over the spacing of a grid that fills it: probes should not lie in walls.
+/// Distance of a grid's outer probes from the box, over the spacing of a grid that fills it: probes should not lie in
+/// walls.
 const INSET: f64 = 0.1;
 
-/// `nx · ny · nz` probes evenly in a box, x fastest; the outer ones a tenth of a cell inside of it. One along an axis lies in the middle.
+/// `nx · ny · nz` probes evenly in a box, x fastest; the outer ones a tenth of a cell inside of it. One along an axis
+/// lies in the middle.
 ///
 /// # Panics
 /// If there are more than `usize` can count, or than memory holds.

@@ -10,7 +10,8 @@ pub(super) struct Thinned {
     pub(super) errors: Vec<(usize, f64)>,
 }
 
-/// Part of the probes that a round may take out, as long as they are not neighbours: small, since costs are found one by one.
+/// Part of the probes that a round may take out, as long as they are not neighbours: small, since costs are found one
+/// by one.
 const SHARE: usize = 20;
 
 /// Takes out probes until `limit` are left, and on as long as the squared error stays within `enough`.
@@ -45,8 +46,8 @@ pub(super) fn thin(bench: &Bench<'_>, limit: usize, enough: f64) -> Result<Thinn
     Ok(Thinned { chosen, outcome, errors })
 }
 
-/// Up to `count` probes, as indices into those chosen, none a neighbour of another, whose loss costs least; one at least, and further
-/// ones as long as they cost `budget` together.
+/// Up to `count` probes, as indices into those chosen, none a neighbour of another, whose loss costs least; one at
+/// least, and further ones as long as they cost `budget` together.
 fn cheapest(
     bench: &Bench<'_>,
     chosen: &[u32],
