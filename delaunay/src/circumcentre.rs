@@ -65,11 +65,11 @@ pub fn circumcentre(corners: &[DVec3]) -> Option<DVec3> {
     centre.filter(|c| c.is_finite())
 }
 
-/// A power of two that brings the longest of these to about 1, if they are numbers.
+/// A power of two that brings the longest of these to about 1; `None` if one is not finite, or if scaling could round.
 fn scale_of(sides: &[DVec3]) -> Option<f64> {
     let longest = sides.iter().fold(0.0_f64, |m, s| m.max(s.abs().max_element()));
     let scale = power_of_two_to_one(longest);
-    // Neither the scale nor what it is taken off again may round.
+    // Neither multiplying by the scale nor dividing by it again may round.
     (longest.is_finite() && (1e-290..1e290).contains(&longest)).then_some(scale)
 }
 

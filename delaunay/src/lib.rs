@@ -1,4 +1,4 @@
-//! Exact Delaunay tetrahedra of any points, in safe Rust: built, changed point by point, and asked.
+//! Exact Delaunay tetrahedra of any points, in safe Rust: built, changed point by point, and queried.
 //!
 //! ```
 //! use glam::{DVec3, dvec3};

@@ -332,7 +332,7 @@ impl Starts {
 
 /// About `boxes` boxes, as near to cubes as whole numbers of them can be.
 fn box_counts(extent: DVec3, boxes: f64) -> UVec3 {
-    // Thin extents get one box, and what they leave goes to the others.
+    // Thin extents get one box, and the other axes share the remaining number.
     let mut count = dvec3(1.0, 1.0, 1.0);
     let mut free = [true; 3];
     loop {

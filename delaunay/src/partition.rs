@@ -1,4 +1,4 @@
-//! How points divide space: tetrahedra, or what is left of them where points lie in a plane, on a line or in one place.
+//! How points divide space: into tetrahedra, or triangles, segments or a point where they span fewer dimensions.
 
 use crate::DelaunayError;
 

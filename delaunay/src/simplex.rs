@@ -1,4 +1,4 @@
-//! One cell as a query sees it: the map from a position to barycentric coordinates, and what lies beyond each side.
+//! One cell, prepared for queries: the map from a position to barycentric coordinates, and what lies beyond each side.
 
 use glam::DVec3;
 

@@ -16,7 +16,7 @@ impl Partition {
     ///    (Delaunay's lemma).
     /// 4. The sides without a neighbour close up to a hull that bends inward nowhere.
     ///
-    /// Linear in the number of cells. It does not ask whether every point is a corner: those removed, and those that
+    /// Linear in the number of cells. It does not check that every point is a corner: those removed, and those that
     /// coincide with others, are not.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use crate::cloud::Cloud;
 use crate::project::{BATCH, Band, Projected};
 use pulp::Arch;
 
-/// A block as this frame sees it.
+/// A block in this frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BlockView {
     rows: [f32; 12],

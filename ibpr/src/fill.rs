@@ -1,6 +1,6 @@
 //! Pull-push: pixels without points that lie between pixels with points of one surface.
 //!
-//! Only what is enclosed is filled, so outlines do not grow. At the buffer's own size a gap takes the mean
+//! Only enclosed pixels are filled, so outlines do not grow. At the buffer's own size a gap takes the mean
 //! of opposite neighbours that belong together. For wider gaps the buffer is averaged to half its size
 //! (pull); what is enclosed by its own surface there covers the gaps below it (push). A gap is a pixel
 //! without points, or one through which a surface further behind is seen.

@@ -109,7 +109,7 @@ const STIFFNESS: f32 = 0.02;
 
 impl Window {
     /// Least squares for all lanes at once, by LDLᵀ: (1) the lower half of the normal equations, (2) L and
-    /// D, with the right side carried along, (3) what is not explained, (4) back substitution.
+    /// D, with the right side carried along, (3) the residual, (4) back substitution.
     #[inline(always)]
     fn solve<const RESIDUAL: bool>(&self) -> [Fit; LANES] {
         let mut m = [[[0.0; LANES]; TERMS]; TERMS];

@@ -30,7 +30,7 @@
 //! # Accuracy and cost
 //! Positions are `f64` relative to their block, then `f32` in units of the cloud's size; depth is kept relative to the
 //! middle of the cloud. Sums run in the cloud's own order, so a picture does not depend on the order of the
-//! input or on threads. Time goes into the picture's faces and the buffer's fits more than into points:
+//! input or on threads. Faces of the picture and fits of the buffer take more time than points:
 //! `studies/results/ibpr.md` has time against error for every option, and the paper's own times beside ours.
 //!
 //! # Features

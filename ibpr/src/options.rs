@@ -242,7 +242,7 @@ impl Options {
         self
     }
 
-    /// Sets what is skipped because it faces away.
+    /// Sets the rule of back-face culling.
     #[must_use]
     pub const fn with_culling(mut self, culling: Culling) -> Self {
         self.culling = culling;

@@ -1,4 +1,4 @@
-//! What a picture pixel keeps of the faces over it: the nearest surface, or several.
+//! The surfaces that a picture pixel keeps of the faces over it: the nearest one, or several.
 
 use crate::buffer::DepthScale;
 use crate::options::Translucency;

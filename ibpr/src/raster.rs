@@ -1,4 +1,4 @@
-//! Small triangles into a strip of the picture.
+//! Draws small triangles into a strip of the picture.
 
 use crate::buffer::SUBPIXEL;
 

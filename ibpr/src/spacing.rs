@@ -75,7 +75,7 @@ pub(crate) fn of_all(ordered: &[Ordered], lattice: &Lattice, spacing: f64, point
     for o in ordered {
         let start = cells.len();
         cells.extend(o.codes.iter().map(|c| c >> shift));
-        // Codes come sorted: what repeats within a scan goes before the sort.
+        // Codes of a scan are sorted: repeated ones are removed before the sort of all.
         let mut kept = start;
         for i in start..cells.len() {
             if kept == start || cells[kept - 1] != cells[i] {

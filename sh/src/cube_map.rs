@@ -87,7 +87,7 @@ impl CubeMap {
         })
     }
 
-    /// The unit direction of a texel's centre (also beyond the face: its plane goes on).
+    /// The unit direction of a texel's centre (also for indices beyond the face, on its plane).
     #[must_use]
     pub fn texel_direction(&self, face: usize, x: usize, y: usize) -> DVec3 {
         texel_way(self.size, face, x, y).normalize()

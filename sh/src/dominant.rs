@@ -62,8 +62,8 @@ impl Sh {
     /// \[3\], dominant light). `None` below order 1, and where light has no direction.
     ///
     /// Its direction is that of the linear band's luminance. Per color it is not below 0, and not above what the mean
-    /// allows. It is more than what a lamp or the sun gives alone: a sky brighter on one side is a light, too. To take
-    /// lights out, see [`Sh::split`].
+    /// allows. It is more than what a lamp or the sun gives alone: a sky brighter on one side counts as a light, too.
+    /// To take lights out, see [`Sh::split`].
     #[must_use]
     pub fn dominant_light(&self) -> Option<DominantLight> {
         let linear = self.band(1);

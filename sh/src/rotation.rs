@@ -66,7 +66,8 @@ impl Rotation {
 }
 
 impl<T: Channel> Sh<T> {
-    /// Turned: what is seen along d is then seen along R·d. For many with the same rotation, see [`Rotation`].
+    /// The rotated function: what was seen along d is seen along R·d. For many functions with the same rotation, see
+    /// [`Rotation`].
     ///
     /// # Errors
     /// `NotARotation` unless the quaternion has unit length.

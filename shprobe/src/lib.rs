@@ -20,7 +20,7 @@
 //! ```
 //!
 //! * [`Field`]: light at a position, on a surface, and on many moving objects at once.
-//! * [`DistanceMap`]: what a probe sees, so that light does not pass through walls.
+//! * [`DistanceMap`]: distances to what a probe sees, so that light does not pass through walls.
 //! * [`place`]: where to put probes; [`place::adaptive`] chooses them by the error of interpolation.
 //!
 //! What probes hold are functions of the crate [`sh`]; the space between them is divided by the crate [`delaunay`],

@@ -9,7 +9,7 @@ pub(crate) const BATCH: usize = 64;
 
 pub(crate) type Values = [f32; BATCH];
 
-/// What [`Projected`] holds of each item.
+/// The values that [`Projected`] holds of each item.
 #[derive(Clone, Copy)]
 pub(crate) enum Value {
     X,

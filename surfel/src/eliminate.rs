@@ -84,7 +84,7 @@ impl Queue {
             }
             let place = first as usize;
             self.first[self.top] = self.next[place];
-            // Weights only fall: what is up to date in the highest step is the heaviest.
+            // Weights only fall: a point of the highest step whose weight is up to date is the heaviest.
             if self.step(weights[place]) == self.top {
                 return Some(place);
             }

@@ -1,6 +1,6 @@
 //! Errors of meshes, clouds and options.
 
-/// What can be wrong with a mesh or a cloud, or with what is asked of them.
+/// Errors of meshes, clouds, views and options.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfelError {

@@ -28,9 +28,9 @@ pub struct FrameCounts {
     pub nodes: usize,
     /// Nodes among them that were skipped in all tiles, because other surfaces hide them.
     pub nodes_hidden: usize,
-    /// Nodes outside the view; what is below them is not looked at.
+    /// Nodes outside the view; their children are not visited.
     pub nodes_outside: usize,
-    /// Nodes that face away; what is below them is not looked at.
+    /// Nodes that face away; their children are not visited.
     pub nodes_facing_away: usize,
     /// Points of the drawn nodes, links included.
     pub points: usize,

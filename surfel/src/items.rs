@@ -1,4 +1,4 @@
-//! What a node draws, in the node's own frame: its points or links, one by one or in pairs.
+//! The items that are drawn for a node, in the node's own frame: its points or links, one by one or in pairs.
 
 use crate::attributes::Attributes;
 use crate::batch::BATCH;

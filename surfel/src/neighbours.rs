@@ -157,9 +157,9 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Looks into a range of places whose box is so far away along each axis.
+    /// Searches a range of places whose box is at these distances along the axes.
     ///
-    /// Rounding cannot hide a place: differences, squares and sums are made in the same order as for a place's
+    /// Rounding cannot make it miss a place: differences, squares and sums are made in the same order as for a place's
     /// distance, and each of them rounds a smaller number to no larger one.
     fn visit(&mut self, splits: &[Split], range: std::ops::Range<usize>, away: DVec3) {
         let Some((split, rest)) = splits.first().zip(splits.get(1..)).filter(|_| range.len() > LEAF) else {

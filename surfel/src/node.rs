@@ -1,4 +1,4 @@
-//! The nodes of the octree as the renderer sees them: boxes, cones of normals, and what is drawn for them.
+//! The nodes of the octree for the renderer: boxes, cones of normals, and the items that are drawn for them.
 
 use crate::attributes::{Attributes, SMALLEST};
 use crate::lattice::{between, offset};
@@ -19,7 +19,7 @@ pub(crate) struct Cone {
     pub(crate) half_angle_rad: f32,
 }
 
-/// A cube of the octree as the renderer sees it.
+/// A cube of the octree, for the renderer.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Node {
     /// Middle of the box around its points.

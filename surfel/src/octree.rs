@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Most points of a leaf that can be divided.
 pub(crate) const LEAF: usize = 256;
 
-/// A cube that holds points, without what is in it.
+/// A cube of the octree: the range of its points, and its children.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cube {
     /// Its points, in Morton order.

@@ -28,7 +28,7 @@ pub struct Options {
     /// to √2 times as far where the surface is seen at an angle; 0 always takes all points. Default: 1.4, with which
     /// about one point falls on a pixel, and never less than half a one.
     pub level: f32,
-    /// Whether nodes that face away or are hidden are skipped; they never show. Default: true.
+    /// Whether nodes that face away or are hidden are skipped, which never changes the picture. Default: true.
     pub culling: bool,
     /// Default: [`Light::Eye`].
     pub light: Light,
@@ -59,7 +59,7 @@ impl Options {
         surface_layers: false,
     };
 
-    /// Sets what is sharp.
+    /// Sets the depth of field.
     #[must_use]
     pub const fn with_focus(mut self, focus: Focus) -> Self {
         self.focus = focus;

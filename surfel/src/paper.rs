@@ -198,7 +198,7 @@ impl<'a> Filter<'a> {
             }
         });
         if sums.weight == 0.0 {
-            // No link in reach: what is covered stays covered.
+            // No link in reach: a covered pixel stays opaque.
             return self.nearest_link(radius, depth).unwrap_or(blank);
         }
         let alpha = if blurred || differ { sums.covered / sums.all } else { 1.0 };

@@ -145,7 +145,7 @@ fn disc(places: &Places, sides: &Sides, side: usize) -> Disc {
     disc
 }
 
-/// A neighbour as its point sees it.
+/// A neighbour in the frame of its point.
 struct Neighbour {
     distance2: f64,
     offset: DVec3,

@@ -51,7 +51,7 @@ impl Shader {
         cosine.at_least(0.0).at_most(1.0)
     }
 
-    /// Cosine between normal and the way to the eye.
+    /// Cosine between the normal and the direction to the eye.
     #[inline(always)]
     fn facing_eye<S: Simd>(&self, normal: [Vector<S>; 3], (x, y): (Vector<S>, Vector<S>)) -> Vector<S> {
         if !self.camera.is_perspective {

@@ -55,7 +55,7 @@ impl Depths {
     }
 }
 
-/// Angles between the normals of a node and the way to the eye, radians.
+/// Angles between the normals of a node and the direction to the eye, radians.
 pub(crate) struct Angles {
     /// None is smaller.
     pub(crate) least_rad: f32,

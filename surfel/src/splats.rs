@@ -1,4 +1,4 @@
-//! The discs of a tile.
+//! The list of the discs of a tile.
 
 use crate::batch::Projected;
 use crate::splat::Splat;

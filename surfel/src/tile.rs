@@ -89,7 +89,7 @@ impl Tile {
         write(&self.pixels, &scene.shader, rect, band);
     }
 
-    /// From the splats of the first layer, which touch these pixels, to the colors of all, with normals if they are
+    /// Composites all layers, beginning with the splats of the first, which touch these pixels; with normals if they are
     /// `WANTED`.
     fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, rect: &TileRect, mut touched: Touched) {
         for blocks in touched.others(rect.height) {

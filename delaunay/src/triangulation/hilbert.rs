@@ -1,8 +1,9 @@
 //! Places along Hilbert's curve through a cube, and the order in which vertices are inserted.
 //!
-//! Points near each other on the curve are near in space, so that each is found in a few steps from the one before. A
-//! curve alone would meet bad cases; so vertices go in rounds, each a random choice about as large as all before it
-//! several times over (Amenta, Choi and Rote's biased randomised insertion order), and along the curve within a round.
+//! Points near each other on the curve are near in space, so that each is found in a few steps from the one before. The
+//! order along a curve alone has bad worst cases, so vertices are inserted in rounds, each a random choice about as
+//! large as all before it several times over (Amenta, Choi and Rote's biased randomised insertion order), and along the
+//! curve within a round.
 
 use super::scale::Scale;
 use crate::parallel;

@@ -23,7 +23,7 @@ impl PowerOfTwo {
     }
 }
 
-/// From what was given to what is computed with.
+/// The map from given coordinates to those that are computed with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
     origin: DVec3,

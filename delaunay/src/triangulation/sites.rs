@@ -2,7 +2,7 @@
 //!
 //! Both are answered exactly. A determinant in `f64` decides whenever it is larger than its error can be, for which one
 //! bound serves all points: it follows from the longest side of their box. On small integers there is no error, so the
-//! bound is 0. What is left goes to [`Exact`].
+//! bound is 0. [`Exact`] decides the rest.
 
 use super::cell::{Vertex, replaced};
 use super::exact::{self, Exact};

@@ -85,7 +85,8 @@ pub struct Adaptive {
 ///
 /// 1. All candidates are probes. Take out, round by round, those that are missed least, never two neighbours at once,
 ///    until the count is reached; with an error to be reached, on until the next would go beyond it.
-/// 2. Exchange: take out the probe that is missed least and insert what helps most, while that lowers the error.
+/// 2. Exchange: remove the probe whose loss costs least and insert the one that lowers the error most, while the error
+///    falls.
 ///
 /// Removing probes works where inserting them fails: a small bright region needs several probes around it before the
 /// first of them lowers the error. Interpolation is that of [`Field`](crate::Field), with visibility where distances
@@ -154,7 +155,7 @@ fn best(bench: &Bench<'_>, sets: Vec<Vec<u32>>) -> Result<Option<State>, ProbeEr
     Ok(best)
 }
 
-/// Candidates worth trying: of each cell the worst lit, from the cells that are wrong most.
+/// Candidates to try: of each cell the one with the largest error, from the cells with the largest errors.
 fn shortlist(bench: &Bench<'_>, state: &State, trials: usize) -> Vec<u32> {
     let Some(outcome) = &state.outcome else { return vec![] };
     let mut cells: BTreeMap<[u32; 4], (f64, u32)> = BTreeMap::new();

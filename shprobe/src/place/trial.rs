@@ -28,7 +28,7 @@ impl<'a> Candidates<'a> {
         Self { positions, radiance, distances: None, weights: None }
     }
 
-    /// Sets how far each sees: one map per position.
+    /// Sets the distances that each sees: one map per position.
     #[must_use]
     pub const fn with_distances(mut self, distances: &'a [DistanceMap]) -> Self {
         self.distances = Some(distances);
@@ -78,13 +78,13 @@ fn check_weights(weights: Option<&[f64]>) -> Result<(), ProbeError> {
     }
 }
 
-/// Refuses what is not from 0 to 1.
+/// Refuses an option that is not from 0 to 1.
 fn check_share(name: &'static str, value: f64) -> Result<(), ProbeError> {
     let is_share = (0.0..=1.0).contains(&value);
     if is_share { Ok(()) } else { Err(ProbeError::BadOption { name, value, range: "it must be 0 to 1" }) }
 }
 
-/// Refuses what is negative or not finite.
+/// Refuses an option that is negative or not finite.
 pub(super) fn check_amount(name: &'static str, value: f64) -> Result<(), ProbeError> {
     let range = "it must be finite and at least 0";
     if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(ProbeError::BadOption { name, value, range }) }
