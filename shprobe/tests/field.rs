@@ -310,7 +310,7 @@ fn changes_that_do_not_fit_are_refused_and_change_nothing() {
     assert!(matches!(Field::from_parts(&positions, beyond, &radiance), Err(ProbeError::Cells(_))));
 }
 
-/// Light beyond single precision was infinite, and distances between far probes were no numbers.
+/// Light beyond single precision was infinite, and distances between far probes were NaN.
 #[test]
 fn what_no_light_can_be_computed_of_is_refused() {
     let positions = [DVec3::ZERO, DVec3::X];
@@ -336,7 +336,7 @@ fn what_no_light_can_be_computed_of_is_refused() {
     assert_eq!(field.with_bias(0.5).unwrap().bias(), 0.5);
 }
 
-/// Sizes overflowed, and a `far` that is no distance made maps that see through everything.
+/// Sizes overflowed, and a `far` that is NaN or negative made maps without any walls.
 #[test]
 fn maps_that_cannot_be_are_refused() {
     let limit = DistanceMap::MAX_SIZE;
@@ -354,7 +354,7 @@ fn maps_that_cannot_be_are_refused() {
     assert!(farthest.moments().iter().flatten().all(|m| m.is_finite()));
 }
 
-/// Weights and options that are no numbers chose one probe and called it faultless.
+/// With weights and options that were NaN one probe was chosen, with an error of 0.
 #[test]
 fn placement_refuses_weights_and_options_that_are_no_numbers() {
     let positions = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
@@ -381,7 +381,7 @@ fn placement_refuses_weights_and_options_that_are_no_numbers() {
     }
 }
 
-/// The first candidate was taken again and again, because its distance to the others was no number.
+/// The first candidate was taken again and again, because its distance to the others was NaN.
 #[test]
 fn candidates_that_are_not_finite_are_never_taken() {
     let candidates = [DVec3::NAN, DVec3::ONE, DVec3::INFINITY, DVec3::ZERO];

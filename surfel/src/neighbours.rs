@@ -151,7 +151,8 @@ struct Search<'a> {
     places: &'a Places,
     from: DVec3,
     count: usize,
-    /// Nothing farther is wanted: the reach, or the last one found once they are as many as wanted.
+    /// Squared distance beyond which places are ignored: that of the reach or, once `count` places are found, of the
+    /// last one.
     limit2: f64,
     found: &'a mut Vec<Near>,
 }

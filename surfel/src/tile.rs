@@ -89,8 +89,8 @@ impl Tile {
         write(&self.pixels, &scene.shader, rect, band);
     }
 
-    /// Composites all layers, beginning with the splats of the first, which touch these pixels; with normals if they are
-    /// `WANTED`.
+    /// Composites all layers, beginning with the splats of the first, which touch these pixels; with normals if they
+    /// are `WANTED`.
     fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, rect: &TileRect, mut touched: Touched) {
         for blocks in touched.others(rect.height) {
             self.pixels[blocks.clone()].fill(Pixels::EMPTY);

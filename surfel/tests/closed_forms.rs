@@ -1,4 +1,4 @@
-//! Frames against what must come out: spheres, lenses, edges.
+//! Frames compared with closed forms: spheres, lenses, edges.
 
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_surfel::invariants::{
@@ -140,7 +140,7 @@ fn a_sphere_has_its_outline_by_the_paper_too() {
     }
 }
 
-/// What is wrong with pictures of a sphere: from 3 pixels across to points that are 20 pixels apart, on all levels
+/// Errors of pictures of a sphere: from 3 pixels across to points that are 20 pixels apart, on all levels
 /// between.
 fn holes(cloud: &Cloud, procedure: Procedure) -> Vec<String> {
     let eye = dvec3(0.7, 0.5, 1.0).normalize();
@@ -255,7 +255,7 @@ fn a_thin_lens_blurs_a_point_over_its_circle_of_confusion() {
     }
 }
 
-/// What is blurred covers as much as what is sharp.
+/// A blurred surface covers as much as a sharp one.
 #[test]
 fn the_energy_of_a_blurred_point_is_conserved() {
     let dot = OwnedPoints {
