@@ -17,9 +17,12 @@ const STEP: f32 = 10.0;
 /// A surface this many units behind its surroundings is another one: beyond γ and what noise adds to it.
 const BEHIND: f32 = 3.0;
 
-/// Fewest of the four pairs of opposite neighbours that must agree for a gap to be filled. A slit between two surfaces
-/// is bridged by one pair only, and stays open.
+/// Fewest of the four pairs of opposite neighbours that must agree for a pixel that shows a surface further behind to be
+/// covered, and for any gap to be filled from the pyramid. A slit between two surfaces is bridged by one pair only, and
+/// stays open.
 const ENCLOSED: usize = 3;
+
+/// The same for a pixel without points, from its direct neighbours.
 const ENCLOSED_EMPTY: usize = 1;
 
 /// Rows that are searched together.

@@ -65,7 +65,7 @@ pub(crate) fn of_cloud(places: &Places, normals: &[Vec3], radii: &[f32], two_sid
         counts[side as usize] += 1.0;
     }
     let around = parallel::map(sides.len(), |side| around(places, &sides, side, kernels[side]));
-    // Discs that leave no gap hold the cells of their points, and a disc alone shows no more than itself.
+    // Upper bounds: discs that leave no gap contain the cells of their points, and a lone disc covers its own area.
     let disc = |around: &Around| PI * (around.kernel / (2.0 * SIGMA_PER_RADIUS)).powi(2);
     let discs: Vec<f64> = around.iter().map(disc).collect();
     let areas = solve(&discs, &overlaps(places, &sides, &around));
