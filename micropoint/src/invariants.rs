@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 
 use crate::lens::TIE;
 use crate::{
-    Geometry, Lens, LensKind, MicropointError, MicropointOptions, PixelRect, PlainOpacity, Renderer, Surface,
-    Tile, View,
+    Geometry, Interval, Lens, LensKind, MicropointError, MicropointOptions, PixelRect, PlainOpacity,
+    Renderer, Surface, Tile, View,
 };
 
 /// Rounding allowed to a sum of weights over a pixel.
@@ -128,7 +128,7 @@ pub struct Seen {
     /// Centroid of what is seen of it.
     pub grid: DVec2,
     /// Smallest and largest nearness.
-    pub nearness: (f64, f64),
+    pub nearness: Interval,
 }
 
 /// What each pixel of a picture sees, row by row.
@@ -185,7 +185,7 @@ fn check(holds: bool, message: impl FnOnce() -> String) -> Result<(), String> {
 }
 
 fn bits_differ(a: &Seen, b: &Seen) -> bool {
-    let bits = |s: &Seen| [s.weight, s.grid.x, s.grid.y, s.nearness.0, s.nearness.1].map(f64::to_bits);
+    let bits = |s: &Seen| [s.weight, s.grid.x, s.grid.y, s.nearness.least, s.nearness.most].map(f64::to_bits);
     (a.triangle, a.surface) != (b.triangle, b.surface) || bits(a) != bits(b)
 }
 
@@ -217,7 +217,7 @@ pub fn weights_are_shares(soup: &Soup, view: View, options: MicropointOptions) -
     for p in tile.points() {
         let place = || format!("pixel ({}, {}): {p:?}", p.x, p.y);
         check(p.weight >= 0.0 && p.weight <= 1.0 + SUM_TOLERANCE, || format!("weight, {}", place()))?;
-        check(p.nearness.0 <= p.nearness.1, || format!("nearness, {}", place()))?;
+        check(p.nearness.least <= p.nearness.most, || format!("nearness, {}", place()))?;
         let low = DVec2::new(f64::from(p.x), f64::from(p.y)) * cells;
         let inside =
             |v: DVec2| v.cmpge(low - 1e-9 * cells).all() && v.cmple(low + cells * (1.0 + 1e-9)).all();

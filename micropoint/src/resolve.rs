@@ -1,8 +1,8 @@
 //! From the parts in a cell to what is seen of them.
 
+use crate::dicer::Dicer;
 use crate::front::{Front, Layer, in_front};
 use crate::lens::Lens;
-use crate::tile::Dicer;
 use glam::DVec2;
 use pointillist_dice::hide::{Blocker, Occluders, Region, Regions};
 use pointillist_dice::{ConvexPolygon, convex};
@@ -191,9 +191,9 @@ fn hide(
     let outline = dicer.outline(part);
     scratch.blockers.clear();
     // What lies behind by less than rounding coincides, and may be in front by its number.
-    let behind = part.nearness.0 - lens.tie(part.nearness.0, DVec2::ZERO);
+    let behind = part.nearness.least - lens.tie(part.nearness.least, DVec2::ZERO);
     // The parts are sorted by their nearest point: all that follow the first that is behind are behind, too.
-    let following = order[i + 1..].iter().take_while(|&&o| dicer.part(o).nearness.1 >= behind);
+    let following = order[i + 1..].iter().take_while(|&&o| dicer.part(o).nearness.most >= behind);
     for &o in scratch.standing.iter().chain(following) {
         let other = dicer.part(o);
         if !part.bounds.overlap(&other.bounds) || convex::are_disjoint(outline, dicer.outline(other)) {
@@ -228,15 +228,15 @@ pub(crate) fn resolve_by_layers(dicer: &mut Dicer, cell: usize, mut emit: impl F
     let mut start = 0;
     while start < order.len() && transmittance > FINISHED {
         let first = dicer.part(order[start]);
-        let mut layer_low = first.nearness.0;
+        let mut layer_low = first.nearness.least;
         let mut end = start + 1;
         // Sorted by the nearest point, so a layer ends where the next part does not reach it.
         while end < order.len() {
             let next = dicer.part(order[end]);
-            if next.nearness.1 < layer_low - TOUCH * layer_low.abs() {
+            if next.nearness.most < layer_low - TOUCH * layer_low.abs() {
                 break;
             }
-            layer_low = layer_low.min(next.nearness.0);
+            layer_low = layer_low.min(next.nearness.least);
             end += 1;
         }
         let opacity_of = |p: u32| dicer.part(p).area * f64::from(dicer.part(p).opacity);

@@ -151,5 +151,5 @@ fn may_see(bounds: &Bounds, position: DVec3, face: usize) -> bool {
     let forward = axis(0.0, 0.0);
     let (right, down) = (axis(1.0, 0.0) - forward, axis(0.0, 1.0) - forward);
     let inward = [forward, forward + right, forward - right, forward + down, forward - down];
-    inward.iter().all(|&n| bounds.extent_along(position, n).1 > 0.0)
+    inward.iter().all(|&n| bounds.extent_along(position, n).most > 0.0)
 }
