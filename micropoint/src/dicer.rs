@@ -60,6 +60,21 @@ impl Extent {
     }
 }
 
+/// Whether an edge of a triangle separates it from a window by more than a cell, which is far more than the edge's crossings with grid
+/// lines are rounded by.
+fn misses(corners: [DVec2; 3], start: DVec2, end: DVec2) -> bool {
+    const MARGIN: f64 = 1.0;
+    const SLACK: f64 = 8.0 * f64::EPSILON;
+    let (middle, half) = (0.5 * (start + end), 0.5 * (end - start) + MARGIN);
+    let [a, b, c] = corners;
+    let turn = (b - a).perp_dot(c - a);
+    [(a, b), (b, c), (c, a)].into_iter().any(|(from, to)| {
+        let outward = (from - to).perp() * turn.signum();
+        let away = middle - from;
+        outward.dot(away) > outward.abs().dot(half) + SLACK * outward.abs().dot(away.abs())
+    })
+}
+
 /// Outline of a whole cell.
 const CELL: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
 
@@ -262,10 +277,12 @@ impl Dicer {
         let w = self.window();
         let low = v[0].grid.min(v[1].grid).min(v[2].grid);
         let high = v[0].grid.max(v[1].grid).max(v[2].grid);
-        low.x >= f64::from(w.x1)
-            || low.y >= f64::from(w.y1)
-            || high.x <= f64::from(w.x0)
-            || high.y <= f64::from(w.y0)
+        let [start, end] = [DVec2::new(w.x0.into(), w.y0.into()), DVec2::new(w.x1.into(), w.y1.into())];
+        if low.cmpge(end).any() || high.cmple(start).any() {
+            return true;
+        }
+        // Small triangles whose boxes meet the window's mostly meet it, too.
+        (high - low).max_element() > (end - start).max_element() && misses(v.map(|v| v.grid), start, end)
     }
 
     fn dice_face(&mut self, job: &DiceJob<'_>, face: Face, outline: &[DVec2], opacity: Option<f32>) {

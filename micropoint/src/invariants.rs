@@ -458,6 +458,32 @@ pub fn shares_are_exact(soup: &Soup, view: View, tolerance: f64) -> Result<(), S
     shares_agree(&got, &shares_by_arrangement(soup, &view), tolerance)
 }
 
+/// Under the correlated rule, the shares of a pixel are the means of those of the `factor`² pixels that it is divided into: what is seen in a
+/// cell of many parts is what is seen in many cells of few.
+///
+/// # Errors
+/// The pixel that is farthest off, or that the finer picture is refused.
+pub fn pixels_are_means_of_finer_ones(
+    soup: &Soup,
+    view: View,
+    factor: u32,
+    tolerance: f64,
+) -> Result<(), String> {
+    let options = MicropointOptions::DEFAULT;
+    let Some(coarse) = picture(soup, view, options) else { return Ok(()) };
+    let (width, surfaces) = (view.width(), soup.surfaces.len());
+    let finer = view.with_size(width * factor, view.height() * factor).map_err(|e| e.to_string())?;
+    let fine = picture(soup, finer, options).ok_or("the finer picture is refused")?;
+    let fine = shares(&fine, surfaces);
+    let mut means = vec![vec![0.0; surfaces]; coarse.len()];
+    for (i, pixel) in fine.iter().enumerate() {
+        let (x, y) = (i as u32 % (width * factor) / factor, i as u32 / (width * factor) / factor);
+        let mean = &mut means[(y * width + x) as usize];
+        mean.iter_mut().zip(pixel).for_each(|(m, s)| *m += s / f64::from(factor * factor));
+    }
+    shares_agree(&shares(&coarse, surfaces), &means, tolerance)
+}
+
 /// Every pixel is covered by what stands before it: its weights sum to 1.
 ///
 /// # Errors

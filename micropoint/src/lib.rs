@@ -49,6 +49,7 @@ mod interval;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod lens;
+mod neighbours;
 mod render;
 mod resolve;
 mod texel;
