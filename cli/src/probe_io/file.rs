@@ -1,4 +1,4 @@
-//! A whole file of probes.
+//! A file of probes: its header and its probes.
 
 use super::ProbeEntry;
 use crate::coordinate::{LARGEST, is_usable};
@@ -52,7 +52,7 @@ pub struct ProbeFile {
     pub probes: Vec<ProbeEntry>,
 }
 
-/// What begins a binary file. Not text, so that nobody takes it for JSON.
+/// First bytes of a binary file; the first is not ASCII, so that the file cannot be mistaken for JSON.
 const MAGIC: &[u8; 8] = b"\x93PROBES1";
 
 impl ProbeFile {

@@ -1,4 +1,4 @@
-//! A description to a [`Scene`]: opens what it names and puts everything together.
+//! From a parsed description to a [`Scene`]: opens the files that it names and puts everything together.
 
 use super::description::{
     AmbientDescription, Description, FileReference, ObjectDescription, RenderDescription, TextureReference,

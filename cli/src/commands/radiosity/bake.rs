@@ -179,7 +179,7 @@ impl Bake<'_> {
         if longest > 0.0 { longest } else { 1.0 }
     }
 
-    /// Names what the user knows: triangles and materials.
+    /// The error with the triangle, the object and the material that it is about.
     fn refused(&self, error: &RadiosityError) -> CliError {
         use RadiosityError::{Emission, EmitterWithoutArea, Outline, Reflectance, ReflectanceAboveOne};
         let surface = match error {
