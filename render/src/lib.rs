@@ -62,6 +62,7 @@ mod bake;
 mod canvas;
 mod capture;
 mod choose;
+mod copies;
 mod detail;
 mod detail_maps;
 mod direct;
