@@ -12,7 +12,6 @@ use pointillist_parallel as parallel;
 use pointillist_shade::Model;
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 /// What a material looks up in textures. Colour is summed up as colour × opacity, so that the empty
@@ -187,17 +186,19 @@ fn surfaces_by_material(scene: &Scene, textures: &[Arc<Textured>]) -> (Vec<Surfa
 }
 
 fn textured_by_material(scene: &Scene) -> Result<Vec<Arc<Textured>>, MicropointError> {
-    let mut known = HashMap::new();
-    let mut textures = Vec::with_capacity(scene.materials.len());
+    let mut numbers = HashMap::new();
+    let mut different = vec![];
+    let mut number_of = Vec::with_capacity(scene.materials.len());
     for m in &scene.materials {
-        let key = (m.diffuse_map, m.opacity_map, m.wrap);
-        let texture: &Arc<Textured> = match known.entry(key) {
-            Entry::Occupied(e) => e.into_mut(),
-            Entry::Vacant(e) => e.insert(Arc::new(sum_up(m, &scene.textures)?)),
-        };
-        textures.push(texture.clone());
+        let number = *numbers.entry((m.diffuse_map, m.opacity_map, m.wrap)).or_insert_with(|| {
+            different.push(m);
+            different.len() - 1
+        });
+        number_of.push(number);
     }
-    Ok(textures)
+    let sums = parallel::map_heavy(different.len(), |i| sum_up(different[i], &scene.textures).map(Arc::new));
+    let sums: Vec<Arc<Textured>> = sums.into_iter().collect::<Result<_, _>>()?;
+    Ok(number_of.into_iter().map(|number| sums[number].clone()).collect())
 }
 
 fn details_by_material(scene: &Scene) -> Result<Vec<Option<DetailMaps>>, MicropointError> {
