@@ -1,21 +1,62 @@
 //! Masked triangles that coincide: the two sides of a leaf that is modelled as two cards back to back.
 //!
 //! Where one of them has a hole the other has it, too: together they hide as much as one. As two layers that know nothing of each other they
-//! would hide `1 − (1 − a)²` of what is behind, for a mean opacity of a. So only the first of them is kept.
+//! would hide `1 − (1 − a)²` of what is behind, for a mean opacity of a. So only the first of them is kept, and from behind it shows the
+//! normals of the one that is turned the other way.
 
 use crate::scene::Mesh;
 use crate::uvs::Uvs;
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 /// Three corners as bits of their positions and texture coordinates, sorted: the same for both sides of a card.
 type Corners = [[u64; 5]; 3];
 
-/// The triangles that have the place, texture coordinates and surface of an earlier one, rising. `surface` tells a triangle's surface if it is
-/// masked and seen from both sides; other triangles have no copies.
-pub(crate) fn masked_copies(mesh: &Mesh, uvs: &Uvs, surface: impl Fn(usize) -> Option<u32>) -> Vec<u32> {
-    let mut known: HashSet<(u32, Corners)> = HashSet::new();
-    let masked = (0..mesh.triangles.len()).filter_map(|t| surface(t).map(|surface| (t, surface)));
-    masked.filter(|&(t, s)| !known.insert((s, corners(mesh, uvs, t)))).map(|(t, _)| t as u32).collect()
+/// A triangle that has the place, texture coordinates and surface of an earlier one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MaskedCopy {
+    pub(crate) triangle: u32,
+    /// The first of its kind.
+    pub(crate) original: u32,
+}
+
+/// All copies, rising. `surface` tells a triangle's surface if it is masked and seen from both sides; other triangles have no copies.
+pub(crate) fn masked_copies(
+    mesh: &Mesh,
+    uvs: &Uvs,
+    surface: impl Fn(usize) -> Option<u32>,
+) -> Vec<MaskedCopy> {
+    let mut first: HashMap<(u32, Corners), u32> = HashMap::new();
+    let mut copies = vec![];
+    for t in 0..mesh.triangles.len() {
+        let Some(surface) = surface(t) else { continue };
+        let triangle = t as u32;
+        let original = *first.entry((surface, corners(mesh, uvs, t))).or_insert(triangle);
+        if original != triangle {
+            copies.push(MaskedCopy { triangle, original });
+        }
+    }
+    copies
+}
+
+/// The other side of a card.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OtherSide {
+    pub(crate) triangle: u32,
+    /// For each corner of the first side, the corner of this one that is in its place.
+    pub(crate) corners: [usize; 3],
+}
+
+/// The triangles that are turned the other way, by those whose copies they are.
+pub(crate) fn other_sides(mesh: &Mesh, copies: &[MaskedCopy]) -> HashMap<u32, OtherSide> {
+    let places = |t: u32| mesh.triangles[t as usize].map(|v| mesh.positions[v as usize]);
+    let side = |&MaskedCopy { triangle, original }: &MaskedCopy| {
+        let there = places(triangle);
+        let [a, b, c] = places(original).map(|p| there.iter().position(|&q| q == p));
+        let corners = [a?, b?, c?];
+        let turned = matches!(corners, [0, 2, 1] | [2, 1, 0] | [1, 0, 2]);
+        turned.then_some((original, OtherSide { triangle, corners }))
+    };
+    copies.iter().filter_map(side).collect()
 }
 
 fn corners(mesh: &Mesh, uvs: &Uvs, triangle: usize) -> Corners {

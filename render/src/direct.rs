@@ -95,7 +95,7 @@ impl Shader<'_> {
             return Vec3::ZERO;
         }
         if self.scene.render.shading == Interpolation::Gouraud
-            && let Some(normals) = self.corner_normals(face.id)
+            && let Some(normals) = self.corner_normals(face)
         {
             let corners = self.scene.corners(face.id);
             let at = |k: usize| {

@@ -70,7 +70,7 @@ impl Shader<'_> {
                 LayerKind::Direct => mean(&|_, p| p.direct, 3),
                 LayerKind::Indirect => mean(&|_, p| p.indirect, 3),
                 LayerKind::Back => {
-                    let back = |i: usize| !tile.faces()[tile.points()[i].face as usize].front;
+                    let back = |i: usize| self.shows_back(&tile.faces()[tile.points()[i].face as usize]);
                     mean(&|i, _| Vec3::splat(f32::from(u8::from(back(i)))), 1)
                 }
                 LayerKind::Lit(light) => mean(&|i, _| Vec3::splat(lit[light][i] as f32), 1),

@@ -66,7 +66,7 @@ impl Shader<'_> {
     }
 
     fn shading_normal(&self, face: &Face, barycentric: Vec3, face_normal: Vec3, to_eye: Vec3) -> Vec3 {
-        match self.corner_normals(face.id) {
+        match self.corner_normals(face) {
             Some(normals) if self.scene.render.shading == Interpolation::Phong => {
                 interpolate_normal(normals, barycentric, face_normal, to_eye)
             }

@@ -7,6 +7,7 @@ use crate::reflections::Reflections;
 use crate::scene::{NONE, Scene};
 use crate::surfaces::Surfaces;
 use glam::{DVec3, Vec3};
+use pointillist_micropoint::Face;
 use pointillist_shade::Material;
 use pointillist_view::View;
 
@@ -104,10 +105,19 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// Unit normals of a triangle's corners, if it has them.
-    pub(crate) fn corner_normals(&self, triangle: u32) -> Option<[Vec3; 3]> {
+    /// Unit normals of a face's corners, if it has them, on the side that is seen.
+    pub(crate) fn corner_normals(&self, face: &Face) -> Option<[Vec3; 3]> {
         let mesh = &self.scene.mesh;
+        let (triangle, corners) = match self.surfaces.other_side(face.id) {
+            Some(side) if !face.front => (side.triangle, side.corners),
+            _ => (face.id, [0, 1, 2]),
+        };
         let of = mesh.normal_of.get(triangle as usize)?;
-        (!of.contains(&NONE)).then(|| of.map(|i| mesh.normals[i as usize]))
+        (!of.contains(&NONE)).then(|| corners.map(|k| mesh.normals[of[k] as usize]))
+    }
+
+    /// Whether a surface's back is seen, which is not the front of another one.
+    pub(crate) fn shows_back(&self, face: &Face) -> bool {
+        !face.front && self.surfaces.other_side(face.id).is_none()
     }
 }

@@ -1,6 +1,6 @@
 //! A scene's materials as the renderer sees them: opacity, and textures summed up for exact means.
 
-use crate::copies::masked_copies;
+use crate::copies::{MaskedCopy, OtherSide, masked_copies, other_sides};
 use crate::detail_maps::{DetailMaps, DetailTable};
 use crate::scene::{Details, Material, Scene, Texture};
 use crate::uvs::{Uvs, texel_wrap};
@@ -81,6 +81,8 @@ pub(crate) struct Surfaces {
     material_of: Vec<u32>,
     /// For each material; `None` for one of colour and opacity alone.
     details: Vec<Option<DetailMaps>>,
+    /// By the triangles that stand for both sides of a masked card.
+    other_sides: HashMap<u32, OtherSide>,
 }
 
 impl Surfaces {
@@ -93,7 +95,24 @@ impl Surfaces {
         let any_texture = any_detail || textures.iter().any(|t| !matches!(**t, Textured::Nothing));
         let uvs = if any_texture { Uvs::new(&scene.mesh) } else { Uvs::default() };
         let material_of = scene.mesh.material_of.clone();
-        Ok(Self { textures, uvs, surface_of, surfaces, material_of, details })
+        let mut all =
+            Self { textures, uvs, surface_of, surfaces, material_of, details, other_sides: HashMap::new() };
+        all.other_sides = other_sides(&scene.mesh, &all.copies(scene, |_| true));
+        Ok(all)
+    }
+
+    /// The masked triangles among those that are shown that coincide with an earlier one.
+    fn copies(&self, scene: &Scene, shown: impl Fn(usize) -> bool) -> Vec<MaskedCopy> {
+        let masked = |t: usize| {
+            let surface = &self.surfaces[self.surface_of[t] as usize];
+            (surface.textured_opacity && surface.two_sided && shown(t)).then_some(self.surface_of[t])
+        };
+        masked_copies(&scene.mesh, &self.uvs, masked)
+    }
+
+    /// The triangle in the place of this one that is turned the other way, if it is a card of two sides.
+    pub(crate) fn other_side(&self, triangle: u32) -> Option<&OtherSide> {
+        self.other_sides.get(&triangle)
     }
 
     pub(crate) fn geometry(&self, scene: &Scene) -> Result<Geometry, MicropointError> {
@@ -108,13 +127,10 @@ impl Surfaces {
     /// The triangles that are shown, less copies of masked ones ([`masked_copies`]).
     fn geometry_of(&self, scene: &Scene, shown: impl Fn(usize) -> bool) -> Result<Geometry, MicropointError> {
         let mesh = &scene.mesh;
-        let masked = |t: usize| {
-            let surface = &self.surfaces[self.surface_of[t] as usize];
-            (surface.textured_opacity && surface.two_sided && shown(t)).then_some(self.surface_of[t])
-        };
         let mut triangles = Cow::Borrowed(&mesh.triangles);
         let hidden = (0..triangles.len()).filter(|&t| !shown(t)).map(|t| t as u32);
-        for t in hidden.chain(masked_copies(mesh, &self.uvs, masked)) {
+        let copies = self.copies(scene, &shown);
+        for t in hidden.chain(copies.iter().map(|copy| copy.triangle)) {
             // A triangle without area is never seen, and the others keep their numbers.
             let triangle = &mut triangles.to_mut()[t as usize];
             *triangle = [triangle[0]; 3];

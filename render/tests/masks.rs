@@ -48,3 +48,40 @@ fn cards_with_other_coordinates_or_plain_glass_are_two_layers() {
     };
     assert_ne!(picture(Some(UVS), glass).color, picture(None, glass).color);
 }
+
+#[test]
+fn each_side_of_a_leaf_shows_the_normals_of_the_card_that_faces_the_eye() {
+    let seen = |eye: DVec3, cards: &[bool]| {
+        let mut scene = Scene::new(Camera::perspective(eye, dvec3(0.0, 1.0, 0.0), 0.8), [24, 18]);
+        let holes = (0..16).map(|i| if i % 3 == 0 { 0 } else { 255 }).collect();
+        let holes = scene.add_texture(Texture::new("holes", [4, 4], Texels::Opacity8(holes)));
+        let leaf = scene
+            .add_material(Material::new("leaf", shade::Material::lambert(Vec3::ONE)).with_opacity_map(holes));
+        for &front in cards {
+            // Normals that lean outward, as foliage has them: not opposite on the two sides.
+            let up = if front { 1.0 } else { -1.0 };
+            let normals = CARD.map(|p| Vec3::new(p.x as f32, up, p.z as f32).normalize());
+            let triangles = if front { [[0, 1, 2], [0, 2, 3]] } else { [[2, 1, 0], [0, 3, 2]] };
+            let part = Part::new("card", &CARD, &triangles).with_uvs(&UVS).with_normals(&normals);
+            scene.mesh.add(&part.with_material(leaf)).unwrap();
+        }
+        scene.render.shading = shade::Interpolation::Phong;
+        for direction in [dvec3(0.5, -1.0, 0.3), dvec3(-0.4, 1.0, 0.1)] {
+            let light = Light::Directional { direction, irradiance: Vec3::ONE };
+            let mut light = LightSource::new("sun", light);
+            light.shadow = false;
+            scene.lights.push(light);
+        }
+        let options = DrawOptions::DEFAULT.with_layers(vec![pointillist_render::LayerKind::Back]);
+        let frame = render(&scene, &options, &()).unwrap();
+        (frame.color, frame.layers[0].planes[0].iter().sum::<f32>())
+    };
+    for (eye, facing) in [(dvec3(0.5, 4.0, 1.0), true), (dvec3(0.5, -2.0, 1.0), false)] {
+        for both in [[true, false], [false, true]] {
+            let ((both, back), (alone, _)) = (seen(eye, &both), seen(eye, &[facing]));
+            let close = |(a, b): (&[f32; 4], &[f32; 4])| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-5);
+            assert!(both.iter().zip(&alone).all(close), "eye {eye}");
+            assert_eq!(back, 0.0);
+        }
+    }
+}
