@@ -1,4 +1,4 @@
-//! The baked file.
+//! Files of baked light: what `radiosity` writes and `[ambient] radiosity` reads.
 
 use crate::input;
 use crate::input_error::InputError;

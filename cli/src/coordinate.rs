@@ -1,4 +1,4 @@
-//! Which numbers a place may have.
+//! The range of coordinates that are accepted.
 
 use glam::DVec3;
 

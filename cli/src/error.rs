@@ -1,4 +1,4 @@
-//! Why a command ends early, and with which exit code.
+//! Errors of commands, with their exit codes.
 
 use crate::input_error::InputError;
 use crate::json_lines::JsonLinesError;

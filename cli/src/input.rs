@@ -1,4 +1,4 @@
-//! Where input comes from: a file, or standard input for `-`.
+//! Opens inputs: a file, or standard input for `-`.
 
 use crate::input_error::InputError;
 use crate::memory;

@@ -116,7 +116,7 @@ pub fn read_to_end(mut input: impl Read, expected: u64, what: &str) -> io::Resul
     }
 }
 
-/// Watches something that grows while a file is read, whose end nobody knows.
+/// Limits something that grows while a file is read and whose final size is unknown.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Meter {
     taken: u64,
@@ -161,7 +161,7 @@ fn system_bytes() -> Option<u64> {
     let kind = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
     let system = System::new_with_specifics(kind);
     let container = system.cgroup_limits().map(|limits| limits.free_memory);
-    // Zero is what the library gives where it knows nothing.
+    // The library gives 0 for an unknown value.
     [Some(system.available_memory()).filter(|&bytes| bytes > 0), container].into_iter().flatten().min()
 }
 

@@ -149,6 +149,49 @@ fn parts_join_to_what_one_run_bakes() {
 }
 
 #[test]
+fn probes_inside_of_walls_are_told_from_all_probes_however_they_were_baked() {
+    let folder = folder();
+    // Without its last face the block is no solid, and places in it are not refused.
+    let block = block();
+    folder.write("block.obj", &block[..block.trim_end().rfind('\n').unwrap() + 1]);
+    let place = |inside: bool, x: f64| {
+        let x = if inside { x * 0.1 - 0.3 } else { x + 2.0 };
+        format!("{{\"position\":[{x},0,0]}}")
+    };
+    let probes = |inside: &[bool]| {
+        let places: Vec<String> = inside.iter().zip(1..).map(|(&i, x)| place(i, f64::from(x))).collect();
+        format!("{{\"probes\":[{}]}}", places.join(","))
+    };
+    let bake = |more: &[&str]| {
+        let line = ["probe", "bake", "sky.toml", "p.json", "--resolution", "8", "--bounces", "0"];
+        folder.prints(&[&line, more].concat());
+    };
+    let buried = |name: &str| -> Vec<bool> {
+        let file = json(&folder, name);
+        file["probes"].as_array().unwrap().iter().map(|p| p["buried"] == true).collect()
+    };
+    let inside = [true, true, false, false, false, false];
+    folder.write("p.json", probes(&inside));
+    bake(&["-o", "whole.json"]);
+    assert_eq!(buried("whole.json"), inside);
+    // By itself the first part is all in the wall.
+    for part in ["0/3", "1/3", "2/3"] {
+        bake(&["--part", part, "-o", &format!("{}.json", &part[..1])]);
+    }
+    folder.prints(&["merge", "0.json", "1.json", "2.json", "-o", "joined.json"]);
+    assert_eq!(json(&folder, "joined.json"), json(&folder, "whole.json"));
+    // Nor are those of before told from those that are new.
+    folder.write("p.json", probes(&inside[..1]));
+    bake(&["-o", "grown.json"]);
+    folder.write("p.json", probes(&inside));
+    bake(&["-o", "grown.json", "--stats", "s.json"]);
+    assert!(json(&folder, "s.json")["counts"]["probes"].as_u64().unwrap() < 6);
+    assert_eq!(json(&folder, "grown.json"), json(&folder, "whole.json"));
+    bake(&["-o", "kept.json", "--inside", "keep"]);
+    assert_eq!(buried("kept.json"), [false; 6]);
+}
+
+#[test]
 fn probes_that_see_the_same_are_kept() {
     let folder = folder();
     // One probe on each side of the block.

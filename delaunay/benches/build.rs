@@ -1,5 +1,5 @@
-//! How long tetrahedra take: random points and grids of 432, 10 k and 100 k, inserting one more point and taking one out. There is
-//! no error to name: results are exact.
+//! How long tetrahedra take: random points and grids of 432, 10 k and 100 k, inserting one more point and taking one
+//! out. There is no error to name: results are exact.
 //!
 //! `cargo bench -p pointillist-delaunay --bench build`
 

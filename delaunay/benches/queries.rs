@@ -1,5 +1,6 @@
-//! How long questions take among 10 000 random points: weights at positions, the nearest vertex, edges, circumcentres, validity.
-//! The error in each name: of interpolating a linear function inside the hull; of distances from centres to corners, over the radius.
+//! How long questions take among 10 000 random points: weights at positions, the nearest vertex, edges, circumcentres,
+//! validity. The error in each name: of interpolating a linear function inside the hull; of distances from centres to
+//! corners, over the radius.
 //!
 //! `cargo bench -p pointillist-delaunay --bench queries`
 

@@ -1,6 +1,8 @@
-//! How much space belongs to each atom of a crystal: volumes of Voronoi cells, of which Delaunay cells' circumcentres are the corners.
+//! How much space belongs to each atom of a crystal: volumes of Voronoi cells, of which Delaunay cells' circumcentres
+//! are the corners.
 //!
-//! Inside, every atom of a body-centred cubic lattice has half a unit cube; where an atom is missing, its neighbours have more.
+//! Inside, every atom of a body-centred cubic lattice has half a unit cube; where an atom is missing, its neighbours
+//! have more.
 //!
 //! `cargo run --release -p pointillist-delaunay --example voronoi`
 

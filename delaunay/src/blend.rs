@@ -12,20 +12,20 @@ pub struct Blend {
 }
 
 impl Blend {
-    /// All of one point.
+    /// Weight 1 for one point.
     pub(crate) const fn of_one(point: u32) -> Self {
         Self { points: [point; 4], weights: [1.0, 0.0, 0.0, 0.0] }
     }
 
-    /// Of coordinates that may be below 0 by rounding, or no numbers where a cell is flat to the last digit: then the first point
-    /// takes all.
+    /// From barycentric coordinates, which may be below 0 by rounding, or NaN where a cell is flat to the last digit:
+    /// the first point then has weight 1.
     pub(crate) fn clamped(points: [u32; 4], coordinates: [f64; 4]) -> Self {
         let weights = coordinates.map(|w| if w.is_nan() { 0.0 } else { w.clamp(0.0, 1.0) });
         let sum: f64 = weights.iter().sum();
         if sum > 0.0 { Self { points, weights: weights.map(|w| w / sum) } } else { Self::of_one(points[0]) }
     }
 
-    /// The points that count, with their weights.
+    /// The points whose weight is above 0, with their weights.
     pub fn parts(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         self.points.iter().copied().zip(self.weights).filter(|&(_, weight)| weight > 0.0)
     }

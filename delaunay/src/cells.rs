@@ -1,4 +1,4 @@
-//! Cells one by one, alike in all dimensions.
+//! Access to cells one by one, in the same way for all dimensions.
 
 use crate::{OUTSIDE, Partition};
 

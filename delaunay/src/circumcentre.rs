@@ -1,8 +1,8 @@
 //! Centres of spheres through the corners of cells: the vertices of the Voronoi diagram.
 //!
-//! With the first corner as origin and b, c, d the others, the centre of a tetrahedron is
-//! (|b|² c×d + |c|² d×b + |d|² b×c) / (2 b·c×d), and of a triangle with n = b×c it is (|b|² c×n + |c|² n×b) / (2 |n|²). Where the
-//! denominator is small beside the longest side, rounding of the numerator would move the centre: there both are computed exactly.
+//! With the first corner as origin and b, c, d the others, the centre of a tetrahedron is (|b|² c×d + |c|² d×b + |d|²
+//! b×c) / (2 b·c×d), and of a triangle with n = b×c it is (|b|² c×n + |c|² n×b) / (2 |n|²). Where the denominator is
+//! small beside the longest side, rounding of the numerator would move the centre: there both are computed exactly.
 
 use crate::Cell;
 use crate::scale::power_of_two_to_one;
@@ -10,16 +10,16 @@ use crate::wide::{self, Vector};
 use glam::DVec3;
 use num_bigint::{BigInt, Sign};
 
-/// Least b·c×d for which `f64` is used, over the cube of the longest side along an axis. With it the centre errs by about 1e-11 of the
-/// radius at most: 27·10 roundings of a numerator of at most 27, over twice this.
+/// Least b·c×d for which `f64` is used, over the cube of the longest side along an axis. With it the centre errs by
+/// about 1e-11 of the radius at most: 27·10 roundings of a numerator of at most 27, over twice this.
 const LEAST_VOLUME: f64 = 1.0 / 64.0;
 
 /// Least |b×c|² for which `f64` is used, over the fourth power of the longest side along an axis.
 const LEAST_SQUARED_AREA: f64 = 1.0 / 64.0;
 
 impl Cell<'_> {
-    /// The centre of the sphere through the corners that has no point inside: a vertex of the Voronoi diagram. Of a triangle or segment
-    /// the centre in its plane or line, of a point the point.
+    /// The centre of the sphere through the corners that has no point inside: a vertex of the Voronoi diagram. Of a
+    /// triangle or segment the centre in its plane or line, of a point the point.
     ///
     /// Accuracy as of [`circumcentre`]. `None` if a corner is none of the points, or where [`circumcentre`] has none.
     ///
@@ -45,9 +45,9 @@ impl Cell<'_> {
 
 /// The centre of the smallest sphere through all of one to four points: of a point, segment, triangle or tetrahedron.
 ///
-/// The distances of the corners from it differ by at most 1e-10 of the radius and 4 ulp of the largest coordinate, of corners and centre,
-/// however flat the cell is. `None` if the corners lie in a plane or line of fewer dimensions, one is not finite, the centre is too far
-/// away for `f64`, or there are none or more than four.
+/// The distances of the corners from it differ by at most 1e-10 of the radius and 4 ulp of the largest coordinate, of
+/// corners and centre, however flat the cell is. `None` if the corners lie in a plane or line of fewer dimensions, one
+/// is not finite, the centre is too far away for `f64`, or there are none or more than four.
 #[must_use]
 pub fn circumcentre(corners: &[DVec3]) -> Option<DVec3> {
     if !corners.iter().all(|p| p.is_finite()) {
@@ -65,11 +65,11 @@ pub fn circumcentre(corners: &[DVec3]) -> Option<DVec3> {
     centre.filter(|c| c.is_finite())
 }
 
-/// A power of two that brings the longest of these to about 1, if they are numbers.
+/// A power of two that brings the longest of these to about 1; `None` if one is not finite, or if scaling could round.
 fn scale_of(sides: &[DVec3]) -> Option<f64> {
     let longest = sides.iter().fold(0.0_f64, |m, s| m.max(s.abs().max_element()));
     let scale = power_of_two_to_one(longest);
-    // Neither the scale nor what it is taken off again may round.
+    // Neither multiplying by the scale nor dividing by it again may round.
     (longest.is_finite() && (1e-290..1e290).contains(&longest)).then_some(scale)
 }
 

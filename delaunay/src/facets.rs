@@ -27,8 +27,8 @@ impl Facet {
         Self { cell: cell.index(), side, corners, count }
     }
 
-    /// Its corners, as indices of points: as many as the dimension. Of a tetrahedron counterclockwise as seen from outside; of a
-    /// triangle in the sense of that triangle.
+    /// Its corners, as indices of points: as many as the dimension. Of a tetrahedron counterclockwise as seen from
+    /// outside; of a triangle in the sense of that triangle.
     #[must_use]
     pub fn corners(&self) -> &[u32] {
         &self.corners[..self.count]
@@ -46,7 +46,7 @@ impl Facet {
         self.side
     }
 
-    /// Its corners in rising order, the unused ones last: the same for both cells that share it.
+    /// Its corners in rising order, unused entries last: the same for both cells that share it.
     pub(crate) fn key(&self) -> [u32; 3] {
         let mut key = [u32::MAX; 3];
         key[..self.count].copy_from_slice(self.corners());
@@ -56,7 +56,8 @@ impl Facet {
 }
 
 impl Partition {
-    /// The facets of the convex hull: triangles around tetrahedra, edges around triangles, the two ends of a line. A point has none.
+    /// The facets of the convex hull: triangles around tetrahedra, edges around triangles, the two ends of a line. A
+    /// point has none.
     ///
     /// Points that lie in a facet of the hull divide it, so that facets may lie in one plane.
     ///

@@ -18,7 +18,7 @@ impl Partition {
     /// Linear in the number of cells; while it is built it takes 48 bytes a tetrahedron.
     ///
     /// # Errors
-    /// [`DelaunayError::BadCell`] for cells that are not between so many points, as [`Partition::check`] has it.
+    /// [`DelaunayError::BadCell`] for cells with a corner that is not below `count`, and as [`Partition::check`].
     ///
     /// ```
     /// use pointillist_delaunay::Delaunay;
@@ -78,8 +78,8 @@ impl Graph {
         self.first.len() - 1
     }
 
-    /// The vertices that share an edge with this one, rising; none of a point that is no vertex: one removed, or one that another in
-    /// the same place stands for.
+    /// The vertices that share an edge with this one, rising. Empty for a point that is no vertex: one that was
+    /// removed, or one that coincides with a vertex.
     #[must_use]
     pub fn around(&self, vertex: u32) -> &[u32] {
         let v = vertex as usize;

@@ -1,7 +1,7 @@
 //! The surface of the points' convex hull, and its point nearest to a position outside.
 //!
-//! The nearest point of a convex body is unique and moves continuously, so that light beyond the hull never jumps and never
-//! ends: it is the light at that point.
+//! The nearest point of a convex body is unique and moves continuously with the position. So weights beyond the hull,
+//! which are those of that point, are continuous.
 
 use glam::DVec3;
 
@@ -24,11 +24,12 @@ pub(crate) struct Nearest {
     at: DVec3,
 }
 
-/// Cosine of an angle so near to a right one that rounding could turn it.
+/// Cosines below this may have the wrong sign by rounding.
 const LEVEL: f64 = 4.0 * f64::EPSILON;
 
 impl Nearest {
-    /// Whether it is nearer to `p` than the other. Not by distances, which from far away are all the same.
+    /// Whether it is nearer to `p` than the other. Distances are not compared: those from far away are equal up to
+    /// rounding.
     fn is_nearer_than(&self, other: &Self, p: DVec3) -> bool {
         let step = self.at - other.at;
         let ahead = p - 0.5 * (self.at + other.at);
@@ -37,7 +38,7 @@ impl Nearest {
 }
 
 impl Hull {
-    /// Of facets with their outward normals.
+    /// The hull of these facets with their outward normals.
     pub(crate) fn new(points: usize, facets: Vec<[u32; 3]>, outward: Vec<DVec3>) -> Self {
         let mut first = vec![0_u32; points + 1];
         let distinct = |f: &[u32; 3]| {
@@ -64,8 +65,8 @@ impl Hull {
 
     /// The point of the hull that is nearest to `p`, which lies outside of facet `start`.
     ///
-    /// Goes from facet to facet as long as one that shares a corner, and has `p` on its outer side too, is nearer: on a convex
-    /// body a facet without a nearer neighbour is the nearest of all.
+    /// Walks from facet to facet as long as a facet that shares a corner, and has `p` on its outer side, is nearer: on
+    /// a convex body a facet without a nearer neighbour is the nearest of all.
     pub(crate) fn nearest(&self, points: &[DVec3], start: u32, p: DVec3) -> Nearest {
         let mut best = self.on_facet(points, start, p);
         // Distances fall with each step, so no facet is met twice; rounding cannot make it endless either.

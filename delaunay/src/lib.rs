@@ -1,4 +1,4 @@
-//! Exact Delaunay tetrahedra of any points, in safe Rust: built, changed point by point, and asked.
+//! Exact Delaunay tetrahedra of any points, in safe Rust: built, changed point by point, and queried.
 //!
 //! ```
 //! use glam::{DVec3, dvec3};
@@ -24,54 +24,64 @@
 //! # Ok::<(), pointillist_delaunay::DelaunayError>(())
 //! ```
 //!
-//! * [`Delaunay`]: built from points, changed by [`insert`](Delaunay::insert) and [`remove`](Delaunay::remove). Tetrahedra where the points span
-//!   space, triangles in a plane, segments on a line, a point where all coincide.
-//! * [`Partition`]: the cells as plain lists. [`Partition::cells`] and their neighbours, [`Partition::hull`], [`Partition::graph`] with the edges
-//!   and the vertices around a vertex, [`Cell::circumcentre`] for the Voronoi diagram, [`Partition::verify`].
-//! * [`Locator`]: the cell that holds a position, and barycentric weights that are continuous everywhere, also beyond the hull.
+//! * [`Delaunay`]: built from points, changed by [`insert`](Delaunay::insert) and [`remove`](Delaunay::remove).
+//!   Tetrahedra where the points span space, triangles in a plane, segments on a line, a point where all coincide.
+//! * [`Partition`]: the cells as plain lists. [`Partition::cells`] and their neighbours, [`Partition::hull`],
+//!   [`Partition::graph`] with the edges and the vertices around a vertex, [`Cell::circumcentre`] for the Voronoi
+//!   diagram, [`Partition::verify`].
+//! * [`Locator`]: the cell that holds a position, and barycentric weights that are continuous everywhere, also beyond
+//!   the hull.
 //! * [`NearestVertex`]: the point nearest to a position.
 //!
 //! # Accuracy
-//! Every decision of [`Delaunay`], [`NearestVertex`] and [`Partition::verify`] is exact, for all finite coordinates. What is computed with are the
-//! coordinates times a power of two, counted from the least where that does not round. A determinant in `f64` decides where it
-//! exceeds its error; where not, one of
+//! Every decision of [`Delaunay`], [`NearestVertex`] and [`Partition::verify`] is exact, for all finite coordinates.
+//! Coordinates are multiplied by a power of two and, where that does not round, counted from the least of their axis. A
+//! determinant in `f64` decides where it exceeds its error bound. Elsewhere,
 //!
-//! * nothing, where differences are integers up to 659 after scaling, as those of most grids: `f64` does not round there;
-//! * `i128`, for integers up to about 2²⁴;
-//! * differences cut to integers of 61 bits, where that is exact or what is cut off cannot change the sign; and Shewchuk's
-//!   expansions (\[5\]) for the rest, while the lowest bit of all coordinates is worth at least 2⁻²⁰⁰ of the largest coordinate;
-//! * integers of any size, for all else: 1e-300 beside 1, or 1e300 beside 1e-300.
+//! * differences that are integers up to 659 after scaling, as those of most grids, need nothing more: `f64` does not
+//!   round there;
+//! * integers up to about 2²⁴ are decided in `i128`;
+//! * other differences are cut to integers of 61 bits, where that is exact or what is cut off cannot change the sign,
+//!   and the rest goes to Shewchuk's expansions (\[5\]), while the lowest bit of all coordinates is worth at least
+//!   2⁻²⁰⁰ of the largest coordinate;
+//! * all else, such as 1e-300 beside 1 or 1e300 beside 1e-300, is decided in integers of any size.
 //!
-//! Points on a common sphere are divided by a symbolic perturbation (\[3\]): the later of two points in lexicographic order counts as
-//! lifted infinitely more. So there is one result for every set of points, it has no flat cell, and order, threads and history do not
-//! matter: cells are reported in an order that depends on the points alone (along a Hilbert curve), named by the first of those that coincide.
+//! Points on a common sphere are divided by a symbolic perturbation (\[3\]): the later of two points in lexicographic
+//! order counts as lifted infinitely more. So there is one result for every set of points, it has no flat cell, and
+//! order, threads and history do not matter: cells are reported in an order that depends on the points alone (along a
+//! Hilbert curve), named by the first of those that coincide.
 //!
-//! Points in a plane get the exact Delaunay triangles of that plane, also of a tilted one. Points on a line are ordered along it.
+//! Points in a plane get the exact Delaunay triangles of that plane, also of a tilted one. Points on a line are ordered
+//! along it.
 //!
-//! [`Locator`] computes in `f64`: weights sum to 1 within 1e-14 and reproduce linear functions up to rounding. [`circumcentre`] states its bound.
+//! [`Locator`] computes in `f64`: weights sum to 1 within 1e-14 and reproduce linear functions up to rounding. Known to
+//! be weak: where a cell is flat up to rounding, as between points of a tilted plane with rounded coordinates, its
+//! barycentric coordinates have no correct digits. Weights there still lie in [0, 1] and sum to 1, but may be those of
+//! another position in the cell. [`circumcentre`] states its bound.
 //!
 //! # Cost
-//! About linear for points spread evenly in space, and for grids; in the worst case, points on a curve, the number of tetrahedra is quadratic.
-//! 32 bytes a cell, about 7 cells a point. Inserting and removing cost a walk, which from an arbitrary place takes about n^⅓ steps, and as
-//! much as there is to change; all is built anew where the dimension changes. [`Delaunay::partition`] sorts and copies all cells: about half as
-//! much as building.
+//! About linear for points spread evenly in space, and for grids; in the worst case, points on a curve, the number of
+//! tetrahedra is quadratic. 32 bytes a cell, about 7 cells a point. Inserting and removing cost a walk, which from an
+//! arbitrary place takes about n^⅓ steps, and as much as there is to change; all is built anew where the dimension
+//! changes. [`Delaunay::partition`] sorts and copies all cells: about half as much as building.
 //!
 //! # Features
-//! `rayon` (default) uses all cores; it never changes a result. `invariants`: the module of that name, facts for property tests and fuzzing, also
-//! of crates that build on this one.
+//! `rayon` (default) uses all cores; it never changes a result. `invariants`: the module of that name, facts for
+//! property tests and fuzzing, also of crates that build on this one.
 //!
-//! Builds for `wasm32-unknown-unknown` without default features. Cells, circumcentres and nearest vertices are the same to the bit there:
-//! decisions are exact, and circumcentres take additions, products and quotients alone. So were weights, of 3000 random points and of a
-//! grid. Times in the README are with thin LTO and `codegen-units = 1` in
-//! the profile of the dependent program.
+//! Builds for `wasm32-unknown-unknown` without default features. Cells, circumcentres and nearest vertices are the same
+//! to the bit there: decisions are exact, and circumcentres take additions, products and quotients alone. So were
+//! weights, of 3000 random points and of a grid. Times in the README are with thin LTO and `codegen-units = 1` in the
+//! profile of the dependent program.
 //!
 //! # References
 //! 1. A. Bowyer: *Computing Dirichlet tessellations*, The Computer Journal 24, 1981.
 //! 2. D. F. Watson: *Computing the n-dimensional Delaunay tessellation*, The Computer Journal 24, 1981.
-//! 3. O. Devillers, M. Teillaud: *Perturbations for Delaunay and weighted Delaunay 3D triangulations*, Computational Geometry 44, 2011.
+//! 3. O. Devillers, M. Teillaud: *Perturbations for Delaunay and weighted Delaunay 3D triangulations*, Computational
+//!    Geometry 44, 2011.
 //! 4. N. Amenta, S. Choi, G. Rote: *Incremental constructions con BRIO*, SoCG 2003.
-//! 5. J. R. Shewchuk: *Adaptive precision floating-point arithmetic and fast robust geometric predicates*, Discrete & Computational
-//!    Geometry 18, 1997.
+//! 5. J. R. Shewchuk: *Adaptive precision floating-point arithmetic and fast robust geometric predicates*, Discrete &
+//!    Computational Geometry 18, 1997.
 //! 6. D. Funke, P. Sanders: *Parallel d-D Delaunay triangulations in shared and distributed memory*, ALENEX 2017.
 #![forbid(unsafe_code)]
 

@@ -7,19 +7,20 @@ use crate::simplex::{HULL, Simplex};
 use crate::{DelaunayError, OUTSIDE, Partition, parallel};
 use glam::{DVec3, UVec3, dvec3, uvec3};
 
-/// Where the last query ended: the next one nearby starts there. One for each moving object.
+/// The cell in which the last query ended: the next query starts there. Keep one for each moving object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hint(u32);
 
 impl Hint {
-    /// Anywhere.
+    /// Starts at an arbitrary cell.
     pub const START: Self = Self(0);
 }
 
 /// Finds the cell that holds a position, and the weights of its corners there: barycentric coordinates.
 ///
-/// Positions outside of the points' hull get the weights of the nearest point on it: weights are continuous everywhere. The walk from cell to
-/// cell is in `f64`: within 1e-12 of a side it may end in either of the cells beside it, whose weights agree there.
+/// Positions outside of the points' hull get the weights of the nearest point on it: weights are continuous everywhere.
+/// The walk from cell to cell is in `f64`: within 1e-12 of a side it may end in either of the cells beside it, whose
+/// weights agree there (but for cells that are flat up to rounding, see the crate's documentation).
 ///
 /// ```
 /// use glam::dvec3;
@@ -43,7 +44,7 @@ pub struct Locator {
     centre: DVec3,
     scale: f64,
     starts: Starts,
-    /// The answer to everything where there is no cell.
+    /// The point that answers all queries where there is no cell.
     only: u32,
 }
 
@@ -72,7 +73,7 @@ impl Locator {
         let (low, high) = positions
             .iter()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
-        // Halved first: the sum and the difference of two large numbers may not be numbers any more.
+        // Halved first: the sum or the difference of two large numbers could overflow.
         let centre = low * 0.5 + high * 0.5;
         let scale = power_of_two_to_one((high * 0.5 - low * 0.5).max_element().max(0.0));
         let points: Vec<DVec3> = positions.iter().map(|p| (*p - centre) * scale).collect();
@@ -86,7 +87,7 @@ impl Locator {
         Ok(locator)
     }
 
-    /// The blend at `p`, walking from where `hint` was left, which is moved along.
+    /// The blend at `p`. The walk starts from `hint`, which is set to where it ends.
     ///
     /// # Errors
     /// [`DelaunayError::QueryNotFinite`].
@@ -104,9 +105,9 @@ impl Locator {
         Ok(self.blend(p, &mut Hint(self.starts.at(p))))
     }
 
-    /// The cell that holds `p`, walking from where `hint` was left, which is moved along: an index of
-    /// [`Partition::cell`], or `None` outside of the hull. A position up to 1e-12 of a cell's height outside of it counts as inside; of points
-    /// in a plane or line the projection of `p` counts, and a single point's cell is everywhere.
+    /// The cell that holds `p`: an index of [`Partition::cell`], or `None` outside of the hull. The walk starts from
+    /// `hint`, which is set to where it ends. A position up to 1e-12 of a cell's height outside of it counts as inside.
+    /// Where all points lie in a plane or on a line, the projection of `p` counts; a single point's cell is everywhere.
     ///
     /// # Errors
     /// [`DelaunayError::QueryNotFinite`].
@@ -171,17 +172,17 @@ impl Locator {
         }
     }
 
-    /// From cell to cell through the side that `p` is farthest beyond.
+    /// Walks from cell to cell through the side that `p` is farthest beyond.
     ///
-    /// Among Delaunay cells such a walk never meets a cell twice; where rounding makes it, it is stopped after as many steps as
-    /// there are cells, with the weights clamped.
+    /// Among Delaunay cells such a walk never visits a cell twice. If rounding makes it do so, it is stopped after as
+    /// many steps as there are cells, and the weights are clamped.
     fn walk(&self, p: DVec3, start: u32) -> End {
         let mut cell = if (start as usize) < self.cells.len() { start } else { 0 };
         for _ in 0..=self.cells.len() {
             let simplex = &self.cells[cell as usize];
             let coordinates = simplex.coordinates(p);
             let (side, least) = least(coordinates);
-            // Not a number where a cell is flat to the last digit: then the walk ends there.
+            // NaN where a cell is flat to the last digit: the walk ends there.
             if least >= -ROUNDING || least.is_nan() {
                 return End::Inside { cell, coordinates };
             }
@@ -203,7 +204,7 @@ impl Locator {
         if size <= FAR {
             return Ok(local);
         }
-        // The same direction, as far as it can be computed with.
+        // A position in the same direction, so near that squares of distances do not overflow.
         let half = p * 0.5 - self.centre * 0.5;
         Ok(half * power_of_two_to_one(half.abs().max_element()) * FAR)
     }
@@ -281,7 +282,7 @@ fn cells(points: &[DVec3], partition: &Partition, facets: &mut Facets<'_>) -> Ve
     }
 }
 
-/// A coarse grid over the hull that knows a cell near the middle of each of its boxes.
+/// A coarse grid over the hull, with a cell near the middle of each of its boxes, at which walks start.
 #[derive(Clone, Debug, Default)]
 struct Starts {
     low: DVec3,
@@ -331,7 +332,7 @@ impl Starts {
 
 /// About `boxes` boxes, as near to cubes as whole numbers of them can be.
 fn box_counts(extent: DVec3, boxes: f64) -> UVec3 {
-    // Thin extents get one box, and what they leave goes to the others.
+    // Thin extents get one box, and the other axes share the remaining number.
     let mut count = dvec3(1.0, 1.0, 1.0);
     let mut free = [true; 3];
     loop {

@@ -1,7 +1,8 @@
 //! The vertex nearest to a position.
 //!
-//! From a vertex that is not the nearest an edge leads to one that is nearer: the way to the position leaves the vertex's Voronoi cell
-//! through a facet, beyond which such a vertex lies. So walking downhill ends at the nearest, in exact arithmetic, and comparisons are exact.
+//! From a vertex that is not the nearest an edge leads to one that is nearer: the way to the position leaves the
+//! vertex's Voronoi cell through a facet, beyond which such a vertex lies. So walking downhill ends at the nearest, in
+//! exact arithmetic, and comparisons are exact.
 
 use crate::wide;
 use crate::{DelaunayError, Graph, Partition};
@@ -25,12 +26,13 @@ use std::collections::BTreeSet;
 pub struct NearestVertex {
     points: Vec<DVec3>,
     graph: Graph,
-    /// About the cube root of the number of vertices: a walk starts from the nearest of them.
+    /// Vertices, about the cube root of their number; a walk starts from the nearest of these.
     starts: Vec<u32>,
 }
 
-/// Bounds the rounding of a difference of squared distances, over the sum of the absolute values of its terms: each term is a product
-/// of a difference and a sum of two differences (4 roundings of half an ulp), and two sums follow; doubled.
+/// Bounds the rounding of a difference of squared distances, over the sum of the absolute values of its terms: each
+/// term is a product of a difference and a sum of two differences (4 roundings of half an ulp), and two sums follow;
+/// doubled.
 const ROUNDING: f64 = 6.0 * f64::EPSILON;
 
 /// Products that underflow add less error than this.
@@ -102,7 +104,8 @@ impl NearestVertex {
         }
     }
 
-    /// The least index among vertices as near as the nearest: edges connect them, since they are corners of one Voronoi vertex's cells.
+    /// The least index among vertices as near as the nearest: edges connect them, since they are corners of one Voronoi
+    /// vertex's cells.
     fn least_of_ties(&self, query: DVec3, nearest: u32) -> u32 {
         let mut ties = BTreeSet::from([nearest]);
         let mut open = vec![nearest];

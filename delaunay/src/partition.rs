@@ -1,20 +1,21 @@
-//! How points divide space: tetrahedra, or what is left of them where points lie in a plane, on a line or in one place.
+//! How points divide space: into tetrahedra, or triangles, segments or a point where they span fewer dimensions.
 
 use crate::DelaunayError;
 
-/// As many points as one triangulation takes: random ones have about seven cells each.
+/// Most points of a triangulation. Random points have about seven cells each, and the number of cells must fit its
+/// links.
 const MAX_POINTS: usize = 1 << 27;
 
-/// In the place of a neighbour: beyond this side there is no cell.
+/// Stands for a neighbour where there is none: the side lies on the hull.
 pub const OUTSIDE: u32 = u32::MAX;
 
-/// Cells that fill the convex hull of the points, by the dimension of that hull: plain lists, to be matched on, or walked alike in all
-/// dimensions by [`Partition::cells`], [`Partition::graph`] and [`Partition::hull`].
+/// Cells that fill the convex hull of the points, by the dimension of that hull: plain lists, to be matched on, or
+/// walked alike in all dimensions by [`Partition::cells`], [`Partition::graph`] and [`Partition::hull`].
 ///
 /// Corners are indices into the points given; of points that coincide only the first is used.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Partition {
-    /// All points are one.
+    /// All points coincide.
     Point(u32),
     /// The points on a line, from one end to the other.
     Line(Vec<u32>),
@@ -54,13 +55,13 @@ impl Partition {
         }
     }
 
-    /// Checks that every corner is one of `count` points, that no cell has a corner twice, and that neighbours are mutual: what a walk from
-    /// cell to cell relies on.
+    /// Checks that every corner is one of `count` points, that no cell has a corner twice, and that neighbours are
+    /// mutual: what a walk from cell to cell relies on.
     ///
     /// # Errors
     /// [`DelaunayError::BadCell`] for the first cell that is not so; [`DelaunayError::TooManyPoints`].
     pub fn check(&self, count: usize) -> Result<(), DelaunayError> {
-        // Lists by point are made next; a wrong count must not ask for all memory.
+        // Lists by point are allocated next; a wrong count must not allocate all memory.
         check_count(count)?;
         let missing =
             |cell| DelaunayError::BadCell { cell, problem: "has a corner that is none of the points" };
@@ -83,7 +84,7 @@ impl Partition {
     }
 }
 
-/// Refuses more points than cells can be told apart between.
+/// Refuses more points than [`MAX_POINTS`].
 pub(crate) fn check_count(count: usize) -> Result<(), DelaunayError> {
     let limit = MAX_POINTS;
     if count <= limit { Ok(()) } else { Err(DelaunayError::TooManyPoints { count, limit }) }

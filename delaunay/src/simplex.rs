@@ -1,8 +1,8 @@
-//! One cell as a query sees it: the map from a position to barycentric coordinates, and what lies beyond each side.
+//! One cell, prepared for queries: the map from a position to barycentric coordinates, and what lies beyond each side.
 
 use glam::DVec3;
 
-/// Set in a neighbour's number: it is a facet of the hull, not a cell.
+/// Bit that marks a neighbour's number as that of a facet of the hull.
 pub(crate) const HULL: u32 = 1 << 31;
 
 /// A tetrahedron, or a triangle or segment, whose unused corners have weight 0 everywhere.

@@ -6,19 +6,22 @@ use glam::DVec3;
 use std::collections::HashMap;
 
 impl Partition {
-    /// Checks that these cells are a Delaunay triangulation of their corners, which are some of `points`. All decisions are exact.
+    /// Checks that these cells are a Delaunay triangulation of their corners, which are some of `points`. All decisions
+    /// are exact.
     ///
     /// 1. Corners are points, and neighbours are mutual ([`Partition::check`]) and share the side between them.
-    /// 2. No cell is flat, all turn alike, and neighbours lie on different sides of what they share; triangles lie in one plane,
-    ///    and points of a line follow one another.
-    /// 3. No cell has the far corner of a neighbour inside its sphere, or circle: then no sphere has any corner inside (Delaunay's lemma).
+    /// 2. No cell is flat, all turn alike, and neighbours lie on different sides of what they share; triangles lie in
+    ///    one plane, and points of a line follow one another.
+    /// 3. No cell has the far corner of a neighbour inside its sphere, or circle: then no sphere has any corner inside
+    ///    (Delaunay's lemma).
     /// 4. The sides without a neighbour close up to a hull that bends inward nowhere.
     ///
-    /// Linear in the number of cells. It does not ask whether every point is a corner: those removed, and those that coincide with
-    /// others, are not.
+    /// Linear in the number of cells. It does not check that every point is a corner: those removed, and those that
+    /// coincide with others, are not.
     ///
     /// # Errors
-    /// [`DelaunayError::PointNotFinite`], or [`DelaunayError::BadCell`] with the first cell found that breaks one of these.
+    /// [`DelaunayError::PointNotFinite`], or [`DelaunayError::BadCell`] with the first cell found that breaks one of
+    /// these.
     ///
     /// ```
     /// use pointillist_delaunay::{Delaunay, DelaunayError, Partition};
@@ -95,8 +98,8 @@ fn check_line(line: &Partition, sites: &Sites) -> Result<(), DelaunayError> {
     Ok(())
 }
 
-/// Facts of one cell: it is positive, or negative if `flip`, its neighbours lie beyond it, and its sphere holds none of their far corners.
-/// In a plane the fourth corner is a point off that plane.
+/// Facts of one cell: it is positive, or negative if `flip`, its neighbours lie beyond it, and its sphere holds none of
+/// their far corners. In a plane the fourth corner is a point off that plane.
 fn check_cell(cell: Cell<'_>, corners: [Vertex; 4], flip: bool, sites: &Sites) -> Result<(), DelaunayError> {
     let sign = if flip { -1.0 } else { 1.0 };
     holds(cell, sign * sites.orient(corners) > 0.0, "is flat or turned inside out")?;

@@ -1,5 +1,5 @@
-//! Signs of determinants of any finite coordinates, by integers of any size. Slow, and hardly ever needed: only where coordinates of
-//! one input differ by more than fifty orders of magnitude.
+//! Signs of determinants of any finite coordinates, by integers of any size. Slow, and hardly ever needed: only where
+//! coordinates of one input differ by more than fifty orders of magnitude.
 
 use glam::DVec3;
 use num_bigint::{BigInt, Sign};
@@ -61,7 +61,8 @@ pub(crate) fn normal_signs([a, b, c]: [DVec3; 3]) -> [f64; 3] {
     cross(&difference(b, a), &difference(c, a)).each_ref().map(sign)
 }
 
-/// A quotient of integers, in the unit of [`to_integer`], within an ulp; infinite if `f64` does not hold it. The denominator is not 0.
+/// A quotient of integers, in the unit of [`to_integer`], within an ulp; infinite if `f64` does not hold it. The
+/// denominator is not 0.
 pub(crate) fn to_f64(numerator: &BigInt, denominator: &BigInt) -> f64 {
     let (n, d) = (numerator.magnitude(), denominator.magnitude());
     if numerator.sign() == Sign::NoSign {
@@ -73,7 +74,7 @@ pub(crate) fn to_f64(numerator: &BigInt, denominator: &BigInt) -> f64 {
     let dropped = q.bits().saturating_sub(64);
     let first = (&q >> dropped).iter_u64_digits().next().unwrap_or(0);
     let exponent = dropped as i64 - lift as i64 - 1074;
-    // In two steps, since the power alone may be no number.
+    // In two steps, since the power alone may overflow.
     let half = exponent.clamp(-2000, 2000) as i32 / 2;
     let size = first as f64 * 2.0_f64.powi(half) * 2.0_f64.powi(exponent.clamp(-2000, 2000) as i32 - half);
     if numerator.sign() == denominator.sign() { size } else { -size }

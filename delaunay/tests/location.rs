@@ -88,7 +88,8 @@ fn the_nearest_point_is_found_from_very_far_away() {
     weights::weights_find_the_nearest_point(&points, &queries, 1e-9).unwrap();
 }
 
-/// Found by fuzzing: two of three points are one, once the third is scaled to 1; their cell is flat and its coordinates are no numbers.
+/// Found by fuzzing: two of three points coincide once the third is scaled to 1; their cell is flat and its barycentric
+/// coordinates are NaN.
 #[test]
 fn cells_that_are_flat_to_the_last_digit_have_weights() {
     let points = [dvec3(-2.2e-272, -1.1e-204, 0.0), DVec3::splat(-2.2e-272), dvec3(-1.8e267, -2.3e305, 0.0)];
@@ -100,7 +101,8 @@ fn cells_that_are_flat_to_the_last_digit_have_weights() {
     }
 }
 
-/// A partition with an index beyond the points used to panic, and one without mutual neighbours may send a walk in circles.
+/// A partition with an index beyond the points used to panic, and one without mutual neighbours may send a walk in
+/// circles.
 #[test]
 fn a_partition_that_is_not_of_these_points_is_refused_by_cell() {
     let points: Vec<DVec3> = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]]

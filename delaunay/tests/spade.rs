@@ -1,4 +1,5 @@
-//! Triangles of points in a plane are those of the crate `spade`, which shares nothing with this one but the predicates of `robust`.
+//! Triangles of points in a plane are those of the crate `spade`, which shares nothing with this one but the predicates
+//! of `robust`.
 
 use glam::{DVec3, dvec3};
 use pointillist_delaunay::{Delaunay, Partition};
@@ -49,7 +50,8 @@ proptest! {
         prop_assert_eq!(ours(&points), spades(&points));
     }
 
-    /// Many of these lie on circles and lines, or coincide: which diagonal is drawn differs, how many triangles there are does not.
+    /// Many of these lie on circles and lines, or coincide: which diagonal is drawn differs, how many triangles there
+    /// are does not.
     #[test]
     fn of_points_of_a_grid(points in points((-4..4).prop_map(f64::from))) {
         prop_assert_eq!(ours(&points).len(), spades(&points).len());

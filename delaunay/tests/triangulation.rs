@@ -63,8 +63,8 @@ proptest! {
     }
 }
 
-/// The triangle was built with its apex on one side of the plane, all four points with theirs on the other; triangles were sorted as
-/// seen from there. Found by exploring.
+/// The triangle was built with its apex on one side of the plane, all four points with theirs on the other; triangles
+/// were sorted as seen from there. Found by exploring.
 #[test]
 fn triangles_of_a_plane_are_sorted_alike_from_both_of_its_sides() {
     let tilted = [dvec3(1.0, 1.0, 2.0), dvec3(2.0, 0.0, 0.0), dvec3(1.0, 1.0, 1.0), dvec3(0.0, 2.0, 0.0)];

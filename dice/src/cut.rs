@@ -6,6 +6,7 @@
 //! [`accumulate`](crate::accumulate) compute in fixed point, and checks nothing that costs time.
 
 use crate::convex::ConvexPolygon;
+use crate::strip;
 use crate::window::CellWindow;
 use glam::{DVec2, IVec2};
 use std::ops::Range;
@@ -134,8 +135,12 @@ pub fn cut(polygon: &[DVec2], window: CellWindow, mut visit: impl FnMut(Cut<'_>)
         return;
     }
     let (lo, hi) = crate::convex::bounds(polygon);
-    let rows = cells_between(lo.y, hi.y, window.y0..window.y1);
+    let mut rows = cells_between(lo.y, hi.y, window.y0..window.y1);
     let columns = cells_between(lo.x, hi.x, window.x0..window.x1);
+    if rows.len() > 1 && (lo.x < f64::from(window.x0) || hi.x > f64::from(window.x1)) {
+        let (low, high) = strip::heights(polygon, &columns);
+        rows = cells_between(low, high, rows);
+    }
     if rows.is_empty() || columns.is_empty() {
         return;
     }

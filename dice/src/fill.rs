@@ -1,4 +1,4 @@
-//! Outlines that cross themselves, and outlines with holes, as edges between inside and outside.
+//! Boundary edges of outlines that cross themselves or have holes, by a fill rule.
 //!
 //! 1. Find the edges that meet ([`meet`](crate::meet)). Rings that meet one another, directly or by way of others, are one group.
 //! 2. A group lies between the others: their winding number is the same all around it, and is counted at one of its corners.

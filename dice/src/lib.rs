@@ -86,6 +86,7 @@ mod outline;
 mod rule;
 mod slabs;
 mod split;
+mod strip;
 mod window;
 
 pub use glam;

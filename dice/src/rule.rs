@@ -1,11 +1,11 @@
-//! What of outlines is inside, and the edges between inside and outside.
+//! Fill rules, and the parts of edges that are boundary by them.
 
 use glam::DVec2;
 
-/// What of an outline is inside, by how often it winds about a point.
+/// Which points are inside of an outline, by its winding number around them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FillRule {
-    /// An odd number of times: a ring within a ring is a hole, whatever its direction. The default.
+    /// Odd winding numbers: a ring within a ring is a hole, whatever its direction. The default.
     #[default]
     EvenOdd,
     /// Any number of times but 0: a ring within a ring is a hole only if it goes the other way round.

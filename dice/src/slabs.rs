@@ -60,7 +60,8 @@ impl Slabs<'_> {
     /// Counts winding numbers along the middle of the slab.
     fn count(&mut self, slab: &[f64], rule: FillRule, around: i32) {
         let [y0, y1] = [slab[0], slab[1]];
-        let middle = 0.5 * (y0 + y1);
+        // Halved before the sum, which may overflow.
+        let middle = 0.5 * y0 + 0.5 * y1;
         self.active.iter_mut().for_each(|(e, x)| *x = self.edges[*e].x_at(middle));
         self.active.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         let mut winding = around;

@@ -16,7 +16,7 @@ pub struct CellWindow {
 }
 
 impl CellWindow {
-    /// Every cell that has a number.
+    /// Every cell whose column and row fit into an `i32`.
     pub const ALL: Self = Self { x0: i32::MIN, y0: i32::MIN, x1: i32::MAX, y1: i32::MAX };
 
     /// The part of `columns` in the window; empty ranges stay empty.

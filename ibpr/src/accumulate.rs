@@ -1,4 +1,4 @@
-//! From points to one averaged point per buffer pixel and layer.
+//! Averages points: one averaged point per buffer pixel and layer.
 //!
 //! Bands of rows are independent: each walks the blocks whose boxes meet it, in the cloud's order, and
 //! so every sum is added up in the same order whatever the number of bands or threads.

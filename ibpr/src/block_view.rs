@@ -5,7 +5,7 @@ use crate::cloud::Cloud;
 use crate::project::{BATCH, Band, Projected};
 use pulp::Arch;
 
-/// A block as this frame sees it.
+/// A block in this frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BlockView {
     rows: [f32; 12],
@@ -41,7 +41,7 @@ fn row_range(rows: &[f32; 12], half: [f32; 3], map: &BufferMap) -> (usize, usize
         let y = row(4) / w;
         (low, high) = (low.min(y), high.max(y));
     }
-    // One row more than rounding could ask for.
+    // One row more than rounding can move a point by.
     ((low - 1.0).max(0.0) as usize, ((high + 2.0).max(0.0) as usize).min(map.height))
 }
 

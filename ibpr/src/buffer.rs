@@ -118,8 +118,8 @@ impl DepthScale {
         }
     }
 
-    /// The distance that counts as one between neighbours at relative depth `d`: the spacing of points,
-    /// or the size of a buffer pixel where that is larger.
+    /// The distance that counts as 1 between neighbours at relative depth `d`: the spacing of points, or the size of a
+    /// buffer pixel where that is larger.
     pub(crate) fn unit(&self, d: f32) -> f32 {
         self.spacing.max(self.footprint * (1.0 + self.bend * d))
     }

@@ -1,4 +1,4 @@
-//! Scans made ready once, to be drawn from any view.
+//! Scans prepared once, to be drawn from any view.
 
 use crate::cone::{self, Cone};
 use crate::error::IbprError;
@@ -10,18 +10,18 @@ use crate::spacing;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// Points per block: few enough to be near one another, many enough that a block costs nothing.
+/// Points per block: few enough to lie close together, many enough that the cost per block is negligible.
 pub(crate) const BLOCK: usize = 1024;
 
-/// Points that are near one another and of one scan.
+/// Points of one scan that lie close together.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// Of the cloud's arrays.
+    /// Its range in the cloud's arrays.
     pub(crate) points: Range<usize>,
     pub(crate) origin: DVec3,
     /// Half the sides of the box about `origin`, in units.
     pub(crate) half: Vec3,
-    /// Holds all normals, if they are known.
+    /// A cone that holds all normals, if they are known.
     pub(crate) cone: Option<Cone>,
     /// Unit, in the world.
     pub(crate) towards_scanner: Option<DVec3>,
@@ -54,13 +54,15 @@ impl Cloud {
     ///
     /// # Errors
     /// [`IbprError::NoPoints`], [`IbprError::PointNotFinite`], [`IbprError::PointTooFar`], [`IbprError::BadColor`],
-    /// [`IbprError::LengthMismatch`], [`IbprError::BadSpacing`], [`IbprError::BadDirection`], [`IbprError::TooManyPoints`];
-    /// [`IbprError::BadOption`] if a channel of `base` is not from 0 to [`Scan::BRIGHTEST`].
+    /// [`IbprError::LengthMismatch`], [`IbprError::BadSpacing`], [`IbprError::BadDirection`],
+    /// [`IbprError::TooManyPoints`]; [`IbprError::BadOption`] if a channel of `base` is not from 0 to
+    /// [`Scan::BRIGHTEST`].
     pub fn new(scans: &[Scan<'_>], base: Vec3) -> Result<Self, IbprError> {
         check_base(base)?;
         let add = |sum: usize, scan: &Scan<'_>| sum.checked_add(scan.positions.len());
         let limit = u32::MAX as usize;
-        // Scans may share points, so that more than memory holds can be given: on 32 bits even more than can be counted.
+        // Scans may be the same slice several times, so the total may exceed memory and, on 32-bit targets, the range
+        // of `usize`.
         let Some(points) = scans.iter().try_fold(0, add).filter(|&points| points <= limit) else {
             let count = scans.iter().fold(0_usize, |sum, s| sum.saturating_add(s.positions.len()));
             return Err(IbprError::TooManyPoints { count, limit });

@@ -1,4 +1,4 @@
-//! Where the surface of a block faces.
+//! Cones that hold the normals of a block.
 
 use glam::{Mat3, Vec3};
 
@@ -17,18 +17,18 @@ const REACH: f32 = 3.0;
 /// farther apart in one direction.
 const WIDER: [f32; 3] = [REACH, 2.0 * REACH, 4.0 * REACH];
 
-/// Fewer neighbours do not tell where a surface faces.
+/// Fewest neighbours from which a normal is estimated.
 const LEAST_NEIGHBOURS: usize = 6;
 
 /// A neighbourhood is a surface if it is this much thinner than wide (ratio of the standard deviations).
 const FLATNESS: f32 = 0.35;
 
-/// What a plane fit may miss of the surface's own normals: with it, no point of a surface whose radius
+/// Radians added for what a plane fit misses of the surface's own normals: with it, no point of a surface whose radius
 /// of curvature is above 2γ is dropped while it can touch a pixel of the visible side (see
 /// `culling_changes_nothing_on_a_sphere` in the tests).
 const MARGIN_RAD: f32 = 0.35;
 
-/// Normals steeper than this against the scanner cannot be told from their opposites.
+/// Cosine between a normal and the direction to the scanner below which the normal cannot be told from its opposite.
 const MOST_INCIDENCE_COS: f32 = 0.1;
 
 /// The cone of the normals of a block, or none where they cannot be trusted: neighbourhoods that are
@@ -38,7 +38,7 @@ pub(crate) fn of_points(offsets: [&[f32]; 3], spacing: f64, towards_scanner: Vec
     let at = |i: usize| Vec3::new(offsets[0][i], offsets[1][i], offsets[2][i]);
     let mut near = Vec::with_capacity(count);
     let mut normals = Vec::new();
-    // Every point lies within reach of one that has a plane: were it every n-th point, steep parts of a
+    // Every point lies within reach of one that has a plane. With a plane at every n-th point only, steep parts of a
     // scan, where points lie far apart, would be missed.
     let mut is_covered = vec![false; count];
     for i in 0..count {
@@ -58,7 +58,7 @@ pub(crate) fn of_points(offsets: [&[f32]; 3], spacing: f64, towards_scanner: Vec
             }
         }
         if near.len() < LEAST_NEIGHBOURS {
-            // An outlier, or a strip of the surface that goes on in another block: it may face anywhere.
+            // An outlier, or a strip of the surface that continues in another block: its normal is unknown.
             return None;
         }
         normals.push(normal(near.iter().map(|&j| at(j)), towards_scanner)?);

@@ -1,4 +1,4 @@
-//! Which blocks a frame has to look at.
+//! Selects the blocks that a frame draws.
 
 use crate::buffer_map::depth_of;
 use crate::cloud::{Block, Cloud};
@@ -80,7 +80,7 @@ fn towards_eye(block: &Block, view: &View, unit: f64) -> (DVec3, f64) {
         Projection::Perspective { .. } => {
             let to_eye = view.eye() - block.origin;
             let (distance, radius) = (to_eye.length(), block.half.as_dvec3().length() * unit);
-            // An eye inside the block sees it from everywhere.
+            // For an eye inside the block, all directions occur.
             let spread = if distance > radius { (radius / distance).asin() } else { PI };
             (to_eye / distance.max(f64::MIN_POSITIVE), spread)
         }

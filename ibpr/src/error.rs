@@ -1,4 +1,4 @@
-/// What can be wrong with the input of this crate.
+/// Errors of scans, views and options.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IbprError {

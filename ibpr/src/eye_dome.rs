@@ -7,10 +7,10 @@ use crate::frame::Frame;
 use crate::options::EyeDome;
 use crate::parallel::*;
 
-/// Factor of the exponent that makes a strength of 1 usual.
+/// Factor in the exponent of the formula above: with it, a usual strength is 1.
 const GAIN: f32 = 300.0;
 
-/// More than any two depths differ by that are not 0: without it, a depth of 0 would give 0 · ∞.
+/// Bound on the difference of log₂ z: larger than for any two depths above 0. Without it a depth of 0 would give 0 · ∞.
 const MOST: f32 = 300.0;
 
 /// Darkens the colors of a finished frame.

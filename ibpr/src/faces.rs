@@ -270,7 +270,7 @@ fn beyond(buffer: &Buffer, rules: &FaceRules, [at, next]: [usize; 2], direction:
     /// From here on a picture pixel is not touched by the surface.
     const OUTSIDE_PX: f32 = 0.5;
     let corner = &buffer.corners[at];
-    // Through translucent surfaces one would see it go on.
+    // Not in translucent frames: the continued surface would show through the nearer one.
     let hidden = buffer.layers == 1 && buffer.corners[next].surface[0] < corner.surface[0];
     let (length_px, inside) = if hidden {
         (UNDER * rules.pixel, rules.outline_px + UNDER * rules.pixel)

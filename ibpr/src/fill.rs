@@ -1,6 +1,6 @@
 //! Pull-push: pixels without points that lie between pixels with points of one surface.
 //!
-//! Only what is enclosed is filled, so outlines do not grow. At the buffer's own size a gap takes the mean
+//! Only enclosed pixels are filled, so outlines do not grow. At the buffer's own size a gap takes the mean
 //! of opposite neighbours that belong together. For wider gaps the buffer is averaged to half its size
 //! (pull); what is enclosed by its own surface there covers the gaps below it (push). A gap is a pixel
 //! without points, or one through which a surface further behind is seen.
@@ -8,7 +8,7 @@
 use crate::buffer::{Buffer, DepthScale, PAD};
 use crate::parallel::*;
 
-/// Count of a filled pixel: it is drawn, but has next to no say in plane fits.
+/// Number of points that a filled pixel counts as: it is drawn, but has almost no weight in plane fits.
 pub(crate) const FILLED: f32 = 1e-3;
 
 /// Depths of opposite neighbours may differ by this many units: twice the step between neighbours.
@@ -17,9 +17,12 @@ const STEP: f32 = 10.0;
 /// A surface this many units behind its surroundings is another one: beyond γ and what noise adds to it.
 const BEHIND: f32 = 3.0;
 
-/// Of the four pairs of opposite neighbours, so many must close a gap: a slit between two surfaces is
-/// bridged by one pair only, and stays open.
+/// Fewest of the four pairs of opposite neighbours that must agree for a pixel that shows a surface further behind to be
+/// covered, and for any gap to be filled from the pyramid. A slit between two surfaces is bridged by one pair only, and
+/// stays open.
 const ENCLOSED: usize = 3;
+
+/// The same for a pixel without points, from its direct neighbours.
 const ENCLOSED_EMPTY: usize = 1;
 
 /// Rows that are searched together.
@@ -55,7 +58,7 @@ pub(crate) fn pull_push(buffer: &mut Buffer, scale: &DepthScale, levels: u32, sc
     let coarser = levels as usize - 1;
     let FillScratch { bands, levels: pyramid } = scratch;
     pyramid.resize_with(coarser.max(pyramid.len()), Buffer::default);
-    // First what the neighbours themselves say: it is finer than what the pyramid says.
+    // Direct neighbours come first: they are finer than the pyramid.
     fill_bands(buffer, bands, |buffer, i, fills| fills.extend(between(buffer, i, scale)));
     for l in 0..coarser {
         let (finer, rest) = pyramid.split_at_mut(l);
@@ -68,7 +71,7 @@ pub(crate) fn pull_push(buffer: &mut Buffer, scale: &DepthScale, levels: u32, sc
     }
 }
 
-/// Asks `find` for what each pixel gets, from the buffer as it is, and then fills it in.
+/// Calls `find` for each pixel of the unchanged buffer, then writes the values found.
 fn fill_bands(
     buffer: &mut Buffer,
     bands: &mut Vec<Vec<Fill>>,
@@ -176,8 +179,8 @@ fn pull(fine: &Buffer, coarse: &mut Buffer, scale: &DepthScale) {
     }
 }
 
-/// What the pixel of half the size above it says about a pixel of `fine`: its surface, if it is enclosed
-/// by that surface and the pixel is a gap in it.
+/// The value that the pixel of the half-size buffer gives to a pixel of `fine`: its surface, if that encloses the pixel
+/// and the pixel is a gap in it.
 fn below(coarse: &Buffer, fine: &Buffer, index: usize, scale: &DepthScale) -> Option<Fill> {
     let (row, column) = (index / fine.pitch - PAD, index % fine.pitch - PAD);
     let above = coarse.at(column / 2, row / 2);

@@ -24,8 +24,8 @@ pub(crate) struct Fit {
     pub(crate) good: bool,
 }
 
-/// The fits of [`LANES`] neighbouring pixels, with their residuals or without, compiled once more for each kind of vector instructions: the
-/// same operations in the same order, so results do not change.
+/// The fits of [`LANES`] neighbouring pixels, with their residuals or without, compiled once more for each kind of
+/// vector instructions: the same operations in the same order, so results do not change.
 pub(crate) struct Chunk<'a, const RESIDUAL: bool> {
     pub(crate) b: &'a Buffer,
     pub(crate) first: usize,
@@ -36,7 +36,8 @@ pub(crate) struct Chunk<'a, const RESIDUAL: bool> {
 impl<const RESIDUAL: bool> NullaryFnOnce for Chunk<'_, RESIDUAL> {
     type Output = [Fit; LANES];
 
-    // A closure would not be inlined into the vectorised caller, and what is not inlined stays narrow.
+    // Not a closure: it would not be inlined into the vectorised caller, and would be compiled without the wide
+    // instructions.
     #[inline(always)]
     fn call(self) -> [Fit; LANES] {
         let mut step = [0.0; LANES];
@@ -99,16 +100,16 @@ fn sum_window(b: &Buffer, first: usize, step: &Lanes, radius: isize) -> Window {
     s
 }
 
-/// A pixel with more points counts no more than this: its mean is as good as it gets.
+/// Largest weight of a pixel in a fit, in points: the means of pixels with more points are hardly more accurate.
 const MOST_WEIGHT: f32 = 8.0;
 
-/// Added to the diagonal of the curved terms, relative to the sum of the weights: where a window has too
-/// few points to tell a curve, it fits a plane.
+/// Added to the diagonal of the curved terms, relative to the sum of the weights: where a window has too few points to
+/// determine curvature, the fit is a plane.
 const STIFFNESS: f32 = 0.02;
 
 impl Window {
     /// Least squares for all lanes at once, by LDLᵀ: (1) the lower half of the normal equations, (2) L and
-    /// D, with the right side carried along, (3) what is not explained, (4) back substitution.
+    /// D, with the right side carried along, (3) the residual, (4) back substitution.
     #[inline(always)]
     fn solve<const RESIDUAL: bool>(&self) -> [Fit; LANES] {
         let mut m = [[[0.0; LANES]; TERMS]; TERMS];
@@ -172,7 +173,7 @@ const CURVED: usize = 3;
 
 /// `m` becomes L with D on the diagonal, `rhs` becomes D⁻¹·L⁻¹·rhs.
 ///
-/// Lanes are the innermost loops: those are the ones that the compiler makes vectors of.
+/// Lanes are the innermost loops, which the compiler vectorises.
 #[inline(always)]
 fn decompose(m: &mut Matrix, rhs: &mut [Lanes; TERMS]) {
     for i in 0..TERMS {

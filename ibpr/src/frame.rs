@@ -1,10 +1,15 @@
 //! The picture.
+//!
+//! `pointillist-surfel` has a frame of the same form in its own `frame.rs`: both keep their layers private and fill
+//! them in different ways (strips here, tiles there), so a shared type would have to let everybody write to its layers,
+//! to save five one-line functions.
 
 /// A drawn frame: layers of `width · height` entries, row by row from the top left pixel.
 ///
-/// Frames of `pointillist-ibpr` and `pointillist-surfel` have the same form. Color and depth are always there; the other layers are
-/// empty unless [`Options::surface_layers`](crate::Options::surface_layers) asks for them. A new frame has no pixels. Keep one and
-/// draw into it again: memory is allocated for the first frame, and when the size of the picture grows.
+/// Frames of `pointillist-ibpr` and `pointillist-surfel` have the same form. Color and depth are always there; the
+/// other layers are empty unless [`Options::surface_layers`](crate::Options::surface_layers) asks for them. A new frame
+/// has no pixels. Keep one and draw into it again: memory is allocated for the first frame, and when the size of the
+/// picture grows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
     pub(crate) width: usize,
@@ -59,8 +64,8 @@ impl Frame {
         &self.color
     }
 
-    /// Distance from the eye along the view direction, world units, of the nearest surface that covers half the pixel or more;
-    /// `f32::INFINITY` where there is none.
+    /// Distance from the eye along the view direction, world units, of the nearest surface that covers half the pixel
+    /// or more; `f32::INFINITY` where there is none.
     #[must_use]
     pub fn depth(&self) -> &[f32] {
         &self.depth

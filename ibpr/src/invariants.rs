@@ -1,7 +1,8 @@
-//! Facts that hold for every cloud, view and set of options, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
+//! Facts that hold for every cloud, view and set of options, as functions `fn fact(…) -> Result<(), String>`: `Err`
+//! says what was found instead.
 //!
-//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a crate
-//! that builds on it, with the feature `invariants`. Each takes any input at all; scans and options that are
+//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a
+//! crate that builds on it, with the feature `invariants`. Each takes any input at all; scans and options that are
 //! refused satisfy every fact.
 //!
 //! ```
@@ -199,7 +200,7 @@ pub fn frame_is_sound(frame: &Frame) -> Result<(), String> {
         if let (Some(n), Some(count)) = (frame.normal().get(i), frame.count().get(i)) {
             let place = || format!("{}, normal {n:?}, count {count}", place());
             let length = Vec3::from_array(*n).length();
-            // A surface so far away that f32 has no number for its depth still has a normal.
+            // The depth of a far surface may overflow `f32`; its normal is there still.
             let is = |wanted: f32| (length - wanted).abs() <= TOLERANCE;
             check(is(1.0) || depth == f32::INFINITY && is(0.0), place)?;
             check(*count >= 0.0 && count.is_finite(), place)?;

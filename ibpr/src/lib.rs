@@ -30,16 +30,17 @@
 //! # Accuracy and cost
 //! Positions are `f64` relative to their block, then `f32` in units of the cloud's size; depth is kept relative to the
 //! middle of the cloud. Sums run in the cloud's own order, so a picture does not depend on the order of the
-//! input or on threads. Time goes into the picture's faces and the buffer's fits more than into points:
+//! input or on threads. Faces of the picture and fits of the buffer take more time than points:
 //! `studies/results/ibpr.md` has time against error for every option, and the paper's own times beside ours.
 //!
 //! # Features
-//! `rayon` (default): bands of the picture on all cores; results do not change. `invariants`: the module of that name, facts
-//! for property tests and fuzzing, also of crates that build on this one.
+//! `rayon` (default): bands of the picture on all cores; results do not change. `invariants`: the module of that name,
+//! facts for property tests and fuzzing, also of crates that build on this one.
 //!
-//! Builds for `wasm32-unknown-unknown` without default features; last bits of pictures may differ there, because logarithms and
-//! trigonometric functions come from another library. Figures here and in the README are with thin LTO and `codegen-units = 1` (`[profile.release]` of the
-//! program that depends on this crate): without them expect somewhat more.
+//! Builds for `wasm32-unknown-unknown` without default features; last bits of pictures may differ there, because
+//! logarithms and trigonometric functions come from another library. Figures here and in the README are with thin LTO
+//! and `codegen-units = 1` (`[profile.release]` of the program that depends on this crate): without them expect
+//! somewhat more.
 //!
 //! # References
 //! \[1\] The paper on image-based point rendering (IBPR) of several range scans: buffer, γ, eight
@@ -81,8 +82,8 @@ mod spacing;
 pub use cloud::Cloud;
 pub use error::IbprError;
 pub use frame::{Frame, FrameCounts};
-pub use options::{Culling, EyeDome, Light, Normals, Options, Passes, Scale, Translucency, Weighting};
-pub use pointillist_view::{PixelRect, Projected, Projection, Ray, View, ViewError};
+pub use options::{Culling, EyeDome, Normals, Options, Passes, Scale, Translucency, Weighting};
+pub use pointillist_view::{Light, PixelRect, Projected, Projection, Ray, View, ViewError};
 pub use render::Renderer;
 pub use scan::Scan;
 

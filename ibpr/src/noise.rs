@@ -70,7 +70,7 @@ impl Histogram {
         self.bins[bin.min(Self::BINS - 1)] += 1;
     }
 
-    /// Upper end of the bin of the median; 0 without values.
+    /// Upper end of the median's bin; 0 without values.
     fn median(&self) -> f32 {
         let half = self.bins.iter().sum::<u32>() / 2;
         let mut seen = 0;

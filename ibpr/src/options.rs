@@ -1,8 +1,9 @@
-//! What a frame is made with.
+//! Options of a frame.
 
 use crate::error::IbprError;
-use crate::scan::{Scan, unit};
-use glam::{DVec3, Vec3};
+use crate::scan::Scan;
+use glam::Vec3;
+use pointillist_view::Light;
 
 /// Size of a buffer pixel in picture pixels (the paper's S).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,9 +22,9 @@ pub enum Scale {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Weighting {
-    /// `u`, eq. 2 as it survives in print: the nearest point counts (almost) nothing.
+    /// `u`, eq. 2 as printed: the nearest point has (almost) no weight.
     Printed,
-    /// `1 − u`: falls from the nearest point, and so pulls noisy surfaces towards the eye.
+    /// `1 − u`: largest for the nearest point, so the mean of a noisy surface moves towards the eye.
     Falling,
     /// 1: the plain mean of the slab.
     Even,
@@ -35,7 +36,8 @@ pub enum Weighting {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Normals {
-    /// Least-squares planes over windows that grow with the noise.
+    /// Least-squares quadratic surfaces over windows that grow with the noise; planes where a window has too few points
+    /// to determine curvature.
     Plane,
     /// The mean of up to eight triangles with consecutive neighbours, as in the paper.
     Triangles,
@@ -45,7 +47,7 @@ pub enum Normals {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Culling {
-    /// Nothing.
+    /// No culling.
     None,
     /// Scans taken from behind, as in the paper: drops points that can be seen.
     Printed,
@@ -59,7 +61,7 @@ pub enum Culling {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Passes {
-    /// One, with S.
+    /// One buffer, at the scale S.
     One,
     /// A finer one with `finer`·S under the normal one, which is drawn over it except where points are
     /// dense or the surface is nearly edge-on.
@@ -104,16 +106,6 @@ impl Translucency {
         self.threshold = threshold;
         self
     }
-}
-
-/// Where light comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Light {
-    /// From the eye.
-    Eye,
-    /// From far away: direction towards the light, world space.
-    Towards(DVec3),
 }
 
 /// Depth shading that needs no normals: pixels behind their surroundings darken (Boucheny 2009).
@@ -165,7 +157,7 @@ pub struct Options {
     pub base: Vec3,
     /// Default: none.
     pub eye_dome: Option<EyeDome>,
-    /// Whether the frame gets normals and counts besides color and depth. Default: false.
+    /// Whether the frame has normals and counts besides color and depth. Default: false.
     pub surface_layers: bool,
 }
 
@@ -250,7 +242,7 @@ impl Options {
         self
     }
 
-    /// Sets what is skipped because it faces away.
+    /// Sets the rule of back-face culling.
     #[must_use]
     pub const fn with_culling(mut self, culling: Culling) -> Self {
         self.culling = culling;
@@ -333,16 +325,14 @@ impl Options {
             check("radius", e.radius as f32, (1..=64).contains(&e.radius), "it must be 1 to 64")?;
         }
         check_base(self.base)?;
-        if let Light::Towards(d) = self.light
-            && unit(d).is_none()
-        {
-            check("light", d.x as f32, false, "the direction must be finite and not zero")?;
+        if let Light::Towards(d) = self.light {
+            check("light", d.x as f32, self.light.is_valid(), "the direction must be finite and not zero")?;
         }
         Ok(())
     }
 }
 
-/// Refuses a color for points without one that is not a color.
+/// Refuses a default color with a channel that is negative, NaN or above [`Scan::BRIGHTEST`].
 pub(crate) fn check_base(base: Vec3) -> Result<(), IbprError> {
     match base.to_array().into_iter().find(|c| !(0.0..=Scan::BRIGHTEST).contains(c)) {
         Some(c) => {

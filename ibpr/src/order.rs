@@ -1,14 +1,12 @@
-//! The order of points that every frame uses: it depends on what the points are, not on how they came.
+//! The canonical order of points that every frame uses: it depends on the points, not on the order of the input.
 
 use crate::scan::Scan;
 use glam::DVec3;
 use pointillist_parallel::sort_by;
+use pointillist_view::{MORTON_BITS, morton_code};
 use std::cmp::Ordering;
 
-/// Cells per axis of the finest lattice, as a power of 2: three times this fits into 64 bits.
-pub(crate) const BITS: u32 = 21;
-
-/// A box with a cubic lattice of 2^[`BITS`] cells per axis over it.
+/// A box with a cubic lattice of 2^[`MORTON_BITS`] cells per axis over it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lattice {
     pub(crate) low: DVec3,
@@ -30,21 +28,11 @@ impl Lattice {
 
     /// Morton code of the cell that holds `p`.
     pub(crate) fn code(&self, p: DVec3) -> u64 {
-        let cells = f64::from(1u32 << BITS);
+        let cells = f64::from(1u32 << MORTON_BITS);
         let scale = if self.extent > 0.0 { cells / self.extent } else { 0.0 };
         let cell = ((p - self.low) * scale).min(DVec3::splat(cells - 1.0));
-        spread(cell.x as u64) | spread(cell.y as u64) << 1 | spread(cell.z as u64) << 2
+        morton_code(cell.to_array().map(|c| c as u32))
     }
-}
-
-/// Puts two zeros between the bits of a number of [`BITS`] bits.
-fn spread(x: u64) -> u64 {
-    let mut x = x & 0x1f_ffff;
-    x = (x | x << 32) & 0x1f_0000_0000_ffff;
-    x = (x | x << 16) & 0x1f_0000_ff00_00ff;
-    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-    (x | x << 2) & 0x1249_2492_4924_9249
 }
 
 /// One scan's points in Morton order; equal codes by coordinates, then by color.

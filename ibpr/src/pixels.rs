@@ -1,10 +1,10 @@
-//! What a picture pixel keeps of the faces over it: the nearest surface, or several.
+//! The surfaces that a picture pixel keeps of the faces over it: the nearest one, or several.
 
 use crate::buffer::DepthScale;
 use crate::options::Translucency;
 use crate::raster::{Paint, Pixels};
 
-/// No surface.
+/// Stands for no surface.
 const FAR: [f32; 4] = [f32::INFINITY, 0.0, 0.0, 0.0];
 
 /// The nearest surface of each pixel, and the nearest rim in front of it.

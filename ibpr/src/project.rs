@@ -74,7 +74,7 @@ impl Projected {
         self.count = count;
     }
 
-    // As a function of its own: the compiler knows of parameters that they do not overlap.
+    // A function of its own: the compiler knows that its parameters do not overlap.
     #[inline(always)]
     fn transform_lanes(&mut self, rows: &[f32; 12], points: [&[f32]; 3], band: &Band) {
         let [px, py, pz] = points;
@@ -110,7 +110,8 @@ struct Transform<'a> {
 impl NullaryFnOnce for Transform<'_> {
     type Output = ();
 
-    // A closure would not be inlined into the vectorised caller, and what is not inlined stays narrow.
+    // Not a closure: it would not be inlined into the vectorised caller, and would be compiled without the wide
+    // instructions.
     #[inline(always)]
     fn call(self) {
         self.lanes.transform_lanes(self.rows, self.points, self.band);

@@ -1,4 +1,4 @@
-//! Small triangles into a strip of the picture.
+//! Draws small triangles into a strip of the picture.
 
 use crate::buffer::SUBPIXEL;
 
@@ -33,7 +33,7 @@ pub(crate) struct Strip<P> {
 }
 
 impl<P: Pixels> Strip<P> {
-    /// Gives it the place of some rows of the picture.
+    /// Assigns rows of the picture to it.
     pub(crate) fn set_rows(&mut self, width: usize, first_row: usize, rows: usize) {
         (self.width, self.first_row, self.rows) = (width, first_row, rows);
     }
@@ -74,7 +74,7 @@ impl<P: Pixels> Strip<P> {
             let [mut p, mut q, mut r] = row;
             let base = (y as usize - self.first_row) * self.width;
             for x in left..=right {
-                // Inside where no value is negative: one look at three signs.
+                // Inside where none of the three values is negative: their signs are tested together.
                 if (p | q | r) >= 0 {
                     let weights = [(q - f.bias) as f32 * inverse, (r - g.bias) as f32 * inverse];
                     self.put::<RIM>(base + x as usize, [a, b, c], weights, paints);

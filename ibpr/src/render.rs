@@ -28,8 +28,8 @@ const STRIP_ROWS: usize = 32;
 /// The same for translucent frames, which keep several surfaces per pixel.
 const STACK_ROWS: usize = 16;
 
-/// How much larger buffer pixels are in translucent frames: through a gap one sees the layer behind, and
-/// only the narrowest are filled there. Found by experiment on a scanned sphere.
+/// Factor on the size of buffer pixels in translucent frames: gaps show the layer behind, and only the narrowest are
+/// filled there. Found by experiment on a scanned sphere.
 const SEEN_THROUGH: f64 = 1.6;
 
 /// Draws frames. Keeps its working memory, so that later frames do not allocate.
@@ -80,7 +80,7 @@ impl Renderer {
         }
         options.check()?;
         let mut counts = FrameCounts::default();
-        // Through translucent surfaces one sees those that face away.
+        // Translucent surfaces show those behind them, also those that face away.
         let culling = if options.translucency.is_some() { Culling::None } else { options.culling };
         cull::visible(cloud, view, culling, &mut self.visible, &mut self.depths, &mut counts);
         counts.scale = self.scale(cloud, view, options);
@@ -115,8 +115,8 @@ impl Renderer {
             Scale::Auto(factor) if options.translucency.is_some() => f64::from(factor) * SEEN_THROUGH,
             Scale::Auto(factor) => f64::from(factor),
         };
-        // The median depth of the points in view: few points at the lens must not blur the rest. Also of
-        // those that face away, or culling would change what is seen.
+        // The median depth of the points in view, so that few points close to the eye do not coarsen the buffer. Points
+        // that face away are included, or culling would change the picture.
         self.depths.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let half = self.depths.iter().map(|d| d.1).sum::<usize>() / 2;
         let mut seen = 0;

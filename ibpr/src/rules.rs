@@ -1,9 +1,9 @@
-//! What stays the same for all points of a frame.
+//! Parameters of a frame that all points share.
 
 use crate::buffer::DepthScale;
 use crate::options::{Translucency, Weighting};
 
-/// What stays the same for all points of a frame.
+/// Parameters of a frame that all points share.
 #[derive(Clone, Copy)]
 pub(crate) struct Rules {
     pub(crate) gamma: f32,

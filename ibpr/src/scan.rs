@@ -1,4 +1,4 @@
-//! One range scan as its caller holds it.
+//! One range scan, as slices of its caller.
 
 use crate::error::IbprError;
 use glam::DVec3;
@@ -13,10 +13,11 @@ pub struct Scan<'a> {
 }
 
 impl<'a> Scan<'a> {
-    /// Largest absolute value of a coordinate, a quarter of `f64::MAX`: differences of coordinates, and twice those, are finite.
+    /// Largest absolute value of a coordinate, a quarter of `f64::MAX`: differences of coordinates, and twice those,
+    /// are finite.
     pub const FARTHEST: f64 = 0.25 * f64::MAX;
 
-    /// Largest channel of a color: sums over the 2³² points that a pixel may have are still numbers in single precision.
+    /// Largest channel of a color: sums over the 2³² points that a pixel may have are finite in `f32`.
     pub const BRIGHTEST: f32 = 1e28;
 
     /// Points without color, whose spacing is estimated and whose scanner is unknown.
@@ -39,16 +40,16 @@ impl<'a> Scan<'a> {
         self
     }
 
-    /// Direction from the object to the scanner, of any length: lets what faces away be skipped.
+    /// Direction from the object to the scanner, of any length: points that face away from the eye can then be skipped.
     #[must_use]
     pub fn with_scanner(mut self, towards: DVec3) -> Self {
         self.towards_scanner = Some(towards);
         self
     }
 
-    /// Refuses what no picture can be made of; `scan` is its place in the caller's slice.
+    /// Checks lengths, ranges and finiteness; `scan` is its index in the caller's slice.
     pub(crate) fn check(&self, scan: usize) -> Result<(), IbprError> {
-        // Not `max_element`, which passes over NaN.
+        // Not `max_element`, which ignores NaN.
         let near = |p: &DVec3| p.abs().cmple(DVec3::splat(Self::FARTHEST)).all();
         if let Some(index) = self.positions.iter().position(|p| !near(p)) {
             let (finite, value) = (self.positions[index].is_finite(), self.positions[index].to_array());
@@ -82,7 +83,8 @@ impl<'a> Scan<'a> {
 
 /// The direction of a vector of any finite length above 0.
 pub(crate) fn unit(v: DVec3) -> Option<DVec3> {
-    // The squares of 1e200 and 1e-200 overflow and underflow: such vectors are divided by their largest coordinate first.
+    // The squares of 1e200 and 1e-200 overflow and underflow: such vectors are divided by their largest coordinate
+    // first.
     let is_normal = (1e-280..=1e280).contains(&v.length_squared());
     if is_normal { v.try_normalize() } else { (v / v.abs().max_element()).try_normalize() }
 }

@@ -1,11 +1,12 @@
-//! From surfaces to colors.
+//! Lights surfaces and writes pixels.
 
 use crate::buffer_map::BufferMap;
-use crate::options::{Light, Options};
+use crate::options::Options;
 use crate::pixels::{Fragment, Nearest};
 use crate::raster::Paint;
 use crate::scan::unit;
 use glam::{DVec3, Vec3};
+use pointillist_view::Light;
 
 /// Shading and output of a frame: everything in the camera's frame (right, up, back).
 pub(crate) struct Shader {
@@ -49,7 +50,7 @@ impl Shader {
         }
     }
 
-    /// Color × (A + (1 − A)·max(0, n·l)) at the centre of a pixel, for a normal of any length.
+    /// Color × (A + (1 − A)·max(0, n·l)) at the centre of a pixel, for a normal of any length; A is the ambient share.
     #[inline]
     fn shaded(&self, surface: &[f32; 4], place: (usize, usize), paint: Option<&Paint>) -> Vec3 {
         let n = Vec3::new(surface[1], surface[2], surface[3]);

@@ -1,13 +1,14 @@
 //! How far points lie from their neighbours.
 
-use crate::order::{BITS, Lattice, Ordered};
+use crate::order::{Lattice, Ordered};
 use crate::scan::Scan;
+use pointillist_view::MORTON_BITS;
 
-/// Points whose nearest neighbour is looked for.
+/// Number of points of which neighbours are measured.
 const SAMPLE: usize = 1024;
 
-/// Neighbours before and after in Morton order that are looked at: for most points they hold the
-/// nearest ones, and the median does not feel the others.
+/// Neighbours before and after in Morton order that are searched: for most points they contain the nearest ones, and
+/// the median is insensitive to the others.
 const WINDOW: usize = 96;
 
 /// The neighbour whose distance is taken: on a square grid it is the spacing, and for points thrown at
@@ -68,13 +69,13 @@ pub(crate) fn of_all(ordered: &[Ordered], lattice: &Lattice, spacing: f64, point
     if !(spacing > 0.0 && lattice.extent > spacing) {
         return spacing;
     }
-    let level = (lattice.extent / (2.5 * spacing)).log2().round().clamp(1.0, f64::from(BITS)) as u32;
-    let shift = 3 * (BITS - level);
+    let level = (lattice.extent / (2.5 * spacing)).log2().round().clamp(1.0, f64::from(MORTON_BITS)) as u32;
+    let shift = 3 * (MORTON_BITS - level);
     let mut cells = vec![];
     for o in ordered {
         let start = cells.len();
         cells.extend(o.codes.iter().map(|c| c >> shift));
-        // Codes come sorted: what repeats within a scan goes before the sort.
+        // Codes of a scan are sorted: repeated ones are removed before the sort of all.
         let mut kept = start;
         for i in start..cells.len() {
             if kept == start || cells[kept - 1] != cells[i] {
@@ -87,6 +88,6 @@ pub(crate) fn of_all(ordered: &[Ordered], lattice: &Lattice, spacing: f64, point
     cells.sort_unstable();
     cells.dedup();
     let side = lattice.extent / f64::from(1u32 << level);
-    // Not the root of the area, whose square of `side` may leave the range of numbers.
+    // Not the root of the area: the square of `side` could overflow or underflow.
     side * (cells.len() as f64 / CELLS_PER_AREA / points as f64).sqrt()
 }

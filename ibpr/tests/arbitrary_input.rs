@@ -1,4 +1,4 @@
-//! Any values at all into every public function: an answer or a typed error, never a panic or NaN.
+//! Every public function with arbitrary values: it returns an answer or a typed error, never a panic or NaN.
 
 use glam::{DAffine3, DMat3, DVec3, Vec3, dvec3};
 use pointillist_ibpr::invariants::{self, OwnedScan, cloud};

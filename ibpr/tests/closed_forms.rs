@@ -1,4 +1,4 @@
-//! Frames against what must come out: planes, spheres, discs, layers.
+//! Frames compared with closed forms: planes, spheres, discs, layers.
 
 use glam::{DVec2, DVec3, dvec3};
 use pointillist_ibpr::invariants::{OwnedScan, frame};

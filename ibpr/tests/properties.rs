@@ -198,9 +198,9 @@ fn view_of_sphere() -> impl Strategy<Value = View> {
     )
 }
 
-/// A scan that faces away by 165° may still touch pixels of the rim from behind, where its steepest points are averaged with those in
-/// front, or stand alone: the outline moves there by a part of a buffer pixel, in single places. Nothing else changes, and the
-/// coverage of all pixels on the outline by no more than a twentieth on average.
+/// A scan that faces away by 165° may still touch pixels of the rim from behind, where its steepest points are averaged
+/// with those in front, or stand alone: the outline moves there by a part of a buffer pixel, in single places. Nothing
+/// else changes, and the coverage of all pixels on the outline by no more than a twentieth on average.
 fn only_the_rim_differs(all: &Frame, culled: &Frame) -> Result<(), String> {
     let reach = (2.0 * all.counts().scale).ceil() as usize + 1;
     let (mut changed, mut outline) = (0.0, 0);

@@ -1,5 +1,6 @@
 //! Axis-aligned boxes in the world.
 
+use crate::interval::Interval;
 use glam::DVec3;
 
 /// An axis-aligned box.
@@ -26,11 +27,11 @@ impl Bounds {
     /// Smallest and largest value of `direction · (p − origin)` over the box, widened by rounding.
     #[must_use]
     #[inline]
-    pub fn extent_along(&self, origin: DVec3, direction: DVec3) -> (f64, f64) {
+    pub fn extent_along(&self, origin: DVec3, direction: DVec3) -> Interval {
         let centre = 0.5 * (self.low + self.high) - origin;
         let half = 0.5 * (self.high - self.low);
         let middle = direction.dot(centre);
         let reach = direction.abs().dot(half) + 1e-12 * direction.abs().dot(centre.abs() + half);
-        (middle - reach, middle + reach)
+        Interval { least: middle - reach, most: middle + reach }
     }
 }

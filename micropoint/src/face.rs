@@ -1,6 +1,7 @@
 //! A triangle as one lens sees it.
 
-use crate::geometry::{HiddenSides, Surface, Triangle};
+use crate::geometry::{ClusterTriangle, HiddenSides, Surface, Triangle};
+use crate::interval::Interval;
 use crate::lens::{Lens, LensKind, Plane};
 use glam::{DVec2, DVec3};
 use pointillist_dice::{clip_ring, convex, share_before_crossing};
@@ -13,8 +14,8 @@ pub struct Face {
     pub id: u32,
     /// Index of its surface.
     pub surface: u32,
-    /// Where the triangle is prepared: cluster, and position in it.
-    pub source: (u32, u32),
+    /// Where the triangle is in the prepared geometry.
+    pub source: ClusterTriangle,
     /// The side from which it winds counter-clockwise is seen.
     pub front: bool,
     /// Corners in the lens's frame.
@@ -22,7 +23,7 @@ pub struct Face {
     /// Nearness over the grid.
     pub plane: Plane,
     /// Smallest and largest nearness of the visible part.
-    pub nearness: (f64, f64),
+    pub nearness: Interval,
 }
 
 impl Face {
@@ -31,7 +32,7 @@ impl Face {
     #[must_use]
     #[inline]
     pub fn nearness_at(&self, p: DVec2) -> f64 {
-        self.plane.at(p).max(self.nearness.0).min(self.nearness.1)
+        self.nearness.clamp(self.plane.at(p))
     }
 
     /// The point of the face at a grid position.
@@ -233,7 +234,7 @@ pub struct Setup<'a> {
 pub(crate) fn set_up_face(
     setup: &Setup<'_>,
     triangle: &Triangle,
-    source: (u32, u32),
+    source: ClusterTriangle,
     v: [&ProjectedVertex; 3],
     surface: &Surface,
 ) -> Option<(Face, Outline)> {
@@ -274,7 +275,8 @@ pub(crate) fn set_up_face(
         let mut outline = Outline { vertices: [DVec2::ZERO; 8], len: 3 };
         outline.vertices[..3].copy_from_slice(&ring);
         let q = corners.map(|p| lens.nearness(p.z));
-        (outline, (q[0].min(q[1]).min(q[2]), q[0].max(q[1]).max(q[2])))
+        let nearness = Interval { least: q[0].min(q[1]).min(q[2]), most: q[0].max(q[1]).max(q[2]) };
+        (outline, nearness)
     } else {
         clip_outline(lens, rect, corners, front)?
     };
@@ -290,7 +292,7 @@ fn clip_outline(
     rect: &GridRect,
     corners: [DVec3; 3],
     front: bool,
-) -> Option<(Outline, (f64, f64))> {
+) -> Option<(Outline, Interval)> {
     let size = corners.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
     let perspective = lens.kind == LensKind::Perspective;
     let side = move |p: DVec3, axis: DVec3, line: f64, sign: f64| {
@@ -313,11 +315,11 @@ fn clip_outline(
         (ring, len) = clipped(&ring[..len], value);
     }
     let mut outline = Outline { vertices: [DVec2::ZERO; 8], len };
-    let mut nearness = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut nearness = Interval::EMPTY;
     for (to, p) in outline.vertices.iter_mut().zip(&ring[..len]) {
         *to = lens.project(*p).clamp(rect.low, rect.high);
         let q = lens.nearness(p.z);
-        nearness = (nearness.0.min(q), nearness.1.max(q));
+        nearness.include(q);
     }
     if front {
         outline.vertices[..len].reverse();

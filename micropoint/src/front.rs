@@ -1,6 +1,7 @@
 //! Which of two surfaces is in front, over the area that they have in common.
 
 use crate::face::Face;
+use crate::interval::Interval;
 use crate::lens::Lens;
 use glam::DVec2;
 use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
@@ -13,7 +14,7 @@ pub struct Layer<'a> {
     /// Its outline, convex and in positive order; [`in_front`] says in which frame.
     pub outline: &'a [DVec2],
     /// Smallest and largest nearness over the outline.
-    pub nearness: (f64, f64),
+    pub nearness: Interval,
 }
 
 /// Where one layer is nearer than another.
@@ -41,9 +42,9 @@ pub fn in_front(
     if_coincident: bool,
 ) -> Front {
     let (fu, fl) = (&upper.face.plane, &lower.face.plane);
-    let tie = lens.tie(lower.nearness.1, fu.slope.abs() + fl.slope.abs());
+    let tie = lens.tie(lower.nearness.most, fu.slope.abs() + fl.slope.abs());
     // Ranges that lie apart need no planes, however steep these are.
-    if upper.nearness.0 >= lower.nearness.1 + lens.tie(lower.nearness.1, DVec2::ZERO) {
+    if upper.nearness.least >= lower.nearness.most + lens.tie(lower.nearness.most, DVec2::ZERO) {
         return Front::Everywhere;
     }
     let mut common = ConvexPolygon::from_vertices(lower.outline);

@@ -5,6 +5,7 @@ use crate::closed::{OPEN, Solid, find_solids, solid_angle};
 use crate::error::MicropointError;
 use crate::lens::{Lens, LensKind};
 use glam::DVec3;
+use pointillist_view::morton_code;
 
 /// How a surface lets light through; the rest of a material is the shader's business.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +31,15 @@ impl Surface {
     pub fn is_opaque(&self) -> bool {
         self.opacity >= 1.0 && !self.textured_opacity
     }
+}
+
+/// Where a triangle is in a [`Geometry`], which sorts triangles into clusters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClusterTriangle {
+    /// Number of the cluster.
+    pub cluster: u32,
+    /// Position of the triangle in the cluster.
+    pub index: u32,
 }
 
 /// A prepared triangle; its corners index the vertices of its cluster.
@@ -250,12 +260,15 @@ impl Geometry {
         (&c.bounds, vertices, triangles)
     }
 
-    /// Corners of a prepared triangle in the world; `cluster` and `index` as visited.
+    /// Corners of a prepared triangle in the world.
+    ///
+    /// # Panics
+    /// If `triangle` is not that of a face of this geometry.
     #[must_use]
     #[inline]
-    pub fn corners(&self, cluster: u32, index: u32) -> [DVec3; 3] {
-        let (_, vertices, triangles) = self.cluster(cluster);
-        triangles[index as usize].corners.map(|c| vertices[usize::from(c)])
+    pub fn corners(&self, triangle: ClusterTriangle) -> [DVec3; 3] {
+        let (_, vertices, triangles) = self.cluster(triangle.cluster);
+        triangles[triangle.index as usize].corners.map(|c| vertices[usize::from(c)])
     }
 
     /// Whether all of a cluster is hidden from a viewer because it is the side of a solid that the viewer
@@ -289,7 +302,7 @@ impl Geometry {
         let open = |i: usize, s: &Solid| match lens.kind {
             LensKind::Orthographic => {
                 let bounds = Bounds { low: s.low, high: s.high };
-                bounds.extent_along(lens.origin, lens.forward).0 < 0.0
+                bounds.extent_along(lens.origin, lens.forward).least < 0.0
             }
             LensKind::Perspective => {
                 let margin = 1e-9 * (s.high - s.low).length();
@@ -302,8 +315,8 @@ impl Geometry {
         HiddenSides(self.solids.iter().enumerate().map(hidden).collect())
     }
 
-    /// The closed components with faces turned outward that a point lies in, each by a number that is its own. (Where faces are turned
-    /// inward, inside is a room.)
+    /// The closed components with faces turned outward that a point lies in, each by a number that is its own. (Where
+    /// faces are turned inward, inside is a room.)
     #[must_use]
     pub fn solids_around(&self, p: DVec3) -> Vec<u32> {
         let holds = |&i: &u32| {
@@ -443,6 +456,10 @@ fn check(
     Ok(())
 }
 
+/// Last cell per axis of the lattice that orders triangles: codes of 3 · 10 bits leave 32 for the number of the
+/// triangle.
+const LAST_CELL: u32 = 1023;
+
 /// Triangle numbers along a Morton curve of their centres.
 fn morton_order(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<u32> {
     let mut bounds = Bounds::EMPTY;
@@ -452,24 +469,15 @@ fn morton_order(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<u32> {
     }
     // One scale for all axes keeps clusters compact in flat scenes.
     let size = (bounds.high - bounds.low).max_element();
-    let scale = if size > 0.0 { 1023.0 / size } else { 0.0 };
+    let scale = if size > 0.0 { f64::from(LAST_CELL) / size } else { 0.0 };
     let key = |(i, t): (usize, &[u32; 3])| {
         let q = (centre(t) - bounds.low) * scale;
-        let code = spread(q.x as u32) | spread(q.y as u32) << 1 | spread(q.z as u32) << 2;
-        u64::from(code) << 32 | i as u64
+        let cell = q.to_array().map(|c| (c as u32).min(LAST_CELL));
+        morton_code(cell) << 32 | i as u64
     };
     let mut keys: Vec<u64> = triangles.iter().enumerate().map(key).collect();
     keys.sort_unstable();
     keys.into_iter().map(|k| k as u32).collect()
-}
-
-/// Spreads ten bits so that two zero bits follow each.
-fn spread(v: u32) -> u32 {
-    let v = v.min(1023);
-    let v = (v | v << 16) & 0x0300_00ff;
-    let v = (v | v << 8) & 0x0300_f00f;
-    let v = (v | v << 4) & 0x030c_30c3;
-    (v | v << 2) & 0x0924_9249
 }
 
 /// Numbers the vertices of one cluster from 0, in order of first use.

@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 
 use crate::lens::TIE;
 use crate::{
-    Geometry, Lens, LensKind, MicropointError, MicropointOptions, PixelRect, PlainOpacity, Renderer, Surface,
-    Tile, View,
+    Geometry, Interval, Lens, LensKind, MicropointError, MicropointOptions, PixelRect, PlainOpacity,
+    Renderer, Surface, Tile, View,
 };
 
 /// Rounding allowed to a sum of weights over a pixel.
@@ -128,7 +128,7 @@ pub struct Seen {
     /// Centroid of what is seen of it.
     pub grid: DVec2,
     /// Smallest and largest nearness.
-    pub nearness: (f64, f64),
+    pub nearness: Interval,
 }
 
 /// What each pixel of a picture sees, row by row.
@@ -185,7 +185,7 @@ fn check(holds: bool, message: impl FnOnce() -> String) -> Result<(), String> {
 }
 
 fn bits_differ(a: &Seen, b: &Seen) -> bool {
-    let bits = |s: &Seen| [s.weight, s.grid.x, s.grid.y, s.nearness.0, s.nearness.1].map(f64::to_bits);
+    let bits = |s: &Seen| [s.weight, s.grid.x, s.grid.y, s.nearness.least, s.nearness.most].map(f64::to_bits);
     (a.triangle, a.surface) != (b.triangle, b.surface) || bits(a) != bits(b)
 }
 
@@ -217,7 +217,7 @@ pub fn weights_are_shares(soup: &Soup, view: View, options: MicropointOptions) -
     for p in tile.points() {
         let place = || format!("pixel ({}, {}): {p:?}", p.x, p.y);
         check(p.weight >= 0.0 && p.weight <= 1.0 + SUM_TOLERANCE, || format!("weight, {}", place()))?;
-        check(p.nearness.0 <= p.nearness.1, || format!("nearness, {}", place()))?;
+        check(p.nearness.least <= p.nearness.most, || format!("nearness, {}", place()))?;
         let low = DVec2::new(f64::from(p.x), f64::from(p.y)) * cells;
         let inside =
             |v: DVec2| v.cmpge(low - 1e-9 * cells).all() && v.cmple(low + cells * (1.0 + 1e-9)).all();
@@ -456,6 +456,32 @@ pub fn shares_are_exact(soup: &Soup, view: View, tolerance: f64) -> Result<(), S
     let Some(seen) = picture(soup, view, MicropointOptions::DEFAULT) else { return Ok(()) };
     let got = shares(&seen, soup.surfaces.len());
     shares_agree(&got, &shares_by_arrangement(soup, &view), tolerance)
+}
+
+/// Under the correlated rule, the shares of a pixel are the means of those of the `factor`² pixels that it is divided into: what is seen in a
+/// cell of many parts is what is seen in many cells of few.
+///
+/// # Errors
+/// The pixel that is farthest off, or that the finer picture is refused.
+pub fn pixels_are_means_of_finer_ones(
+    soup: &Soup,
+    view: View,
+    factor: u32,
+    tolerance: f64,
+) -> Result<(), String> {
+    let options = MicropointOptions::DEFAULT;
+    let Some(coarse) = picture(soup, view, options) else { return Ok(()) };
+    let (width, surfaces) = (view.width(), soup.surfaces.len());
+    let finer = view.with_size(width * factor, view.height() * factor).map_err(|e| e.to_string())?;
+    let fine = picture(soup, finer, options).ok_or("the finer picture is refused")?;
+    let fine = shares(&fine, surfaces);
+    let mut means = vec![vec![0.0; surfaces]; coarse.len()];
+    for (i, pixel) in fine.iter().enumerate() {
+        let (x, y) = (i as u32 % (width * factor) / factor, i as u32 / (width * factor) / factor);
+        let mean = &mut means[(y * width + x) as usize];
+        mean.iter_mut().zip(pixel).for_each(|(m, s)| *m += s / f64::from(factor * factor));
+    }
+    shares_agree(&shares(&coarse, surfaces), &means, tolerance)
 }
 
 /// Every pixel is covered by what stands before it: its weights sum to 1.

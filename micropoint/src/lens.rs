@@ -59,6 +59,17 @@ impl Plane {
     }
 }
 
+/// A rectangle of the grid that holds the image of a box: the answer of [`Lens::shadow_of_box`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoxImage {
+    /// Smallest coordinates on the grid.
+    pub low: DVec2,
+    /// Largest coordinates on the grid.
+    pub high: DVec2,
+    /// Largest nearness in the box.
+    pub nearest: f64,
+}
+
 impl Lens {
     /// The projection of a view onto a grid of `cells` × `cells` cells a pixel.
     #[must_use]
@@ -171,24 +182,24 @@ impl Lens {
         }
     }
 
-    /// A rectangle of the grid that holds the image of a box, and the largest nearness in it; `None` if
-    /// the box reaches behind the lens.
+    /// Where a box is on the grid; `None` if it reaches behind the lens.
     #[must_use]
-    pub fn shadow_of_box(&self, bounds: &Bounds) -> Option<(DVec2, DVec2, f64)> {
+    pub fn shadow_of_box(&self, bounds: &Bounds) -> Option<BoxImage> {
         let x = bounds.extent_along(self.origin, self.right);
         let y = bounds.extent_along(self.origin, self.down);
         let z = bounds.extent_along(self.origin, self.forward);
-        let (low, high) = (DVec2::new(x.0, y.0), DVec2::new(x.1, y.1));
+        let (low, high) = (DVec2::new(x.least, y.least), DVec2::new(x.most, y.most));
         match self.kind {
             LensKind::Orthographic => {
-                Some((low * self.scale + self.centre, high * self.scale + self.centre, -z.0))
+                let (low, high) = (low * self.scale + self.centre, high * self.scale + self.centre);
+                Some(BoxImage { low, high, nearest: -z.least })
             }
-            LensKind::Perspective if z.0 > 0.0 => {
+            LensKind::Perspective if z.least > 0.0 => {
                 // Each side is farthest from the axis at the near or at the far end of the box.
-                let (near, far) = (self.scale / z.0, self.scale / z.1);
+                let (near, far) = (self.scale / z.least, self.scale / z.most);
                 let low = (low * near).min(low * far) + self.centre;
                 let high = (high * near).max(high * far) + self.centre;
-                Some((low, high, 1.0 / z.0))
+                Some(BoxImage { low, high, nearest: 1.0 / z.least })
             }
             LensKind::Perspective => None,
         }

@@ -40,13 +40,16 @@
 
 mod bounds;
 mod closed;
+mod dicer;
 mod error;
 mod face;
 mod front;
 mod geometry;
+mod interval;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod lens;
+mod neighbours;
 mod render;
 mod resolve;
 mod texel;
@@ -57,16 +60,18 @@ mod volume;
 pub use glam;
 
 pub use bounds::Bounds;
+pub use dicer::TileCounts;
 pub use error::MicropointError;
 pub use face::{Face, GridRect, PlainOpacity, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity};
 pub use front::{Front, Layer, in_front};
-pub use geometry::{Geometry, HiddenSides, Surface};
-pub use lens::{Lens, LensKind, Plane};
+pub use geometry::{ClusterTriangle, Geometry, HiddenSides, Surface};
+pub use interval::Interval;
+pub use lens::{BoxImage, Lens, LensKind, Plane};
 pub use pointillist_view::{PixelRect, Projection, View, ViewError};
-pub use render::{Fragment, Micropoint, MicropointOptions, Renderer, Tile};
+pub use render::{MicropointOptions, Renderer};
 pub use resolve::Occlusion;
 pub use texel::{TexelCorner, TexelSums, TexelWrap};
-pub use tile::TileCounts;
+pub use tile::{Fragment, Micropoint, Tile};
 pub use visit::{FaceVisitor, VisitCounts, VisitMemory};
 
 /// The README's examples, compiled and run as documentation tests.

@@ -1,8 +1,9 @@
 //! From the parts in a cell to what is seen of them.
 
+use crate::dicer::Dicer;
 use crate::front::{Front, Layer, in_front};
 use crate::lens::Lens;
-use crate::tile::Dicer;
+use crate::neighbours::{self, Neighbours};
 use glam::DVec2;
 use pointillist_dice::hide::{Blocker, Occluders, Region, Regions};
 use pointillist_dice::{ConvexPolygon, convex};
@@ -79,23 +80,23 @@ pub(crate) fn resolve_exactly(
     } else {
         let mut seen = 0.0;
         let mut compared = false;
-        scratch.standing.clear();
+        scratch.others.start(dicer, &order);
         let mut sight = Sight::Hidden;
         for (i, &p) in order.iter().enumerate() {
             sight = match i.checked_sub(1).map(|before| order[before]) {
                 Some(before) if dicer.is_copy(before, p) => {
-                    behind_a_copy(sight, dicer, before, &mut scratch.regions)
+                    behind_a_copy(sight, dicer, before, &mut scratch.cut.regions)
                 }
-                _ => hide(dicer, scratch, lens, corner, &order, i),
+                _ => scratch.hide(dicer, lens, corner, &order, i),
             };
             compared |= sight != Sight::Whole;
             if sight == Sight::Hidden {
                 continue;
             }
-            scratch.standing.push(p);
+            scratch.others.stand(i);
             let visible = match sight {
                 Sight::Whole => whole(dicer, p),
-                _ => in_pieces(dicer, p, scratch.regions.list()),
+                _ => in_pieces(dicer, p, scratch.cut.regions.list()),
             };
             let visible = visible.fit_into(1.0 - seen);
             if visible.weight <= 0.0 {
@@ -155,10 +156,43 @@ fn behind_a_copy(copy_sight: Sight, dicer: &Dicer, copy: u32, regions: &mut Regi
 /// Memory of [`resolve_exactly`].
 #[derive(Debug, Default)]
 pub(crate) struct ResolveScratch {
+    cut: Cut,
+    others: Others,
+}
+
+/// Memory for what is left of one part.
+#[derive(Debug, Default)]
+struct Cut {
     regions: Regions,
     blockers: Vec<Blocker>,
-    /// The parts so far of which something is seen: what is behind others hides nothing that those do not.
+}
+
+/// The parts that one part is compared with.
+#[derive(Debug, Default)]
+struct Others {
+    /// The ranks so far of which something is seen, rising: what is behind others hides nothing that those do not.
     standing: Vec<u32>,
+    /// By rank, whether it is among them; used in cells of many parts.
+    stands: Vec<bool>,
+    neighbours: Neighbours,
+}
+
+impl Others {
+    fn start(&mut self, dicer: &Dicer, order: &[u32]) {
+        self.standing.clear();
+        self.stands.clear();
+        if order.len() >= neighbours::WORTH_IT {
+            self.stands.resize(order.len(), false);
+            self.neighbours.build(order.iter().map(|&p| dicer.outline(dicer.part(p))));
+        }
+    }
+
+    fn stand(&mut self, rank: usize) {
+        self.standing.push(rank as u32);
+        if let Some(stands) = self.stands.get_mut(rank) {
+            *stands = true;
+        }
+    }
 }
 
 /// The parts of a tile as occluders of each other.
@@ -178,47 +212,68 @@ impl Occluders for Parts<'_> {
     }
 }
 
-/// What is seen of part `order[i]` behind the parts in front of it.
-fn hide(
-    dicer: &Dicer,
-    scratch: &mut ResolveScratch,
-    lens: &Lens,
-    corner: DVec2,
-    order: &[u32],
-    i: usize,
-) -> Sight {
-    let part = dicer.part(order[i]);
-    let outline = dicer.outline(part);
-    scratch.blockers.clear();
-    // What lies behind by less than rounding coincides, and may be in front by its number.
-    let behind = part.nearness.0 - lens.tie(part.nearness.0, DVec2::ZERO);
-    // The parts are sorted by their nearest point: all that follow the first that is behind are behind, too.
-    let following = order[i + 1..].iter().take_while(|&&o| dicer.part(o).nearness.1 >= behind);
-    for &o in scratch.standing.iter().chain(following) {
-        let other = dicer.part(o);
-        if !part.bounds.overlap(&other.bounds) || convex::are_disjoint(outline, dicer.outline(other)) {
-            continue;
+impl ResolveScratch {
+    /// What is seen of part `order[i]` behind the parts in front of it.
+    fn hide(&mut self, dicer: &Dicer, lens: &Lens, corner: DVec2, order: &[u32], i: usize) -> Sight {
+        let Self { cut, others } = self;
+        let least = dicer.part(order[i]).nearness.least;
+        // What lies behind by less than rounding coincides, and may be in front by its number.
+        let behind = least - lens.tie(least, DVec2::ZERO);
+        // The parts are sorted by their nearest point: all that follow the first that is behind are behind, too.
+        let is_near = |rank: usize| dicer.part(order[rank]).nearness.most >= behind;
+        if others.stands.is_empty() {
+            let following = (i + 1..order.len()).take_while(|&rank| is_near(rank)).map(|rank| order[rank]);
+            let standing = others.standing.iter().map(|&rank| order[rank as usize]);
+            return cut.hide(dicer, lens, corner, order[i], standing.chain(following));
         }
-        let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
-        let upper = Layer { face: fo, outline: dicer.outline(other), nearness: other.nearness };
-        let lower = Layer { face: fp, outline, nearness: part.nearness };
-        // Which of two coincident surfaces is seen must not change from cell to cell.
-        let first = fo.precedence(fp) == std::cmp::Ordering::Less;
-        match in_front(lens, corner, upper, lower, first) {
-            Front::Nowhere => {}
-            Front::Everywhere if other.opacity >= 1.0 && convex::contains(dicer.outline(other), outline) => {
-                return Sight::Hidden;
+        let Others { stands, neighbours, .. } = others;
+        let found = neighbours.of(i).iter().map(|&rank| rank as usize);
+        let counts = |&rank: &usize| if rank < i { stands[rank] } else { rank > i && is_near(rank) };
+        cut.hide(dicer, lens, corner, order[i], found.filter(counts).map(|rank| order[rank]))
+    }
+}
+
+impl Cut {
+    /// What is seen of part `p` behind those of `others` that are in front of it.
+    fn hide(
+        &mut self,
+        dicer: &Dicer,
+        lens: &Lens,
+        corner: DVec2,
+        p: u32,
+        others: impl Iterator<Item = u32>,
+    ) -> Sight {
+        let part = dicer.part(p);
+        let outline = dicer.outline(part);
+        self.blockers.clear();
+        for o in others {
+            let other = dicer.part(o);
+            if !part.bounds.overlap(&other.bounds) || convex::are_disjoint(outline, dicer.outline(other)) {
+                continue;
             }
-            Front::Everywhere => scratch.blockers.push(Blocker { number: o, front: None }),
-            Front::Within(half) => scratch.blockers.push(Blocker { number: o, front: Some(half) }),
+            let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
+            let upper = Layer { face: fo, outline: dicer.outline(other), nearness: other.nearness };
+            let lower = Layer { face: fp, outline, nearness: part.nearness };
+            // Which of two coincident surfaces is seen must not change from cell to cell.
+            let first = fo.precedence(fp) == std::cmp::Ordering::Less;
+            match in_front(lens, corner, upper, lower, first) {
+                Front::Nowhere => {}
+                Front::Everywhere
+                    if other.opacity >= 1.0 && convex::contains(dicer.outline(other), outline) =>
+                {
+                    return Sight::Hidden;
+                }
+                Front::Everywhere => self.blockers.push(Blocker { number: o, front: None }),
+                Front::Within(half) => self.blockers.push(Blocker { number: o, front: Some(half) }),
+            }
         }
+        if self.blockers.is_empty() {
+            return Sight::Whole;
+        }
+        let polygon = ConvexPolygon::from_vertices(outline);
+        self.regions.hide(polygon, NEGLIGIBLE_AREA, &self.blockers, &Parts(dicer));
+        if self.regions.is_hidden() { Sight::Hidden } else { Sight::Pieces }
     }
-    if scratch.blockers.is_empty() {
-        return Sight::Whole;
-    }
-    let polygon = ConvexPolygon::from_vertices(outline);
-    scratch.regions.hide(polygon, NEGLIGIBLE_AREA, &scratch.blockers, &Parts(dicer));
-    if scratch.regions.is_hidden() { Sight::Hidden } else { Sight::Pieces }
 }
 
 /// Resolves one cell under the paper's rule.
@@ -228,15 +283,15 @@ pub(crate) fn resolve_by_layers(dicer: &mut Dicer, cell: usize, mut emit: impl F
     let mut start = 0;
     while start < order.len() && transmittance > FINISHED {
         let first = dicer.part(order[start]);
-        let mut layer_low = first.nearness.0;
+        let mut layer_low = first.nearness.least;
         let mut end = start + 1;
         // Sorted by the nearest point, so a layer ends where the next part does not reach it.
         while end < order.len() {
             let next = dicer.part(order[end]);
-            if next.nearness.1 < layer_low - TOUCH * layer_low.abs() {
+            if next.nearness.most < layer_low - TOUCH * layer_low.abs() {
                 break;
             }
-            layer_low = layer_low.min(next.nearness.0);
+            layer_low = layer_low.min(next.nearness.least);
             end += 1;
         }
         let opacity_of = |p: u32| dicer.part(p).area * f64::from(dicer.part(p).opacity);

@@ -2,7 +2,7 @@
 
 use crate::bounds::Bounds;
 use crate::face::{Face, GridRect, ProjectedVertex, Setup, set_up_face};
-use crate::geometry::{ClusterQueue, Geometry, Surface};
+use crate::geometry::{ClusterQueue, ClusterTriangle, Geometry, Surface};
 use crate::volume::ViewVolume;
 use glam::DVec2;
 
@@ -93,7 +93,8 @@ impl Geometry {
                 counts.triangles_culled += 1;
                 continue;
             }
-            match set_up_face(setup, triangle, (cluster, i as u32), corners, surface) {
+            match set_up_face(setup, triangle, ClusterTriangle { cluster, index: i as u32 }, corners, surface)
+            {
                 None => counts.triangles_culled += 1,
                 Some((face, outline)) => {
                     let opacity = if surface.textured_opacity { None } else { Some(surface.opacity) };

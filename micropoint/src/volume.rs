@@ -39,11 +39,11 @@ impl ViewVolume {
     #[inline]
     pub(crate) fn nearest_depth(&self, bounds: &Bounds) -> Option<f64> {
         for (normal, offset) in &self.planes {
-            if bounds.extent_along(self.origin, *normal).1 + offset < 0.0 {
+            if bounds.extent_along(self.origin, *normal).most + offset < 0.0 {
                 return None;
             }
         }
-        let (near, far) = bounds.extent_along(self.origin, self.forward);
-        (far >= 0.0).then_some(near.max(0.0))
+        let depth = bounds.extent_along(self.origin, self.forward);
+        (depth.most >= 0.0).then_some(depth.least.max(0.0))
     }
 }

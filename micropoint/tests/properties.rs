@@ -111,6 +111,30 @@ fn few_triangles() -> BoxedStrategy<Soup> {
         .boxed()
 }
 
+/// Dozens of opaque triangles and thin stripes in a few pixels.
+fn crowd() -> BoxedStrategy<Soup> {
+    let triangle = [generic_point(), generic_point(), generic_point()];
+    let stripes = (generic_point(), 0.0..3.2f64, 0.001..0.05f64, 0..80u32);
+    (prop::collection::vec((triangle, 0.05..1.0f64), 10..60), stripes)
+        .prop_map(|(triangles, (at, angle, width, count))| {
+            let mut soup = Soup::default();
+            for (corners, size) in triangles {
+                let surface = soup.surface(1.0);
+                soup.polygon(&corners.map(|c| corners[0] + (c - corners[0]) * size), surface);
+            }
+            let (along, across) =
+                (dvec3(angle.cos(), angle.sin(), 0.1), dvec3(-angle.sin(), angle.cos(), 0.05));
+            for i in 0..count {
+                let surface = soup.surface(1.0);
+                let from = at + across * (f64::from(i) * width) - along;
+                let to = from + across * width;
+                soup.polygon(&[from, from + 2.0 * along, to + 2.0 * along, to], surface);
+            }
+            soup
+        })
+        .boxed()
+}
+
 fn options() -> impl Strategy<Value = MicropointOptions> {
     (prop_oneof![Just(1u32), Just(2), Just(4)], any::<bool>(), any::<bool>()).prop_map(
         |(cells, paper, cull)| {
@@ -151,6 +175,13 @@ proptest! {
     #[test]
     fn every_pixel_shows_the_exact_share_of_every_surface(s in few_triangles(), v in view()) {
         holds!(invariants::shares_are_exact(&s, v, 2e-8));
+    }
+
+    #[test]
+    fn cells_of_many_parts_show_what_many_cells_of_few_parts_show(s in crowd(), height in 2.0..6.0f64) {
+        let camera = Projection::Orthographic { height };
+        let view = View::look_at(dvec3(1.0, 0.5, 5.0), DVec3::ZERO, DVec3::Y, camera, 3, 2).unwrap();
+        holds!(invariants::pixels_are_means_of_finer_ones(&s, view, 8, 1e-9));
     }
 
     #[test]

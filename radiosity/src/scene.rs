@@ -176,8 +176,8 @@ impl Scene {
             dropped,
         };
         scene.occluders = kept.iter().map(|(_, polygon)| polygon.moved(by, scale)).collect();
-        for (place, (i, _)) in kept.iter().enumerate() {
-            scene.add(*i, &surfaces[*i], place);
+        for (slot, (i, _)) in kept.iter().enumerate() {
+            scene.add(*i, &surfaces[*i], slot);
         }
         if !scene.tree.divide_all(options.patch * scale, options.max_elements) {
             return Err(RadiosityError::TooManyPatches { limit: options.max_elements });
@@ -186,8 +186,8 @@ impl Scene {
     }
 
     /// Adds both sides of a surface, in parts where others stand on it.
-    fn add(&mut self, index: usize, surface: &Surface, place: usize) {
-        let parts = contact::parts(&self.occluders[place], &self.occluders);
+    fn add(&mut self, index: usize, surface: &Surface, slot: usize) {
+        let parts = contact::parts(&self.occluders[slot], &self.occluders);
         let Surface { reflectance, emission, .. } = *surface;
         let whole = parts.len() == 1;
         for back in [false, true] {

@@ -46,7 +46,7 @@ impl Ambient<'_> {
             Self::Color(color) => *color,
             Self::Sky(light) => light.seen_by(normal),
             Self::Environment(map) => map.irradiance(normal) * FRAC_1_PI,
-            // Only a position beyond all numbers is refused, and nothing of it is seen.
+            // Only a position that is not finite is refused; geometry with such positions is refused before.
             Self::Probes(field) => {
                 field.irradiance(position, face_normal, normal, hint).unwrap_or_default() * FRAC_1_PI
             }

@@ -1,4 +1,4 @@
-//! What is seen where nothing is.
+//! The background: what a pixel shows where no surface covers it.
 
 use crate::scene::Scene;
 use glam::{DVec2, DVec3, Vec3};

@@ -9,7 +9,7 @@
 use crate::ambient::Ambient;
 use crate::capture::CaptureOptions;
 use crate::error::RenderError;
-use crate::look::{LookOptions, Seen, buried, look_again, look_all};
+use crate::look::{LookOptions, Seen, buried, look_again, look_all, shares_of};
 use crate::monitor::{Monitor, stage};
 use crate::prepared::Prepared;
 use crate::solids::Solids;
@@ -21,7 +21,8 @@ use pointillist_shprobe::{DistanceMap, Field, place};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BakeOptions {
-    /// Pixels on a side of each of the six pictures. Default: 128.
+    /// Pixels on a side of each of the six pictures that a probe sees in the end. Default: 128. What bounces, and what is seen at the
+    /// places of `fit`, is taken at 32 at most unless `thorough` is set.
     pub resolution: u32,
     /// Highest band of the harmonics. Default: 2.
     pub order: usize,
@@ -31,7 +32,8 @@ pub struct BakeOptions {
     pub bounces: u32,
     /// A bounce that changes the mean light by less than this fraction is the last. Default: 0.005.
     pub until: f64,
-    /// Further places between the probes: these then hold what lights all places best, not what they see themselves. Default: 0.
+    /// Further places, at random in the probes' box: the probes then hold the light with which interpolation fits all places best in
+    /// the least-squares sense, not what each sees itself. Default: 0, no fit.
     pub fit: usize,
     /// Whether probes hold what surfaces send out by themselves. Default: they do not; such light still bounces.
     pub emission: bool,
@@ -58,6 +60,76 @@ impl BakeOptions {
         dering: false,
         keep_buried: false,
     };
+
+    /// Takes pictures of this many pixels on a side.
+    #[must_use]
+    pub const fn with_resolution(mut self, resolution: u32) -> Self {
+        self.resolution = resolution;
+        self
+    }
+
+    /// Keeps bands up to this one.
+    #[must_use]
+    pub const fn with_order(mut self, order: usize) -> Self {
+        self.order = order;
+        self
+    }
+
+    /// Makes maps of distances of this many texels on a side, or none.
+    #[must_use]
+    pub const fn with_distances(mut self, distances: usize) -> Self {
+        self.distances = distances;
+        self
+    }
+
+    /// Follows light for at most this many bounces.
+    #[must_use]
+    pub const fn with_bounces(mut self, bounces: u32) -> Self {
+        self.bounces = bounces;
+        self
+    }
+
+    /// Ends when a bounce changes the mean light by less than this fraction.
+    #[must_use]
+    pub const fn with_until(mut self, until: f64) -> Self {
+        self.until = until;
+        self
+    }
+
+    /// Fits the probes' light to so many further places.
+    #[must_use]
+    pub const fn with_fit(mut self, fit: usize) -> Self {
+        self.fit = fit;
+        self
+    }
+
+    /// Lets probes hold what surfaces emit, or not.
+    #[must_use]
+    pub const fn with_emission(mut self, emission: bool) -> Self {
+        self.emission = emission;
+        self
+    }
+
+    /// Computes every shadow and texel within a pixel, or not.
+    #[must_use]
+    pub const fn with_thorough(mut self, thorough: bool) -> Self {
+        self.thorough = thorough;
+        self
+    }
+
+    /// Damps harmonics where irradiance would be negative, or not.
+    #[must_use]
+    pub const fn with_dering(mut self, dering: bool) -> Self {
+        self.dering = dering;
+        self
+    }
+
+    /// Keeps probes that see mostly backs of surfaces, or leaves them out.
+    #[must_use]
+    pub const fn with_keep_buried(mut self, keep_buried: bool) -> Self {
+        self.keep_buried = keep_buried;
+        self
+    }
 }
 
 impl Default for BakeOptions {
@@ -134,12 +206,18 @@ impl Rounds<'_> {
         let mut seen = self.look(wanted || bounces > 0)?;
         let mut changes = vec![];
         for bounce in 1..=bounces {
+            if self.known(&seen).probes == 0 {
+                // No probe sends light on.
+                self.skip_rounds(bounces - bounce + 1 + u32::from(more));
+                break;
+            }
             let field = self.field(&seen)?;
             let next = self.look_again(&field, true, ENOUGH, &seen)?;
             let change = change(&seen, &next);
             changes.push(change);
             seen = next;
             if change < options.until || bounce == bounces {
+                self.skip_rounds(bounces - bounce);
                 if more {
                     seen = self.look_again(&field, wanted, u32::MAX, &seen)?;
                 }
@@ -147,6 +225,11 @@ impl Rounds<'_> {
             }
         }
         Ok(ProbeBake { probes: self.baked(seen)?, changes })
+    }
+
+    /// So many rounds that were announced are not needed.
+    fn skip_rounds(&self, rounds: u32) {
+        self.monitor.advance(u64::from(rounds) * self.places.len() as u64);
     }
 
     /// The first look: the probes with all pixels, places between them with [`ENOUGH`].
@@ -251,7 +334,7 @@ impl Rounds<'_> {
     }
 
     fn buried(&self, seen: &[Seen]) -> Vec<bool> {
-        if self.options.keep_buried { vec![false; seen.len()] } else { buried(seen) }
+        if self.options.keep_buried { vec![false; seen.len()] } else { buried(&shares_of(seen)) }
     }
 }
 

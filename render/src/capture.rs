@@ -10,23 +10,34 @@ use crate::shader::{Economy, Style};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::Bounds;
 use pointillist_sh::{CubePoint, cube_direction, texel_solid_angle};
-use pointillist_view::{Projection, View};
+use pointillist_view::{Projection, View, ViewError};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// How a probe looks around.
+/// How the six pictures are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CaptureOptions {
-    /// Pixels on a side of each of the six pictures.
+    /// Pixels on a side of each of the six pictures. Default: 32.
     pub resolution: u32,
-    /// Whether surfaces that glow are seen to glow.
+    /// Whether surfaces show the light that they emit. Default: no.
     pub emission: bool,
-    /// Whether what comes straight from the scene's lights is seen.
+    /// Whether surfaces show what they reflect of the scene's lights. Default: yes.
     pub lights: bool,
-    /// Whether every shadow and texel within a pixel is computed, not just enough of them for a sum over all pixels.
+    /// Whether every shadow and texel within a pixel is computed. Default: no, only enough of them for sums over all pixels.
     pub thorough: bool,
 }
 
-/// Six pictures, +X −X +Y −Y +Z −Z, each row by row; within a face as cube maps have it.
+impl CaptureOptions {
+    /// The defaults, as a constant.
+    pub const DEFAULT: Self = Self { resolution: 32, emission: false, lights: true, thorough: false };
+}
+
+impl Default for CaptureOptions {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// Six pictures in the order +X −X +Y −Y +Z −Z, each row by row, laid out within a face as in [`pointillist_sh::CubeMap`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Capture {
     /// Pixels on a side.
@@ -52,7 +63,7 @@ impl Prepared<'_> {
     /// Looks around from a position. Does not depend on threads.
     ///
     /// # Errors
-    /// [`RenderError`] if the position is not finite or the resolution is 0.
+    /// [`RenderError`] if the position is not finite, the resolution is 0 or beyond [`View::LARGEST_SIDE`], or the monitor cancels.
     pub fn capture(
         &self,
         position: DVec3,
@@ -60,49 +71,43 @@ impl Prepared<'_> {
         ambient: Ambient<'_>,
         monitor: &dyn Monitor,
     ) -> Result<Capture, RenderError> {
-        let size = options.resolution as usize;
+        let mut views = Vec::with_capacity(6);
+        for face in 0..6 {
+            views.push(view_of_face(position, face, options.resolution)?);
+        }
         let economy = (!options.thorough).then_some(ECONOMY);
         let style = Style { ambient, emission: options.emission, lights: options.lights, economy };
-        let mut capture = Capture {
-            size,
-            radiance: std::array::from_fn(|_| Vec::with_capacity(6 * size * size)),
-            direct: std::array::from_fn(|_| Vec::with_capacity(6 * size * size)),
-            sky: Vec::with_capacity(6 * size * size),
-            back: Vec::with_capacity(6 * size * size),
-            distance: Vec::with_capacity(6 * size * size),
-            empty_faces: 0,
-        };
-        for face in 0..6 {
+        let layers = DrawOptions::DEFAULT.with_layers(vec![LayerKind::Back, LayerKind::Direct]);
+        let mut capture = Capture::new(options.resolution as usize);
+        for (face, view) in views.into_iter().enumerate() {
             if self.has_constant_background() && !may_see(&self.geometry.bounds(), position, face) {
                 capture.add_empty_face(self.scene.image.background);
                 continue;
             }
-            let frame = self.face(position, face, options.resolution, &style, monitor)?;
+            let frame = self.draw_styled(view, &style, &layers, &Part(monitor))?;
             capture.add_face(face, &frame);
         }
         Ok(capture)
     }
+}
 
-    fn face(
-        &self,
-        position: DVec3,
-        face: usize,
-        resolution: u32,
-        style: &Style<'_>,
-        monitor: &dyn Monitor,
-    ) -> Result<Frame, RenderError> {
-        let axis = |s, t| cube_direction(CubePoint { face, s, t });
-        let forward = axis(0.0, 0.0);
-        let up = axis(0.0, -1.0) - forward;
-        let projection = Projection::Perspective { fov_y_rad: FRAC_PI_2 };
-        let target = position + forward * position.abs().max_element().max(1.0);
-        let view = View::look_at(position, target, up, projection, resolution, resolution)?;
-        let options = DrawOptions::DEFAULT.with_layers(vec![LayerKind::Back, LayerKind::Direct]);
-        self.draw_styled(view, style, &options, &Part(monitor))
-    }
+/// The view from a position through one face of the cube around it.
+fn view_of_face(position: DVec3, face: usize, resolution: u32) -> Result<View, ViewError> {
+    let axis = |s, t| cube_direction(CubePoint { face, s, t });
+    let forward = axis(0.0, 0.0);
+    let up = axis(0.0, -1.0) - forward;
+    let projection = Projection::Perspective { fov_y_rad: FRAC_PI_2 };
+    let target = position + forward * position.abs().max_element().max(1.0);
+    View::look_at(position, target, up, projection, resolution, resolution)
 }
 
 impl Capture {
+    /// Without any face yet.
+    fn new(size: usize) -> Self {
+        let [radiance, direct] = Default::default();
+        Self { size, radiance, direct, sky: vec![], back: vec![], distance: vec![], empty_faces: 0 }
+    }
+
     /// Adds a picture. Cube faces are pictures seen from outside: columns run the other way.
     fn add_face(&mut self, face: usize, frame: &Frame) {
         let n = self.size;
@@ -146,5 +151,5 @@ fn may_see(bounds: &Bounds, position: DVec3, face: usize) -> bool {
     let forward = axis(0.0, 0.0);
     let (right, down) = (axis(1.0, 0.0) - forward, axis(0.0, 1.0) - forward);
     let inward = [forward, forward + right, forward - right, forward + down, forward - down];
-    inward.iter().all(|&n| bounds.extent_along(position, n).1 > 0.0)
+    inward.iter().all(|&n| bounds.extent_along(position, n).most > 0.0)
 }

@@ -4,7 +4,7 @@
 //! slopes and normal maps as vectors, not as heights and colours: the mean of slopes is the slope of the mean height, and
 //! a mean of normals is the normal of what they cover together.
 
-use crate::scene::{Channel, Details, Map, Scene, Texture};
+use crate::scene::{Details, Map, Scene, Texture};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec2, Vec3, Vec4, vec3};
 use pointillist_micropoint::{MicropointError, SurfacePoint, TexelSums};
@@ -70,7 +70,7 @@ impl DetailTable {
         slopes.retain(|map| !scene.textures[map.texture].is_constant());
         let normals = maps(|d| [d.normal.map(|(map, _)| map), None, None, None]);
         let (numbers, (colors, (slopes, normals))) = parallel::join(
-            || all(&numbers, |map| sums(map, scene, |t, x, y| [number(map.channel, t.texel(x, y))])),
+            || all(&numbers, |map| sums(map, scene, |t, x, y| [map.channel.of(t.texel(x, y))])),
             || {
                 parallel::join(
                     || all(&colors, |map| sums(map, scene, |t, x, y| t.texel(x, y).truncate().to_array())),
@@ -112,9 +112,8 @@ fn all<const N: usize>(
 }
 
 fn slope(map: Map, t: &Texture, x: u32, y: u32) -> [f32; 4] {
-    let height = |x: i64, y: i64| {
-        number(map.channel, t.texel(map.wrap.texel(x, t.width), map.wrap.texel(y, t.height)))
-    };
+    let height =
+        |x: i64, y: i64| map.channel.of(t.texel(map.wrap.texel(x, t.width), map.wrap.texel(y, t.height)));
     let slope = slope_of_heights([t.width, t.height], x, y, height);
     [slope.x.max(0.0), (-slope.x).max(0.0), slope.y.max(0.0), (-slope.y).max(0.0)]
 }
@@ -131,15 +130,6 @@ fn sums<const N: usize>(
 ) -> Result<TexelSums<N>, MicropointError> {
     let texture = &scene.textures[map.texture];
     TexelSums::new(texture.width, texture.height, texel_wrap(map.wrap), |x, y| texel(texture, x, y))
-}
-
-fn number(channel: Channel, texel: Vec4) -> f32 {
-    match channel {
-        Channel::Mean => (texel.x + texel.y + texel.z) / 3.0,
-        Channel::Red => texel.x,
-        Channel::Green => texel.y,
-        Channel::Blue => texel.z,
-    }
 }
 
 /// A normal map's vector: −1 to 1 stored as 0 to 1.

@@ -2,6 +2,7 @@
 
 use crate::lights::LightSample;
 use crate::monitor::Monitor;
+use crate::scene::MeasuredBrdf;
 use crate::shader::{Economy, Point, Shader};
 use glam::{DVec2, Vec3};
 use pointillist_micropoint::{Face, Fragment, Micropoint, Tile};
@@ -85,7 +86,8 @@ impl Shader<'_> {
     /// Radiance that a micropoint sends to the eye because of a light, without shadow.
     fn arriving(&self, light: &LightSample<'_>, p: &Point, face: &Face) -> Vec3 {
         let source = &self.scene.lights[light.light].light;
-        if p.material.diffuse == Vec3::ZERO && p.material.specular == Vec3::ZERO {
+        let black = p.material.diffuse == Vec3::ZERO && p.material.specular == Vec3::ZERO;
+        if black && self.measured(face.id).is_none() {
             return Vec3::ZERO;
         }
         let incident = source.illuminate(light.sample, p.position);
@@ -108,11 +110,16 @@ impl Shader<'_> {
 
     /// By the material's formula, or as measured.
     fn reflect(&self, p: &Point, triangle: u32, incident: &Incident, normal: Vec3, to_eye: Vec3) -> Vec3 {
-        let material = self.scene.mesh.material_of[triangle as usize] as usize;
-        match &self.scene.materials[material].details.measured {
+        match self.measured(triangle) {
             Some(measured) => measured.table.reflect(incident, normal, to_eye),
             None => p.material.reflect(incident, normal, to_eye),
         }
+    }
+
+    /// The measured reflection of a triangle's material, which takes the place of its constants.
+    fn measured(&self, triangle: u32) -> Option<&MeasuredBrdf> {
+        let material = self.scene.mesh.material_of[triangle as usize] as usize;
+        self.scene.materials[material].details.measured.as_ref()
     }
 }
 

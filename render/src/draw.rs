@@ -8,7 +8,7 @@ use crate::canvas::Canvas;
 use crate::error::RenderError;
 use crate::frame::{Frame, LayerKind};
 use crate::lights::light_samples;
-use crate::monitor::Monitor;
+use crate::monitor::{Monitor, go_on};
 use crate::prepared::Prepared;
 use crate::shader::{Shader, Style};
 use crate::shading::ShaderScratch;
@@ -24,7 +24,7 @@ const TILE_SIZE: u32 = 16;
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct DrawOptions {
-    /// The part of the picture; `None`, the default, is all of it. Parts outside of the picture do not exist.
+    /// The part of the picture, clipped to it; `None`, the default, is all of it.
     pub window: Option<PixelRect>,
     /// What to deliver beside colour and depth, in this order. Default: nothing.
     pub layers: Vec<LayerKind>,
@@ -111,7 +111,7 @@ impl Prepared<'_> {
             totals.0 += tile.counts();
             totals.1 += scratch.take_counts();
             monitor.advance(1);
-            if monitor.is_cancelled() { Err(RenderError::Cancelled) } else { Ok(()) }
+            go_on(monitor)
         })?;
         let (tile_counts, shadow_counts) = *lock(&totals);
         record(monitor, &tile_counts, &shadow_counts);

@@ -11,7 +11,7 @@ use pointillist_view::ViewError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// Lists of the scene do not fit one another.
+    /// [`crate::Scene::check`] found an element that is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// The geometry, a texture or an option was refused.

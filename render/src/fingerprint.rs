@@ -1,7 +1,7 @@
 //! Hashes of scenes, the same on every machine: equal scenes have equal numbers and draw equal pictures, so that a picture that is
 //! there already need not be drawn again.
 
-use crate::scene::{AmbientLight, Details, LightSource, Material, Mesh, Scene, SkyLight, Texels, Texture};
+use crate::scene::{AmbientLight, Details, Material, Mesh, Scene, SkyLight, Texels, Texture};
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade::{Falloff, Light, Material as Surface};
 use pointillist_shadow::Resolution;
@@ -66,17 +66,15 @@ pub fn of_geometry(mesh: &Mesh) -> u64 {
     hash.0.finish()
 }
 
-/// The hash of what baked light depends on besides the triangles: materials, textures and lights.
+/// The hash of what baked light depends on besides the triangles: their materials and colours, textures and lights.
 #[must_use]
-pub fn of_sources<'a>(
-    materials: &[Material],
-    textures: &[Texture],
-    lights: impl IntoIterator<Item = &'a LightSource>,
-) -> u64 {
+pub fn of_sources(scene: &Scene) -> u64 {
     let mut hash = Fingerprint::default();
-    materials.iter().for_each(|material| hash.material(material));
-    textures.iter().for_each(|texture| hash.texture(texture));
-    for light in lights {
+    scene.mesh.material_of.iter().for_each(|n| hash.0.write(&n.to_le_bytes()));
+    scene.mesh.colors.iter().for_each(|&color| hash.color(color));
+    scene.materials.iter().for_each(|material| hash.material(material));
+    scene.textures.iter().for_each(|texture| hash.texture(texture));
+    for light in &scene.lights {
         hash.light(&light.light);
         hash.int(u64::from(light.shadow));
     }

@@ -6,21 +6,22 @@ use pointillist_view::PixelRect;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum LayerKind {
-    /// `N.X N.Y N.Z`: shading normal in the world, as lit.
+    /// `N.X N.Y N.Z`: shading normal in the world, a unit vector on the side that is seen, of the micropoint with the largest weight.
+    /// 0 where nothing is.
     Normal,
-    /// `P.X P.Y P.Z`: position in the world.
+    /// `P.X P.Y P.Z`: position in the world, of the micropoint with the largest weight. 0 where nothing is.
     Position,
-    /// `albedo.R G B`: diffuse albedo.
+    /// `albedo.R G B`: diffuse albedo, times coverage.
     Albedo,
-    /// `direct.R G B`: light that comes straight from the lights.
+    /// `direct.R G B`: radiance that surfaces reflect of the lights, times coverage.
     Direct,
-    /// `indirect.R G B`: ambient light.
+    /// `indirect.R G B`: radiance that surfaces reflect, mirror or transmit of ambient light and surroundings, times coverage.
     Indirect,
-    /// `lit.<light>`: how much of light number n arrives, 0 to 1.
+    /// `lit.<light>`: the fraction of light number n that reaches surfaces in front of it, 0 to 1, times coverage.
     Lit(usize),
     /// `id`: object number from 1; 0 where nothing is.
     Id,
-    /// `back`: the share that shows backs of surfaces.
+    /// `back`: the share of the pixel that shows backs of surfaces, 0 to 1.
     Back,
 }
 
@@ -40,7 +41,9 @@ pub struct Frame {
     pub size: [u32; 2],
     /// What of it is here.
     pub window: PixelRect,
-    /// Linear, premultiplied R G B A, row-major over the window.
+    /// R G B A, row-major over the window. R G B is linear radiance, what is seen of the background included; A is the share of the
+    /// pixel that surfaces cover. With a black background, R G B is therefore premultiplied by A. Otherwise, subtract `(1 − A) ·
+    /// background` before the picture is composited over another one.
     pub color: Vec<[f32; 4]>,
     /// Depth along the view axis; +∞ where nothing is. Empty if it was not computed.
     pub depth: Vec<f32>,

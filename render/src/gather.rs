@@ -7,6 +7,7 @@ use crate::shader::{Point, Shader};
 use glam::Vec3;
 use pointillist_micropoint::{Micropoint, Tile};
 use pointillist_view::PixelRect;
+use std::collections::BTreeMap;
 
 impl Shader<'_> {
     /// Sums up micropoints into the colour and depth of pixels. Depth is that of the micropoint with the largest weight.
@@ -42,19 +43,18 @@ impl Shader<'_> {
         pixels.depth.extend(heaviest(tile).into_iter().map(|i| i.map_or(f32::INFINITY, depth)));
     }
 
-    /// The further layers: colours are means over the micropoints of a pixel, geometry is that of the
-    /// one with the largest weight.
+    /// The further layers: colours are means over the micropoints of a pixel, geometry is that of the one with the largest weight.
+    /// `lit` holds the fraction that arrives at each micropoint, for each light whose layer is asked for.
     pub(crate) fn gather_layers(
         &self,
         tile: &Tile,
         layers: &[LayerKind],
-        lit: &[Vec<f64>],
+        lit: &BTreeMap<usize, Vec<f64>>,
         points: &[Point],
         pixels: &mut Pixels,
     ) {
         let rect = tile.rect();
         pixels.planes.clear();
-        let mut lit = lit.iter();
         let mean = |value: &dyn Fn(usize, &Point) -> Vec3, channels: usize| {
             let mut planes = vec![vec![0.0; rect.pixels() as usize]; channels];
             for (i, (m, p)) in tile.points().iter().zip(points).enumerate() {
@@ -73,10 +73,7 @@ impl Shader<'_> {
                     let back = |i: usize| !tile.faces()[tile.points()[i].face as usize].front;
                     mean(&|i, _| Vec3::splat(f32::from(u8::from(back(i)))), 1)
                 }
-                LayerKind::Lit(_) => {
-                    let values = lit.next().map_or(&[][..], Vec::as_slice);
-                    mean(&|i, _| Vec3::splat(values.get(i).map_or(0.0, |&v| v as f32)), 1)
-                }
+                LayerKind::Lit(light) => mean(&|i, _| Vec3::splat(lit[light][i] as f32), 1),
                 LayerKind::Normal | LayerKind::Position | LayerKind::Id => {
                     let value = |i: usize| self.geometry_value(*layer, tile, &points[i], &tile.points()[i]);
                     let values = heaviest(tile).into_iter().map(|i| i.map_or(Vec3::ZERO, value));

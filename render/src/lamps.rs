@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 type Arrives = Box<dyn Fn(DVec3, DVec3) -> [f64; 3] + Sync>;
 
-/// What lamps refer to.
+/// The lights of a scene for `pointillist-radiosity`, whose [`Lamp`]s borrow from this; [`with_lamps`] hands them out.
 pub struct Lamps {
     parts: Vec<Part>,
 }
@@ -22,7 +22,8 @@ enum Part {
 }
 
 impl Lamps {
-    /// All lights of a scene. A rectangle that obeys the inverse square is one area; any other is its sample points, as in `render`.
+    /// All lights of a scene. A rectangle with the inverse-square law is one [`Lamp::Area`], or none if its area is 0, which sends out
+    /// nothing; a rectangle with another law is its sample points, as in [`crate::render`].
     pub fn new(scene: &Scene) -> Self {
         let mut parts = vec![];
         for source in &scene.lights {

@@ -30,7 +30,8 @@
 //!
 //! * [`Scene`]: plain data, put together by hand ([`Mesh::add`]) or by a reader of files; [`Scene::check`] says what is wrong with it.
 //! * [`render`]: one picture. [`Prepared`]: many pictures of one scene, from other cameras ([`Prepared::draw_view`]), or what a light
-//!   probe sees ([`Prepared::capture`], [`look_all`]). [`bake_probes`]: light probes with light sent on; [`Solids`]: where none should be.
+//!   probe sees ([`Prepared::capture`], [`look_all`]). [`choose_places`], [`bake_probes`]: where light probes are worth most, and what they hold with light reflected
+//!   between surfaces; [`Solids`]: where none should be.
 //! * [`Frame`]: colour and depth, and the layers that [`DrawOptions`] asks for (normals, albedo, direct light, …).
 //! * [`Monitor`]: progress, cancelling, times and counts; `()` watches nothing, [`Watch`] takes a function and a flag.
 //! * [`scene_surfaces`], [`Lamps`]: the scene as `pointillist-radiosity` takes it; [`Lightmap`]: baked light as ambient light.
@@ -38,14 +39,14 @@
 //! * [`fingerprint`]: hashes by which unchanged pictures need not be drawn again.
 //!
 //! # Conventions
-//! Right-handed, +Y up, the camera looks along its −Z. Colours are linear and premultiplied; radiance, irradiance and intensity are in
-//! any one unit. Positions are `DVec3`; colours and unit normals are `Vec3`. Pixels are row by row from the top left corner.
+//! Right-handed, +Y up, the camera looks along its −Z. Colours are linear; R G B of a pixel is what is seen
+//! of surfaces and of the background, A the share that surfaces cover. Radiance, irradiance and intensity are in any one unit. Positions are `DVec3`; colours and unit normals are `Vec3`. Pixels are row by row from the top left corner.
 //!
 //! # Accuracy and cost
 //! Coverage, texture means and shadows are computed over the exact regions of pixels, not at samples; `pointillist-micropoint` and
 //! `pointillist-shadow` say how exactly. Each visible micropoint is shaded once, with the means of its maps, so what varies nonlinearly
 //! within one cell (a highlight sharper than that, a normal map under a lamp) is approximated. Memory is that of the scene, its
-//! textures as sums (8 bytes per channel and texel), the frame, and one tile per thread.
+//! textures as sums (about 7 bytes per channel and texel), the frame, and one tile per thread.
 //!
 //! Figures are of programs built with `lto = "thin"` and `codegen-units = 1`, which inline the kernels of the crates below; the
 //! profile of your own workspace decides.
@@ -60,6 +61,7 @@ mod background;
 mod bake;
 mod canvas;
 mod capture;
+mod choose;
 mod detail;
 mod detail_maps;
 mod direct;
@@ -90,6 +92,7 @@ mod uvs;
 pub use ambient::Ambient;
 pub use bake::{BakeOptions, BakedProbe, ProbeBake, bake_probes};
 pub use capture::{Capture, CaptureOptions};
+pub use choose::{ChooseOptions, Chosen, choose_places};
 pub use draw::DrawOptions;
 pub use error::RenderError;
 pub use frame::{Frame, Layer, LayerKind};
@@ -108,6 +111,8 @@ pub use scene::{
 pub use solids::Solids;
 
 pub use glam;
+/// Light between diffuse surfaces, what [`Lightmap`] and [`Lamps`] speak of.
+pub use pointillist_radiosity as radiosity;
 /// Spherical harmonics: what probes hold.
 pub use pointillist_sh as sh;
 /// Lights, materials, environment maps.
@@ -115,7 +120,7 @@ pub use pointillist_shade as shade;
 /// Fields of light probes.
 pub use pointillist_shprobe as shprobe;
 
-pub use pointillist_micropoint::{Geometry, MicropointError, Occlusion};
+pub use pointillist_micropoint::{Bounds, Geometry, MicropointError, Occlusion};
 pub use pointillist_shadow::{Emitter, Resolution, ShadowError};
 pub use pointillist_view::{PixelRect, Projection, View, ViewError};
 

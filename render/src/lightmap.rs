@@ -63,6 +63,14 @@ pub enum LightmapError {
         /// Triangles there are.
         count: usize,
     },
+    /// Light was baked on a surface that has no triangles.
+    #[error("light was baked on surface {surface}, but there are faces of {count} surfaces")]
+    Surface {
+        /// Which surface.
+        surface: u32,
+        /// Surfaces whose faces are known.
+        count: usize,
+    },
     /// A side is that of a triangle that the scene does not have.
     #[error("`surfaces[{side}].faces` names a triangle that the scene does not have")]
     Face {
@@ -73,6 +81,9 @@ pub enum LightmapError {
 
 /// The sides of what `pointillist-radiosity` baked; `faces` are the scene's triangles of each surface
 /// ([`crate::SceneSurfaces::faces`]).
+///
+/// # Panics
+/// If `faces` does not have an entry for every surface that light was baked on; [`Lightmap::of_baked`] returns an error instead.
 #[must_use]
 pub fn baked_sides<'a>(baked: &Baked, faces: &'a [Vec<u32>]) -> Vec<BakedSide<'a>> {
     let same = |a: &BakedTriangle, b: &BakedTriangle| (a.surface, a.back) == (b.surface, b.back);
@@ -101,6 +112,7 @@ impl BakedLight<'_> {
             None => Ok(()),
         };
         finite("positions", self.positions.iter().position(|p| p.iter().any(|v| !v.is_finite())))?;
+        finite("normals", self.normals.iter().position(|n| n.iter().any(|v| !v.is_finite())))?;
         finite("irradiance", self.irradiance.iter().position(|p| p.iter().any(|v| !v.is_finite())))?;
         let beyond = |t: &[u32; 3]| t.iter().any(|&v| v as usize >= count);
         if let Some(triangle) = self.triangles.iter().position(beyond) {
@@ -170,12 +182,16 @@ impl Lightmap {
     /// The light of surfaces that `pointillist-radiosity` baked; `faces` as for [`baked_sides`].
     ///
     /// # Errors
-    /// As [`BakedLight::check`].
+    /// [`LightmapError::Surface`] if `faces` lacks a surface, and as [`BakedLight::check`].
     pub fn of_baked(
         baked: &Baked,
         faces: &[Vec<u32>],
         triangles_of_scene: usize,
     ) -> Result<Self, LightmapError> {
+        let count = faces.len();
+        if let Some(t) = baked.triangles.iter().find(|t| t.surface as usize >= count) {
+            return Err(LightmapError::Surface { surface: t.surface, count });
+        }
         let single = |v: [f64; 3]| v.map(|x| x as f32);
         let vertices = &baked.vertices;
         let light = BakedLight {
@@ -220,7 +236,8 @@ impl Map {
         let size = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
         let wanted = BINS_PER_TRIANGLE * triangles.len() as f64;
         let columns = (wanted * size.x / size.y).sqrt().clamp(1.0, 4096.0);
-        let bins = [columns as usize, (wanted / columns).clamp(1.0, 4096.0) as usize];
+        // Not a number if the size overflows.
+        let bins = [columns, (wanted / columns).clamp(1.0, 4096.0)].map(|n| (n as usize).max(1));
         let bin = size / DVec2::new(bins[0] as f64, bins[1] as f64);
         let mut map = Self {
             axis,
@@ -266,6 +283,10 @@ impl Map {
             let area = (b - a).perp_dot(c - a);
             let weights = [(c - b).perp_dot(p - b), (a - c).perp_dot(p - c), (b - a).perp_dot(p - a)];
             let weights = weights.map(|w| w / area);
+            // A triangle without area, or one that overflows, holds no position.
+            if !weights.iter().all(|w| w.is_finite()) {
+                continue;
+            }
             let least = weights.into_iter().fold(f64::INFINITY, f64::min);
             if least > best.0 {
                 let clamped = weights.map(|w| w.clamp(0.0, 1.0));

@@ -3,7 +3,7 @@
 use crate::ambient::Ambient;
 use crate::capture::{Capture, CaptureOptions};
 use crate::error::RenderError;
-use crate::monitor::Monitor;
+use crate::monitor::{Monitor, go_on};
 use crate::prepared::Prepared;
 use glam::DVec3;
 use pointillist_parallel as parallel;
@@ -12,26 +12,45 @@ use pointillist_shprobe::{DistanceMap, ProbeError};
 use std::hash::Hasher as _;
 use twox_hash::XxHash3_64;
 
-/// How probes look.
-#[derive(Clone, Copy, Debug)]
+/// How probes look around.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LookOptions {
     /// The six pictures.
     pub capture: CaptureOptions,
-    /// Highest band.
+    /// Highest band of the harmonics. Default: 2.
     pub order: usize,
-    /// Texels on a side of maps of distances; 0 for none.
+    /// Texels on a side of maps of distances; 0 for none. Default: none.
     pub distances: usize,
+}
+
+impl LookOptions {
+    /// The defaults, as a constant.
+    pub const DEFAULT: Self = Self { capture: CaptureOptions::DEFAULT, order: 2, distances: 0 };
+}
+
+impl Default for LookOptions {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
 }
 
 /// Probes that see backs of surfaces in more than this share of all directions lie inside of walls.
 const BURIED: f64 = 0.5;
 
-/// Which probes lie inside of walls, by what they see; none if that is said of most of them, since then it says more about how the
-/// surfaces are turned.
-pub fn buried(seen: &[Seen]) -> Vec<bool> {
-    let buried: Vec<bool> = seen.iter().map(|s| s.back_share > BURIED).collect();
+/// Which probes lie inside of walls, by the share of all directions in which each sees backs of surfaces ([`Seen::back_share`]).
+///
+/// If more than half of them would, none does: the scene's surfaces are then turned the wrong way. The answer for one probe therefore
+/// depends on the others; ask for all probes of a field at once.
+#[must_use]
+pub fn buried(back_shares: &[f64]) -> Vec<bool> {
+    let buried: Vec<bool> = back_shares.iter().map(|&share| share > BURIED).collect();
     let count = buried.iter().filter(|&&b| b).count();
-    if 2 * count > seen.len() { vec![false; seen.len()] } else { buried }
+    if 2 * count > buried.len() { vec![false; buried.len()] } else { buried }
+}
+
+/// For [`buried`].
+pub(crate) fn shares_of(seen: &[Seen]) -> Vec<f64> {
+    seen.iter().map(|s| s.back_share).collect()
 }
 
 /// What a probe saw.
@@ -52,7 +71,7 @@ pub struct Seen {
 /// Looks around from every position, on all cores.
 ///
 /// # Errors
-/// [`RenderError`] if a position cannot be looked from, or what it sees is not finite.
+/// [`RenderError`] if a position cannot be looked from, what it sees is not finite, or the monitor cancels.
 pub fn look_all(
     prepared: &Prepared<'_>,
     positions: &[DVec3],
@@ -63,15 +82,26 @@ pub fn look_all(
     let size = options.capture.resolution as usize;
     let projector = CubeProjector::new(size, options.order, Weights::Gregory)?;
     let bounds = prepared.geometry().bounds();
-    let far = ((bounds.high - bounds.low).length() * 2.0).max(f64::from(f32::MIN_POSITIVE)) as f32;
-    let one = |&position: &DVec3| {
+    // An empty scene has no bounds: its diagonal is infinite.
+    let far = ((bounds.high - bounds.low).length() * 2.0) as f32;
+    let far = far.clamp(f32::MIN_POSITIVE, DistanceMap::FARTHEST);
+    at_all(positions, monitor, |position| {
         let capture = prepared.capture(position, options.capture, ambient, monitor)?;
         monitor.count("faces", u64::from(6 - capture.empty_faces));
         monitor.skip("faces_empty", u64::from(capture.empty_faces));
         monitor.advance(1);
         Ok(seen(&capture, &projector, options.distances, far)?)
-    };
-    parallel::map_heavy(positions.len(), |i| one(&positions[i])).into_iter().collect()
+    })
+}
+
+/// Does something at every position, on all cores, until the monitor cancels.
+fn at_all<T: Send>(
+    positions: &[DVec3],
+    monitor: &dyn Monitor,
+    one: impl Fn(DVec3) -> Result<T, RenderError> + Sync,
+) -> Result<Vec<T>, RenderError> {
+    let unless_cancelled = |i: usize| go_on(monitor).and_then(|()| one(positions[i]));
+    parallel::map_heavy(positions.len(), unless_cancelled).into_iter().collect()
 }
 
 /// Looks around again in other ambient light. Shadows are most of the time of a look, and are as they were `before`: only what does not come
@@ -122,7 +152,7 @@ fn seen(
 /// pixel, however small it is.
 const WATCHED: u32 = 16;
 
-/// A number for everything that is seen from each position: surfaces, their light and their shadows.
+/// A hash of everything that is seen from each position: surfaces and their sides, their light and their shadows.
 ///
 /// # Errors
 /// As [`look_all`].
@@ -134,12 +164,11 @@ pub fn fingerprints(
     monitor: &dyn Monitor,
 ) -> Result<Vec<u64>, RenderError> {
     let options = CaptureOptions { resolution: WATCHED, emission, lights: true, thorough: false };
-    let one = |&position: &DVec3| {
+    at_all(positions, monitor, |position| {
         let capture = prepared.capture(position, options, ambient, monitor)?;
         let mut hash = XxHash3_64::default();
-        let planes = capture.radiance.iter().chain([&capture.sky, &capture.distance]);
+        let planes = capture.radiance.iter().chain([&capture.sky, &capture.distance, &capture.back]);
         planes.flatten().for_each(|v| hash.write(&v.to_le_bytes()));
         Ok(hash.finish())
-    };
-    parallel::map_heavy(positions.len(), |i| one(&positions[i])).into_iter().collect()
+    })
 }

@@ -60,7 +60,7 @@ impl<'a> Prepared<'a> {
         if found.is_empty() {
             return Ok(());
         }
-        let mut captured = Reflections::new(self.scene, monitor);
+        let mut captured = Reflections::clone(&self.reflections);
         for ((object, material), (low, high)) in found {
             let geometry = self.surfaces.geometry_without(self.scene, object)?;
             let others = self.with_geometry(geometry);

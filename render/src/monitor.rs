@@ -1,5 +1,6 @@
 //! How a caller watches long work, and ends it.
 
+use crate::error::RenderError;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Watches work that takes long. Every method does nothing by default, and may be called from any thread.
@@ -7,7 +8,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// This crate has no clock. A caller who wants times measures them: stages that run once are passed to [`Monitor::stage`];
 /// stages that alternate on a thread are told apart by [`Monitor::start_lap`] and [`Monitor::lap`].
 pub trait Monitor: Sync {
-    /// Work of so many units (tiles of a picture) begins.
+    /// Work of so many units begins: tiles of a picture ([`Prepared::draw`](crate::Prepared::draw)), positions and rounds of a bake
+    /// ([`bake_probes`](crate::bake_probes), [`choose_places`](crate::choose_places)). [`look_all`](crate::look_all) and
+    /// [`fingerprints`](crate::fingerprints()) leave the call to their caller and only advance.
     fn begin(&self, units: u64) {
         let _ = units;
     }
@@ -17,7 +20,7 @@ pub trait Monitor: Sync {
         let _ = units;
     }
 
-    /// Whether to stop; asked after every tile. The work then ends with [`crate::RenderError::Cancelled`].
+    /// Whether to stop; asked between stages, before every position that is looked from, and after every tile. The work then ends with [`crate::RenderError::Cancelled`].
     fn is_cancelled(&self) -> bool {
         false
     }
@@ -49,6 +52,11 @@ pub trait Monitor: Sync {
 
 /// Watches nothing.
 impl Monitor for () {}
+
+/// Whether work is to go on.
+pub(crate) fn go_on(monitor: &dyn Monitor) -> Result<(), RenderError> {
+    if monitor.is_cancelled() { Err(RenderError::Cancelled) } else { Ok(()) }
+}
 
 /// [`Monitor::stage`] for work that gives something.
 pub(crate) fn stage<T>(monitor: &dyn Monitor, name: &'static str, work: impl FnOnce() -> T) -> T {
@@ -121,7 +129,7 @@ impl Monitor for Watch<'_> {
     }
 }
 
-/// Hides the progress of a part from the monitor of the whole.
+/// Forwards everything but progress: for a part of work whose units the caller counts.
 pub(crate) struct Part<'a>(pub(crate) &'a dyn Monitor);
 
 impl Monitor for Part<'_> {

@@ -3,7 +3,7 @@
 use crate::ambient::Ambient;
 use crate::background::sum_up_environment;
 use crate::error::RenderError;
-use crate::monitor::{Monitor, stage};
+use crate::monitor::{Monitor, go_on, stage};
 use crate::reflections::Reflections;
 use crate::scene::{AmbientLight, Scene};
 use crate::surfaces::Surfaces;
@@ -24,7 +24,9 @@ impl<'a> Prepared<'a> {
     pub(crate) fn without_captures(scene: &'a Scene, monitor: &dyn Monitor) -> Result<Self, RenderError> {
         scene.check()?;
         let surfaces = stage(monitor, "textures", || Surfaces::new(scene))?;
+        go_on(monitor)?;
         let geometry = stage(monitor, "build", || surfaces.geometry(scene))?;
+        go_on(monitor)?;
         let environment = stage(monitor, "textures", || sum_up_environment(scene))?;
         monitor.count("triangles", geometry.triangle_count() as u64);
         monitor.count("triangles_of_solids", geometry.solid_triangle_count() as u64);
@@ -33,7 +35,7 @@ impl<'a> Prepared<'a> {
             surfaces: Arc::new(surfaces),
             geometry,
             environment: Arc::new(environment),
-            reflections: Arc::new(Reflections::new(scene, monitor)),
+            reflections: Arc::new(Reflections::new(scene, monitor)?),
         })
     }
 

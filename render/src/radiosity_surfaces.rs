@@ -1,12 +1,16 @@
-//! A scene's triangles as surfaces of radiosity: pairs that form a quadrangle joined, albedos averaged over textures.
+//! A scene's triangles as surfaces of radiosity.
+//!
+//! Two triangles that form a convex quadrangle become one surface. A surface has the mean albedo and the mean exitance of its
+//! material: constants times the means of whole textures times the mean of its vertices' colours.
 
-use crate::scene::{Material, Scene, SceneError, Texture};
-use glam::{DVec3, Vec3};
+use crate::scene::{Details, Map, Material, Mesh, Scene, SceneError, Texture};
+use glam::{DVec3, DVec4, Vec3, Vec4};
 use pointillist_radiosity::Surface;
+use std::cell::OnceCell;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// What shows less than this of itself lets light through.
+/// Mean opacity below which a triangle is left out, as if light passed it.
 const OPAQUE: f32 = 0.5;
 /// Triangles whose corners are this far off each other's plane, relative to their size, do not form a quadrangle.
 const FLAT: f64 = 1e-9;
@@ -25,19 +29,19 @@ pub struct SceneSurfaces {
 /// The surfaces of a scene.
 ///
 /// # Errors
-/// [`SceneError`] if lists do not fit one another, or with the first material whose diffuse albedo is not in 0 to 1.
+/// [`SceneError`] if lists do not fit one another, or with the first material whose diffuse albedo, maps and vertices' colours included, is not in 0 to 1.
 pub fn scene_surfaces(scene: &Scene) -> Result<SceneSurfaces, SceneError> {
     scene.check()?;
     let mut found = SceneSurfaces::default();
-    let mut materials = Vec::with_capacity(scene.materials.len());
-    for material in &scene.materials {
-        materials.push(light_of(material, scene)?);
-    }
+    let means: Vec<OnceCell<Vec4>> = vec![OnceCell::new(); scene.textures.len()];
+    let mean = |i: usize| *means[i].get_or_init(|| mean_texel(&scene.textures[i]));
+    let looks: Vec<Look> = scene.materials.iter().map(|material| look_of(material, &mean)).collect();
     let mesh = &scene.mesh;
     let mut taken = vec![false; mesh.triangles.len()];
     let partners = Partners::new(scene);
     for triangle in 0..mesh.triangles.len() as u32 {
-        let look = &materials[mesh.material_of[triangle as usize] as usize];
+        let material = mesh.material_of[triangle as usize] as usize;
+        let look = &looks[material];
         if look.opacity < OPAQUE {
             found.translucent += 1;
             continue;
@@ -53,36 +57,61 @@ pub fn scene_surfaces(scene: &Scene) -> Result<SceneSurfaces, SceneError> {
             }
             None => (scene.corners(triangle).to_vec(), vec![triangle]),
         };
-        let mut surface = Surface::new(&vertices, look.albedo).emitting(look.exitance);
-        surface.two_sided = mesh.objects[mesh.object_of[triangle as usize] as usize].two_sided;
+        let albedo = look.albedo * mean_color(mesh, &faces);
+        if let Some(value) = albedo.to_array().into_iter().find(|v| !(0.0..=1.0).contains(v)) {
+            return Err(SceneError::Albedo { material: scene.materials[material].name.clone(), value });
+        }
+        let mut surface =
+            Surface::new(&vertices, bands(albedo)).emitting(bands(look.radiance).map(|l| l * PI));
+        surface.two_sided = mesh.objects[mesh.object_of[triangle as usize] as usize].two_sided
+            && !scene.materials[material].details.one_sided;
         found.surfaces.push(surface);
         found.faces.push(faces);
     }
     Ok(found)
 }
 
+/// Means over a material's textures.
 struct Look {
-    albedo: [f64; 3],
-    exitance: [f64; 3],
+    albedo: Vec3,
+    /// What it sends out by itself: a diffuse emitter of radiance L has an exitance of πL.
+    radiance: Vec3,
     opacity: f32,
 }
 
-fn light_of(material: &Material, scene: &Scene) -> Result<Look, SceneError> {
-    let mean = |map: Option<usize>| map.map_or(glam::Vec4::ONE, |i| mean_texel(&scene.textures[i]));
-    let albedo = material.surface.diffuse * mean(material.diffuse_map).truncate();
-    let opacity = material.surface.opacity * mean(material.opacity_map).w;
-    let wrong = |value: f32| !(0.0..=1.0).contains(&value);
-    if let Some(value) = albedo.to_array().into_iter().find(|v| wrong(*v)) {
-        return Err(SceneError::Albedo { material: material.name.clone(), value });
+fn look_of(material: &Material, mean: &dyn Fn(usize) -> Vec4) -> Look {
+    let Details { metallic, metallic_map, emission_map, .. } = &material.details;
+    let whole = |map: Option<usize>| map.map_or(Vec4::ONE, mean);
+    let part = |map: Option<Map>| map.map_or(1.0, |map| map.channel.of(mean(map.texture)));
+    let metallic = metallic.map_or(0.0, |m| (m * part(*metallic_map)).clamp(0.0, 1.0));
+    Look {
+        albedo: material.surface.diffuse * whole(material.diffuse_map).truncate() * (1.0 - metallic),
+        radiance: material.surface.emission * whole(emission_map.map(|map| map.texture)).truncate(),
+        opacity: material.surface.opacity * whole(material.opacity_map).w,
     }
-    // Emission is a radiance, and a diffuse emitter of radiance L sends out πL.
-    let exitance = material.surface.emission.as_dvec3() * PI;
-    Ok(Look { albedo: albedo.as_dvec3().to_array(), exitance: exitance.to_array(), opacity })
+}
+
+/// Mean of the vertices' colours over triangles, by area.
+fn mean_color(mesh: &Mesh, triangles: &[u32]) -> Vec3 {
+    if mesh.colors.is_empty() {
+        return Vec3::ONE;
+    }
+    let (mut sum, mut areas) = (DVec3::ZERO, 0.0);
+    for &t in triangles {
+        let corners = mesh.triangles[t as usize];
+        let [a, b, c] = corners.map(|v| mesh.positions[v as usize]);
+        // A triangle without area counts a little, so that the mean of no area at all is a mean, too.
+        let area = (b - a).cross(c - a).length().max(f64::MIN_POSITIVE);
+        let colors: DVec3 = corners.iter().map(|&v| mesh.colors[v as usize].as_dvec3()).sum();
+        sum += colors / 3.0 * area;
+        areas += area;
+    }
+    (sum / areas).as_vec3()
 }
 
 /// Mean of all texels, linear.
-fn mean_texel(texture: &Texture) -> glam::Vec4 {
-    let mut sum = glam::DVec4::ZERO;
+fn mean_texel(texture: &Texture) -> Vec4 {
+    let mut sum = DVec4::ZERO;
     for y in 0..texture.height {
         for x in 0..texture.width {
             sum += texture.texel(x, y).as_dvec4();

@@ -1,21 +1,23 @@
 //! What surfaces mirror: maps of the surroundings, made only where a material asks for them.
 
-use crate::monitor::{Monitor, stage};
+use crate::error::RenderError;
+use crate::monitor::{Monitor, go_on, stage};
 use crate::scene::{AmbientLight, Details, Material, Scene, Surroundings};
 use glam::Vec3;
 use pointillist_shade::{CubeMap, Environment, Equirectangular, Model, SMALLEST_ROUGHNESS};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Texels on a side of a cube's face at most: a degree has 11 of them.
 const LARGEST_FACE: u32 = 1024;
 
-/// The maps of a scene.
-#[derive(Default)]
+/// The maps of a scene. Clones share them.
+#[derive(Clone, Default)]
 pub(crate) struct Reflections {
-    scene: Option<Environment>,
-    textures: HashMap<usize, Environment>,
+    scene: Option<Arc<Environment>>,
+    textures: HashMap<usize, Arc<Environment>>,
     /// By object and material.
-    captured: HashMap<(u32, u32), Environment>,
+    captured: HashMap<(u32, u32), Arc<Environment>>,
 }
 
 /// Whether a material mirrors anything or shows what is behind it.
@@ -30,18 +32,21 @@ fn is_rough(material: &Material) -> bool {
 }
 
 impl Reflections {
-    /// The maps that come from files.
-    pub(crate) fn new(scene: &Scene, monitor: &dyn Monitor) -> Self {
+    /// The maps that are made of textures. A material whose surroundings are captured needs that of the scene, too: other objects
+    /// show it in the capture.
+    pub(crate) fn new(scene: &Scene, monitor: &dyn Monitor) -> Result<Self, RenderError> {
         let mut maps = Self::default();
         let ambient = matches!(scene.ambient, AmbientLight::Environment);
-        let mirrors_scene = |m: &&Material| mirrors(m) && m.details.surroundings == Surroundings::Scene;
+        let mirrors_scene =
+            |m: &&Material| mirrors(m) && !matches!(m.details.surroundings, Surroundings::Texture(_));
         if let Some(texture) = scene.image.environment
             && (ambient || scene.materials.iter().any(|m| mirrors_scene(&m)))
         {
+            go_on(monitor)?;
             let rough = scene.materials.iter().filter(mirrors_scene).any(is_rough);
             maps.scene = Some(stage(monitor, "environment", || {
                 let map = environment(scene, texture, rough);
-                if ambient { map.with_irradiance() } else { map }
+                Arc::new(if ambient { map.with_irradiance() } else { map })
             }));
         }
         for material in &scene.materials {
@@ -49,34 +54,36 @@ impl Reflections {
                 && mirrors(material)
                 && !maps.textures.contains_key(&texture)
             {
+                go_on(monitor)?;
                 let map = stage(monitor, "environment", || environment(scene, texture, true));
-                maps.textures.insert(texture, map);
+                maps.textures.insert(texture, Arc::new(map));
             }
         }
-        maps
+        Ok(maps)
     }
 
     /// The scene's own map, if anything needs it.
     pub(crate) fn of_scene(&self) -> Option<&Environment> {
-        self.scene.as_ref()
+        self.scene.as_deref()
     }
 
     /// Adds what an object mirrors with a material that has its surroundings captured.
     pub(crate) fn add_captured(&mut self, object: u32, material: u32, cube: CubeMap, scene: &Scene) {
         let map = Environment::sharp(cube);
         let rough = is_rough(&scene.materials[material as usize]);
-        self.captured.insert((object, material), if rough { map.with_rough_levels() } else { map });
+        let map = if rough { map.with_rough_levels() } else { map };
+        self.captured.insert((object, material), Arc::new(map));
     }
 
     /// What a triangle mirrors. Captured surroundings that are not there (yet) are those of the scene.
     pub(crate) fn of(&self, scene: &Scene, details: &Details, triangle: u32) -> Option<&Environment> {
         match details.surroundings {
-            Surroundings::Scene => self.scene.as_ref(),
-            Surroundings::Texture(texture) => self.textures.get(&texture),
+            Surroundings::Scene => self.of_scene(),
+            Surroundings::Texture(texture) => self.textures.get(&texture).map(Arc::as_ref),
             Surroundings::Capture => {
                 let mesh = &scene.mesh;
                 let key = (mesh.object_of[triangle as usize], mesh.material_of[triangle as usize]);
-                self.captured.get(&key).or(self.scene.as_ref())
+                self.captured.get(&key).or(self.scene.as_ref()).map(Arc::as_ref)
             }
         }
     }

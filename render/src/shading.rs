@@ -9,6 +9,7 @@ use crate::shader::{Point, Shader};
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::{SurfacePoint, Tile};
 use pointillist_shadow::ShadowCounts;
+use std::collections::BTreeMap;
 
 /// Per-thread memory.
 #[derive(Default)]
@@ -39,13 +40,14 @@ impl Shader<'_> {
         let ShaderScratch { points, direct, polygon, pixels, hint } = scratch;
         points.clear();
         points.extend(tile.points().iter().map(|m| self.set_up(tile, m, polygon, hint)));
-        let lit_layers: Vec<usize> =
-            layers.iter().filter_map(|l| if let LayerKind::Lit(i) = l { Some(*i) } else { None }).collect();
-        let mut lit =
-            vec![vec![0.0; if lit_layers.is_empty() { 0 } else { tile.points().len() }]; lit_layers.len()];
+        let mut lit = BTreeMap::new();
+        for layer in layers {
+            if let LayerKind::Lit(light) = layer {
+                lit.insert(*light, vec![0.0; tile.points().len()]);
+            }
+        }
         for light in self.lights {
-            let lit = lit_layers.iter().position(|&l| l == light.light).map(|i| &mut lit[i]);
-            self.add_light(tile, light, points, direct, lit, monitor);
+            self.add_light(tile, light, points, direct, lit.get_mut(&light.light), monitor);
         }
         self.gather(tile, background, points, pixels);
         self.gather_layers(tile, layers, &lit, points, pixels);

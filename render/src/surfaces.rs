@@ -34,7 +34,7 @@ struct MaskedColor {
     mean: Vec3,
 }
 
-/// Opacity up to which a region sees nothing but holes: what its sums say of colour is rounding.
+/// A region of less mean opacity has no colour of its own: its sums of colour are rounding errors.
 const EMPTY: f32 = 1e-6;
 
 impl MaskedColor {
@@ -64,7 +64,7 @@ impl MaskedColor {
     /// The colour of a region from its sum of colour × opacity and of opacity.
     fn straight(&self, sum: Vec4) -> Vec3 {
         if sum.w <= EMPTY {
-            // Seen by the mean opacity of its part, whose other places are hidden: it has no colour of its own.
+            // The region was weighted by the mean opacity of its whole part, but only holes of the mask lie in it.
             return self.mean;
         }
         (sum.truncate() / sum.w).max(self.range.0).min(self.range.1)

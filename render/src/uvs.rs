@@ -43,6 +43,7 @@ impl Uvs {
         let uv = &self.0[triangle as usize];
         let size = DVec2::new(f64::from(sums.width()), f64::from(sums.height()));
         let mut corners = Corners::default();
+        debug_assert!(polygon.len() <= corners.list.len(), "{} corners", polygon.len());
         for p in polygon.iter().take(corners.list.len()) {
             let at = weighted(uv, p.barycentric);
             let texel = DVec2::new(at.x, 1.0 - at.y) * size;

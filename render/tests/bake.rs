@@ -85,3 +85,111 @@ fn matter_is_told_from_rooms_and_has_a_way_out() {
     assert!(solids.is_free(out) && out.x > 0.5 && out.abs().max_element() < 2.0, "{out}");
     assert!(solids.nearest_free(DVec3::ZERO).is_some());
 }
+
+#[test]
+fn which_probes_are_buried_is_asked_of_all_at_once() {
+    use pointillist_render::buried;
+    assert_eq!(buried(&[0.9, 0.1, 0.4]), [true, false, false]);
+    // Most would be: then the surfaces are turned the wrong way.
+    assert_eq!(buried(&[0.9, 0.8, 0.4]), [false; 3]);
+    assert!(buried(&[]).is_empty());
+}
+
+/// A room with a block in its middle, and a lamp.
+fn room_with_a_block() -> Scene {
+    let mut scene = glowing_room();
+    let (positions, triangles) = cuboid(DVec3::splat(-1.5), DVec3::splat(-0.5), false);
+    scene.mesh.add(&Part::new("block", &positions, &triangles)).unwrap();
+    scene
+}
+
+#[test]
+fn probes_that_are_all_buried_end_the_bounces_instead_of_the_bake() {
+    let scene = room_with_a_block();
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    // The box of these two, in which places for the fit are sought, reaches out of the block; both see nothing but its inside.
+    let places = [DVec3::splat(-1.4), DVec3::splat(-0.501)];
+    let options = options(2).with_fit(60);
+    let bake = bake_probes(&prepared, &Solids::new(&prepared), &places, &options, &()).unwrap();
+    assert_eq!(bake.probes.len(), 2);
+    let few = bake_probes(&prepared, &Solids::new(&prepared), &places[..1], &options, &()).unwrap();
+    assert_eq!(few.probes.len(), 1);
+}
+
+#[test]
+fn progress_of_a_bake_ends_at_its_total_however_early_light_settles() {
+    use pointillist_render::Watch;
+    use std::sync::atomic::{AtomicU64, Ordering};
+    let scene = room_with_a_block();
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    for (until, emission) in [(0.0, true), (0.9, true), (0.9, false)] {
+        let (most, last) = (AtomicU64::new(0), AtomicU64::new(0));
+        let report = |done, total| {
+            most.store(total, Ordering::Relaxed);
+            last.fetch_max(done, Ordering::Relaxed);
+        };
+        let watch = Watch::new().with_progress(&report);
+        let options = options(4).with_until(until).with_emission(emission).with_resolution(40);
+        bake_probes(&prepared, &Solids::new(&prepared), &[DVec3::ONE, DVec3::X], &options, &watch).unwrap();
+        assert_eq!(last.into_inner(), most.into_inner(), "until {until}, emission {emission}");
+    }
+}
+
+#[test]
+fn an_empty_scene_is_looked_at() {
+    let mut scene = Scene::new(Camera::perspective(DVec3::Z, DVec3::ZERO, 1.0), [8, 8]);
+    scene.image.background = Vec3::splat(0.25);
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    let bake =
+        bake_probes(&prepared, &Solids::new(&prepared), &[DVec3::ZERO, DVec3::X], &options(0), &()).unwrap();
+    for probe in &bake.probes {
+        let light = Irradiance::new(&probe.seen.radiance).at(Vec3::Y);
+        assert!((light / PI - Vec3::splat(0.25)).abs().max_element() < 2e-3, "{light}");
+    }
+}
+
+#[test]
+fn places_are_chosen_outside_of_walls() {
+    use pointillist_render::{ChooseOptions, choose_places};
+    let scene = room_with_a_block();
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    let candidates: Vec<DVec3> = (0..64)
+        .map(|i| dvec3(f64::from(i % 4), f64::from(i / 4 % 4), f64::from(i / 16)) - DVec3::splat(1.3))
+        .collect();
+    let options = ChooseOptions::DEFAULT.with_resolution(8).with_max_count(12);
+    let chosen = choose_places(&prepared, &candidates, &options, &()).unwrap();
+    assert_eq!((chosen.positions.len(), chosen.buried), (12, 1));
+    assert!(chosen.positions.iter().all(|p| Solids::new(&prepared).is_free(*p) && candidates.contains(p)));
+    assert!(chosen.error > 0.0 && chosen.error < 0.5, "{}", chosen.error);
+    assert!(choose_places(&prepared, &[], &options, &()).is_err());
+}
+
+#[test]
+fn cancelled_looks_end_before_the_first_position() {
+    use pointillist_render::{LookOptions, RenderError, Watch, fingerprints, look_all};
+    use std::sync::atomic::AtomicBool;
+    let scene = glowing_room();
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    let (stop, places) = (AtomicBool::new(true), [DVec3::ZERO]);
+    let watch = Watch::new().with_cancel(&stop);
+    let ambient = prepared.ambient();
+    let look = look_all(&prepared, &places, LookOptions::DEFAULT, ambient, &watch);
+    assert!(matches!(look, Err(RenderError::Cancelled)));
+    let marks = fingerprints(&prepared, &places, true, ambient, &watch);
+    assert!(matches!(marks, Err(RenderError::Cancelled)));
+    assert!(matches!(Prepared::new(&scene, &watch), Err(RenderError::Cancelled)));
+}
+
+#[test]
+fn captures_refuse_what_cannot_be_seen_from_even_where_nothing_is() {
+    use pointillist_render::CaptureOptions;
+    let scene = Scene::new(Camera::perspective(DVec3::Z, DVec3::ZERO, 1.0), [8, 8]);
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    let capture = |position, resolution| {
+        let options = CaptureOptions { resolution, ..CaptureOptions::DEFAULT };
+        prepared.capture(position, options, prepared.ambient(), &())
+    };
+    assert!(capture(DVec3::ZERO, 4).is_ok());
+    assert!(capture(DVec3::NAN, 4).is_err() && capture(DVec3::INFINITY, 4).is_err());
+    assert!(capture(DVec3::ZERO, 0).is_err() && capture(DVec3::ZERO, u32::MAX).is_err());
+}

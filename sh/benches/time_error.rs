@@ -1,6 +1,6 @@
-//! How long for how much error: cube maps to nine coefficients, irradiance, rotation and blending. The error in each name: of
-//! projection, of the worst coefficient relative to L00 for a sky that is quadratic in the direction; of the others, relative
-//! to the largest value, against `f64` by the plain formula.
+//! How long for how much error: cube maps to nine coefficients, irradiance, rotation and blending. The error in each
+//! name: of projection, of the worst coefficient relative to L00 for a sky that is quadratic in the direction; of the
+//! others, relative to the largest value, against `f64` by the plain formula.
 //!
 //! `cargo bench -p pointillist-sh --bench time_error`
 

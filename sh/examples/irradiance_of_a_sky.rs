@@ -1,5 +1,5 @@
-//! A clear sky with a sun, seen as nine coefficients: how much light surfaces get that face up, sideways and down, against the
-//! integral over the image; and how much nearer it gets with the sun apart.
+//! A clear sky with a sun, seen as nine coefficients: how much light surfaces get that face up, sideways and down,
+//! against the integral over the image; and how much nearer it gets with the sun apart.
 //!
 //! `cargo run --release -p pointillist-sh --example irradiance_of_a_sky`
 

@@ -27,8 +27,8 @@ pub const fn coefficient_count(order: usize) -> usize {
     order.saturating_add(1).saturating_mul(order.saturating_add(1))
 }
 
-/// Where the coefficient of band l and −l ≤ m ≤ l stands: l(l+1) + m. `usize::MAX`, which is no place in any list, if m is outside or the
-/// place is beyond the range of `usize`.
+/// Index of the coefficient of band l and −l ≤ m ≤ l: l(l+1) + m. `usize::MAX`, which is no index of any list, if m is
+/// out of range or the index overflows.
 #[must_use]
 pub const fn coefficient_index(l: usize, m: isize) -> usize {
     let middle = l.saturating_mul(l.saturating_add(1));
@@ -38,13 +38,13 @@ pub const fn coefficient_index(l: usize, m: isize) -> usize {
     middle.saturating_add_signed(m)
 }
 
-/// The order, if this crate can compute it.
+/// The order, or an error if it is above [`MAX_ORDER`].
 pub(crate) fn checked_order(order: usize) -> Result<usize, ShError> {
     if order <= MAX_ORDER { Ok(order) } else { Err(ShError::OrderTooHigh { order, limit: MAX_ORDER }) }
 }
 
-/// All basis functions up to `order` (at most [`MAX_ORDER`], or it is taken for that) in a direction of unit length; the
-/// rest are 0.
+/// All basis functions up to `order` in a direction of unit length. `order` is limited to [`MAX_ORDER`]; values of
+/// bands above it are 0.
 #[must_use]
 pub fn basis(order: usize, direction: DVec3) -> [f64; MAX_COUNT] {
     let mut values = [0.0; MAX_COUNT];
@@ -106,7 +106,8 @@ pub(crate) fn fill_basis(order: usize, direction: DVec3, values: &mut [f64]) {
     }
     let DVec3 { x, y, z } = direction;
     let table = &*RECURRENCE;
-    // sinᵐθ·cos mφ and sinᵐθ·sin mφ are the parts of (x + iy)ᵐ: no angle is needed, and the poles are like any place.
+    // sinᵐθ·cos mφ and sinᵐθ·sin mφ are the real and the imaginary part of (x + iy)ᵐ: no angle is computed, and the
+    // poles are no special case.
     let (mut cos, mut sin) = (1.0, 0.0);
     for m in 0..=order {
         let (mut last, mut q) = (0.0, table.start[m]);

@@ -1,4 +1,4 @@
-//! What a coefficient can be.
+//! The types that a coefficient can have: a color or one number.
 
 use glam::DVec3;
 use std::fmt::Debug;
@@ -19,13 +19,13 @@ pub trait Channel:
     + Mul<Output = Self>
     + private::Sealed
 {
-    /// How many numbers it holds.
+    /// Number of channels.
     const CHANNELS: usize;
 
-    /// From one number a channel.
+    /// A value from one number per channel.
     fn from_channels(value: impl FnMut(usize) -> f64) -> Self;
 
-    /// The number of a channel, or of the last where there are not so many.
+    /// The number of a channel; that of the last one if there are fewer.
     fn channel(self, index: usize) -> f64;
 
     /// Whether all numbers are finite.

@@ -4,9 +4,9 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Clipping {
-    /// Where a channel has the highest level: light that was brighter is missing.
+    /// Share in which a channel has the highest level: the true radiance there is at least that, and is unknown.
     pub over_exposed: f64,
-    /// Where all channels have the lowest level.
+    /// Share in which all channels have the lowest level.
     pub under_exposed: f64,
 }
 

@@ -16,7 +16,7 @@ pub struct Sh<T = DVec3> {
 }
 
 impl<T: Channel> Sh<T> {
-    /// From coefficients in the order of the module's documentation; their number says the order.
+    /// From coefficients in the order of the module's documentation; their number determines the order.
     ///
     /// # Errors
     /// `CoefficientCount` if it is not a square from 1 to 81, `CoefficientNotFinite`.
@@ -32,13 +32,13 @@ impl<T: Channel> Sh<T> {
         Ok(Self { coefficients, order })
     }
 
-    /// From coefficients that are as many as an order needs, and finite.
+    /// Takes coefficients that the caller has checked: their number is that of an order, and they are finite.
     pub(crate) fn from_parts(coefficients: Vec<T>, order: usize) -> Self {
         debug_assert_eq!(coefficients.len(), coefficient_count(order), "one coefficient per function");
         Self { coefficients, order }
     }
 
-    /// 0 in all directions.
+    /// The function that is 0 in all directions.
     ///
     /// # Errors
     /// `OrderTooHigh`.
@@ -47,7 +47,7 @@ impl<T: Channel> Sh<T> {
         Ok(Self::from_parts(vec![T::default(); coefficient_count(order)], order))
     }
 
-    /// The same in all directions.
+    /// The function that has this value in all directions.
     ///
     /// # Errors
     /// `OrderTooHigh`, `CoefficientNotFinite`.
@@ -99,8 +99,8 @@ impl<T: Channel> Sh<T> {
         dot(&self.coefficients, &values)
     }
 
-    /// Whether all coefficients are finite. [`Sh::new`] accepts no others, but factors and weights of arithmetic are not checked: NaN and
-    /// overflow show in the result.
+    /// Whether all coefficients are finite. [`Sh::new`] accepts no others, but factors and weights of arithmetic are
+    /// not checked: NaN and overflow show in the result.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.coefficients.iter().all(|c| (0..T::CHANNELS).all(|i| c.channel(i).is_finite()))
@@ -157,7 +157,7 @@ impl<T: Channel> Sh<T> {
         Ok(sum)
     }
 
-    /// As [`Sh::blend`], in the place of what is here, without a new allocation.
+    /// As [`Sh::blend`], but overwrites this function, without a new allocation.
     ///
     /// # Errors
     /// `MixedOrders`, also with the order that is here.
@@ -196,7 +196,7 @@ impl<T: Channel> Sh<T> {
         Ok(Self::from_parts(coefficients, order))
     }
 
-    /// Convolved with a lobe about the direction asked for: each band times its factor.
+    /// The convolution with a lobe: each band is multiplied by the lobe's factor.
     #[must_use]
     pub fn convolved(&self, lobe: &Lobe) -> Self {
         self.map_bands(|l| lobe.bands()[l])

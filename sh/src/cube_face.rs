@@ -2,7 +2,7 @@
 
 use glam::{DVec3, dvec3};
 
-/// A place on a cube map.
+/// A position on a cube map: a face, and coordinates on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubePoint {
     /// 0 to 5: +X, −X, +Y, −Y, +Z, −Z.
@@ -13,8 +13,8 @@ pub struct CubePoint {
     pub t: f64,
 }
 
-/// The way to a place on a face, its largest component ±1: +X (1, −t, −s), −X (−1, −t, s), +Y (s, 1, t), −Y (s, −1, −t),
-/// +Z (s, −t, 1), −Z (−s, −t, −1). Faces above 5 are taken for −Z.
+/// The vector from the middle of the cube to a position on a face, with largest component ±1: +X (1, −t, −s), −X (−1,
+/// −t, s), +Y (s, 1, t), −Y (s, −1, −t), +Z (s, −t, 1), −Z (−s, −t, −1). Faces above 5 are taken for −Z.
 #[must_use]
 pub const fn cube_direction(point: CubePoint) -> DVec3 {
     let CubePoint { face, s, t } = point;
@@ -28,7 +28,8 @@ pub const fn cube_direction(point: CubePoint) -> DVec3 {
     }
 }
 
-/// Where a direction of any length meets the cube; on an edge, the first of the faces. `None` for 0 and what is not finite.
+/// Where a direction of any length meets the cube; on an edge, the first of the faces. `None` for 0 and what is not
+/// finite.
 #[must_use]
 pub fn cube_point(direction: DVec3) -> Option<CubePoint> {
     let size = direction.abs().max_element();

@@ -1,4 +1,4 @@
-//! Six square images.
+//! Cube maps: radiance on six square faces.
 
 use crate::ShError;
 use crate::{CubePoint, cube_direction, cube_point};
@@ -15,7 +15,7 @@ pub struct CubeMap {
 }
 
 impl CubeMap {
-    /// The largest number of texels along an edge: 3 GiB.
+    /// The largest number of texels along an edge; a map of that size takes 3 GiB.
     pub const MAX_SIZE: usize = 8192;
 
     /// A black one with faces of size × size texels.
@@ -87,7 +87,7 @@ impl CubeMap {
         })
     }
 
-    /// The unit direction of a texel's centre (also beyond the face: its plane goes on).
+    /// The unit direction of a texel's centre (also for indices beyond the face, on its plane).
     #[must_use]
     pub fn texel_direction(&self, face: usize, x: usize, y: usize) -> DVec3 {
         texel_way(self.size, face, x, y).normalize()
@@ -102,7 +102,7 @@ impl CubeMap {
     }
 }
 
-/// 6·size², or an error if the size is 0 or above [`CubeMap::MAX_SIZE`].
+/// The number of texels, 6·size²; an error if the size is 0 or above [`CubeMap::MAX_SIZE`].
 pub(crate) const fn texel_count(size: usize) -> Result<usize, ShError> {
     if size == 0 || size > CubeMap::MAX_SIZE {
         return Err(ShError::CubeSize { size, limit: CubeMap::MAX_SIZE });
@@ -110,7 +110,7 @@ pub(crate) const fn texel_count(size: usize) -> Result<usize, ShError> {
     Ok(6 * size * size)
 }
 
-/// The coordinate in (−1, 1) of the middle of a texel; of mirrored texels exactly the opposite.
+/// The coordinate in (−1, 1) of the centre of a texel. Mirrored texels have exactly opposite coordinates.
 pub(crate) fn texel_centre(size: usize, x: usize) -> f64 {
     (2.0 * x as f64 + 1.0 - size as f64) / size as f64
 }

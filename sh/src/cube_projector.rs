@@ -1,4 +1,4 @@
-//! Cube maps to coefficients.
+//! Projects cube maps to coefficients.
 
 use crate::ShError;
 use crate::basis::{MAX_ORDER, checked_order, coefficient_count};
@@ -13,10 +13,10 @@ use pulp::{Arch, Simd, WithSimd};
 /// Sums per row of texels, of the highest order.
 const MAX_SUMS: usize = 2 * MAX_ORDER + 1;
 
-/// Makes coefficients of cube maps of one size; made once, used for many.
+/// Projects cube maps of one size to coefficients. Its tables are computed once and serve for many cube maps.
 ///
-/// It sums texels times weights times polynomials per face, in `f64`: rows of a face have five sums for order 2, and all faces
-/// and colors share one table. Sums are made in a fixed order: the same bits on any processor.
+/// For each face it sums texel · weight · polynomial in `f64`; a row of a face has five such sums for order 2. All
+/// faces and colors share one table. The order of additions is fixed, so results have the same bits on any processor.
 pub struct CubeProjector {
     size: usize,
     order: usize,
@@ -32,7 +32,7 @@ pub struct CubeProjector {
 }
 
 impl CubeProjector {
-    /// For faces of size × size texels, to bands 0 to `order`.
+    /// Prepares the tables for faces of size × size texels and bands 0 to `order`.
     ///
     /// # Errors
     /// `CubeSize`, `OrderTooHigh`.
@@ -66,19 +66,19 @@ impl CubeProjector {
         })
     }
 
-    /// Texels along an edge of the faces that it takes.
+    /// Texels along an edge of the faces that it projects.
     #[must_use]
     pub const fn size(&self) -> usize {
         self.size
     }
 
-    /// The highest band that it makes.
+    /// The highest band that it computes.
     #[must_use]
     pub const fn order(&self) -> usize {
         self.order
     }
 
-    /// How it weighs texels.
+    /// The rule by which it weights texels.
     #[must_use]
     pub const fn weights(&self) -> Weights {
         self.weights
@@ -114,11 +114,12 @@ impl CubeProjector {
     fn project_all<const P: usize>(&self, planes: [&[f32]; P]) -> Result<[Vec<f64>; P], ShError> {
         let count = coefficient_count(self.order);
         let mut moments = vec![[0.0; PARTS]; P * 6 * count];
-        // Processor features are asked for once per image; everything within is inlined into what has them.
+        // The vector instructions of the processor are detected once per image; everything inside is inlined into the
+        // version for them.
         Arch::new().dispatch(Gather { projector: self, planes: &planes, moments: &mut moments });
         let mut of_planes = moments.chunks_exact(6 * count);
         let coefficients = planes.map(|_| self.coefficients(of_planes.next().unwrap_or_default()));
-        // Finite texels have finite sums, and all weights are above 0: nothing else needs to be looked at.
+        // All weights are above 0 and finite texels have finite sums: texels are searched only if a sum is not finite.
         if coefficients.iter().flatten().all(|c| c.is_finite()) {
             return Ok(coefficients);
         }
@@ -158,7 +159,8 @@ struct Gather<'a> {
 impl WithSimd for Gather<'_> {
     type Output = ();
 
-    // No vector types: the compiler makes vectors of the lanes. Everything is inlined; what is not stays narrow.
+    // No explicit vector types: the compiler vectorises the loops over lanes. Everything must be inlined, because a
+    // function that is not would be compiled without the wide instructions.
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         // With the usual order as a constant the loops over moments are unrolled: a third less time with small faces.
@@ -189,7 +191,7 @@ impl Gather<'_> {
     }
 }
 
-/// What one row of a face, with its mirror image, needs.
+/// Tables and sums of one row of a face and of its mirror image.
 struct Row {
     /// Weight·P_a(s) over r^L for a up to L, then over r^(L−1) for a up to L − 1.
     tables: Tables,

@@ -1,4 +1,4 @@
-//! The brightest light apart from the rest.
+//! Splits radiance into one directional light and a rest.
 
 use crate::ShError;
 use crate::basis::{checked_order, coefficient_count};
@@ -43,9 +43,9 @@ impl DominantLight {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Split {
-    /// The light, if there is reason for one.
+    /// The directional light; none if there are neither sharp features nor negative irradiance.
     pub light: Option<DominantLight>,
-    /// What is left, deringed where that was still needed.
+    /// Radiance without the light; deringed if its irradiance was still negative somewhere.
     pub rest: Sh,
 }
 
@@ -58,12 +58,12 @@ impl Split {
 }
 
 impl Sh {
-    /// The directional light that with an even sky comes closest to this irradiance (least squares over the sphere; \[3\],
-    /// dominant light). `None` below order 1, and where light has no direction.
+    /// The directional light that with an even sky comes closest to this irradiance (least squares over the sphere;
+    /// \[3\], dominant light). `None` below order 1, and where light has no direction.
     ///
-    /// Its direction is that of the linear band's luminance. Per color it is not below 0, and not above what the mean allows.
-    /// It is more than what a lamp or the sun gives alone: a sky brighter on one side is a light, too. To take
-    /// lights out, see [`Sh::split`].
+    /// Its direction is that of the linear band's luminance. Per color it is not below 0, and not above what the mean
+    /// allows. It is more than what a lamp or the sun gives alone: a sky brighter on one side counts as a light, too.
+    /// To take lights out, see [`Sh::split`].
     #[must_use]
     pub fn dominant_light(&self) -> Option<DominantLight> {
         let linear = self.band(1);
@@ -92,9 +92,9 @@ impl Sh {
     /// Bands 0 to `order` with a light apart: as much as bands above `order` show to be sharp, at their peak, and as it
     /// takes for the irradiance of the rest not to be negative. Where that is not enough, the rest is deringed.
     ///
-    /// So with coefficients of order 4 or more, split to 2, irradiance is closer than that of order 2: of ten HDR maps, the
-    /// mean error fell from 2.4…8.2 % to 0.8…4.4 % of the mean irradiance, and in none it rose. With those of order 2 alone, light is
-    /// taken out only where there would be negative irradiance: of the dominant light.
+    /// So with coefficients of order 4 or more, split to 2, irradiance is closer than that of order 2: of ten HDR maps,
+    /// the mean error fell from 2.4…8.2 % to 0.8…4.4 % of the mean irradiance, and in none it rose. With those of order
+    /// 2 alone, light is taken out only where there would be negative irradiance: of the dominant light.
     ///
     /// # Errors
     /// `OrderTooHigh`.
@@ -109,11 +109,13 @@ impl Sh {
         let least = |light: &DominantLight, share: f64| without(light, share).1.least_irradiance();
         let sharp = self.sharp_light(order);
         let is_bright = rest.least_irradiance() >= 0.0;
-        // 1. What is sharp, or as much of it as there is light for.
+        // 1. Take out the light that higher bands show to be sharp, or the largest share of it that leaves irradiance
+        //    non-negative.
         let (light, share) = match sharp {
             Some(light) if least(&light, 1.0) >= 0.0 => (light, 1.0),
             Some(light) if is_bright => (light, most_share(|share| least(&light, share))),
-            // 2. Irradiance is negative: as little light as helps.
+            // 2. Irradiance is negative somewhere: take out the least light that makes it non-negative, or as much as
+            //    raises its minimum most.
             _ if !is_bright => match rest.light_at(sharp.map(|light| light.direction)) {
                 Some(light) => (light, least_share(|share| least(&light, share))),
                 None => return Ok(Split { light: None, rest: rest.deringed() }),
@@ -165,7 +167,7 @@ fn least_share(f: impl Fn(f64) -> f64) -> f64 {
     if f(0.0) >= 0.0 {
         return 0.0;
     }
-    // 1. Thirds, until a place that is not negative is found: the largest value lies in what is kept.
+    // 1. Ternary search for a point that is not negative: the maximum lies in the interval that is kept.
     let (mut low, mut high) = (0.0, 1.0);
     let mut found = None;
     for _ in 0..SEARCH_STEPS {
@@ -178,7 +180,7 @@ fn least_share(f: impl Fn(f64) -> f64) -> f64 {
         (low, high) = if fa < fb { (a, high) } else { (low, b) };
     }
     let Some(mut enough) = found else { return 0.5 * (low + high) };
-    // 2. Halves, to the least.
+    // 2. Bisection for the least such point.
     let mut too_little = 0.0;
     for _ in 0..SEARCH_STEPS {
         let middle = 0.5 * (too_little + enough);

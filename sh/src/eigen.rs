@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-/// Enough for rounding to be all that is left: Jacobi's method converges quadratically.
+/// Sweeps after which only rounding errors are left: Jacobi's method converges quadratically.
 const SWEEPS: usize = 8;
 
 /// Eigenvalues, rising, with orthonormal eigenvectors, by Jacobi's method.

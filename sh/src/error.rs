@@ -1,4 +1,4 @@
-//! What can be wrong with coefficients and images.
+//! Errors of coefficients, images and their parameters.
 
 /// What can be wrong with the input of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -7,29 +7,29 @@ pub enum ShError {
     /// Spherical harmonics of an order that is not computed.
     #[error("order {order} is too high: at most {limit} is computed")]
     OrderTooHigh {
-        /// What was asked for.
+        /// The order asked for.
         order: usize,
-        /// The highest there is.
+        /// The highest order, [`MAX_ORDER`](crate::MAX_ORDER).
         limit: usize,
     },
     /// Coefficients whose number is not that of any order.
     #[error("{count} coefficients: there must be (order + 1)², 1 to 81")]
     CoefficientCount {
-        /// How many there are.
+        /// Number that was given.
         count: usize,
     },
     /// A coefficient is NaN or infinite.
     #[error("coefficient {index} is not finite")]
     CoefficientNotFinite {
-        /// Which, from 0.
+        /// Its index, from 0.
         index: usize,
     },
     /// Functions of different orders do not fit together.
     #[error("order {left} does not fit order {right}")]
     MixedOrders {
-        /// Of the first, or of what is asked for.
+        /// Order of the first function, or the order asked for.
         left: usize,
-        /// Of the other.
+        /// Order of the other function.
         right: usize,
     },
     /// A blend of no functions has no order.
@@ -40,25 +40,25 @@ pub enum ShError {
     CubeSize {
         /// Texels along an edge.
         size: usize,
-        /// How many there may be.
+        /// Largest number.
         limit: usize,
     },
-    /// Not as many texels as six faces have.
+    /// The number of texels is not that of six faces.
     #[error("{count} texels: six faces of {size}×{size} have {expected}")]
     CubeTexelCount {
         /// Texels along an edge.
         size: usize,
         /// How many there must be.
         expected: usize,
-        /// How many there are.
+        /// Number that was given.
         count: usize,
     },
-    /// A cube map of another size than was prepared for.
+    /// A cube map of another size than its projector was made for.
     #[error("a cube map of size {size} where {expected} is expected")]
     WrongCubeSize {
-        /// Prepared for.
+        /// Texels along an edge that the projector was made for.
         expected: usize,
-        /// Given.
+        /// Texels along an edge of the cube map.
         size: usize,
     },
     /// A texel of a cube map is NaN or infinite.
@@ -71,7 +71,7 @@ pub enum ShError {
         /// Row from the top.
         y: usize,
     },
-    /// A panorama without pixels, or with another number than its sides say.
+    /// A panorama without pixels, with too many along a side, or whose number of pixels is not width · height.
     #[error("{count} pixels are no panorama of {width}×{height}")]
     PanoramaSize {
         /// Pixels in a row.
@@ -81,7 +81,7 @@ pub enum ShError {
         /// How many pixels there are.
         count: usize,
     },
-    /// A panorama of another size than was prepared for.
+    /// A panorama of another size than its projector was made for.
     #[error("a panorama of {width}×{height} is not what was prepared for")]
     WrongPanoramaSize {
         /// Pixels in a row.
@@ -97,7 +97,7 @@ pub enum ShError {
         /// Row from the top.
         y: usize,
     },
-    /// A matrix or quaternion that does more, or other, than to turn.
+    /// A matrix or quaternion that is not a rotation.
     #[error("not a rotation")]
     NotARotation,
     /// An exponent or roughness of a lobe out of its range.
@@ -109,7 +109,7 @@ pub enum ShError {
     /// A factor of a lobe is NaN or infinite.
     #[error("the factor of band {band} is not finite")]
     LobeBand {
-        /// Of which band.
+        /// Its band.
         band: usize,
     },
     /// A camera's exponent out of its range.
@@ -127,7 +127,7 @@ pub enum ShError {
     /// An exposure out of its range.
     #[error("an exposure of {exposure_ev} EV is not from −64 to 64")]
     Exposure {
-        /// What was given, in stops.
+        /// The exposure, in stops.
         exposure_ev: f32,
     },
 }

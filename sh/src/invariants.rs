@@ -1,8 +1,9 @@
-//! Facts that hold for all functions on the sphere, and for all images, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
+//! Facts that hold for all functions on the sphere, and for all images, as functions
+//! `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
 //!
-//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a crate
-//! that builds on it, with the feature `invariants`. Each takes any input at all; what is refused
-//! satisfies every fact.
+//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a
+//! crate that builds on it, with the feature `invariants`. Each takes any input at all; what is refused satisfies every
+//! fact.
 //!
 //! ```
 //! use pointillist_sh::{Sh, invariants::irradiance_agrees};
@@ -21,10 +22,10 @@ use crate::{
 use glam::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// All rules.
+/// All weighting rules.
 pub const WEIGHTS: [Weights; 3] = [Weights::Gregory, Weights::Exact, Weights::Paper];
 
-/// What rounding may leave, relative to the largest number involved.
+/// Bound on rounding errors, relative to the largest number involved.
 const ROUNDING: f64 = 1e-12;
 
 fn check(holds: bool, message: impl FnOnce() -> String) -> Result<(), String> {
@@ -89,7 +90,7 @@ pub fn rotation_turns(sh: &Sh, rotation: DQuat, direction: DVec3) -> Result<(), 
     check(error <= ROUNDING, || format!("{there} is not {back}, error {error:e}"))
 }
 
-/// To turn twice is to turn by the product.
+/// Two rotations in a row equal the rotation by their product.
 ///
 /// # Errors
 /// The largest difference.
@@ -116,7 +117,7 @@ pub fn solid_angles_fill_the_sphere(size: usize) -> Result<(), String> {
 /// The rule, and what it gives.
 pub fn constant_sky_gives_pi(radiance: DVec3, size: usize, normal: DVec3) -> Result<(), String> {
     let Some(normal) = normal.try_normalize() else { return Ok(()) };
-    // As an image can hold it.
+    // Rounded to `f32`, as an image stores it.
     let radiance = radiance.as_vec3().as_dvec3();
     let cube = CubeMap::from_fn(size, |_| radiance);
     let panorama = Panorama::from_fn(2 * size, size, |_| radiance);
@@ -240,7 +241,7 @@ pub fn product_multiplies(left: &Sh, right: &Sh<f64>, direction: DVec3) -> Resul
     check(error <= 100.0 * ROUNDING, || format!("error {error:e}"))
 }
 
-/// A way to a point of a face leads back there, also across edges: then to the same point in space.
+/// The vector to a point of a face leads back to that point; across an edge, to the same point in space.
 ///
 /// # Errors
 /// Where it leads.
@@ -257,8 +258,8 @@ pub fn cube_points_come_back(point: CubePoint) -> Result<(), String> {
     check(!inside || back.face == point.face, || format!("{point:?} came back on face {}", back.face))
 }
 
-/// What a cube map of a function holds is the function, as far as its texels and weights go: the error relative to the largest
-/// coefficient, with texels in single precision.
+/// What a cube map of a function holds is the function, as far as its texels and weights go: the error relative to the
+/// largest coefficient, with texels in single precision.
 ///
 /// # Errors
 /// What the crate refused.

@@ -22,7 +22,7 @@ pub struct IrradianceMatrix {
 }
 
 impl IrradianceMatrix {
-    /// Of bands 0 to 2; those that are not there are 0, higher ones are left out.
+    /// Makes it from bands 0 to 2. Missing bands count as 0, higher ones are ignored.
     #[must_use]
     pub fn new(sh: &Sh) -> Self {
         let c = |l, m| sh.coefficient(l, m);
@@ -59,7 +59,7 @@ impl IrradianceMatrix {
     pub fn at(&self, normal: DVec3) -> DVec3 {
         let [xx, yy, zz, one, yz, xz, xy, x, y, z] = self.terms;
         let DVec3 { x: nx, y: ny, z: nz } = normal;
-        // Two chains that do not wait for each other.
+        // Two independent chains of additions, which the processor computes in parallel.
         let squares = xx * (nx * nx) + yy * (ny * ny) + zz * (nz * nz) + one + yz * (ny * nz);
         let others = xz * (nx * nz) + xy * (nx * ny) + x * nx + y * ny + z * nz;
         squares + others

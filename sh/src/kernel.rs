@@ -1,21 +1,21 @@
 //! Rows of texels times tables: the inner loop of every projection.
 
-/// Texels that are computed together. Sums are made in so many parts on every processor, so that all agree.
+/// Texels per step. Each sum is kept in this many partial sums on every processor, so that results agree bit for bit.
 pub(crate) const LANES: usize = 8;
 
-/// Parts in which sums are left: to add up the lanes of each row would take as long as the row does, and makes the compiler lay
-/// out vectors across sums instead of along the row.
+/// Number of partial sums that are stored for each sum. Adding up the lanes of each row would take as long as the row
+/// itself, and would make the compiler vectorise across sums instead of along the row.
 pub(crate) const PARTS: usize = LANES / 2;
 
-/// A sum, in parts that are still to be added.
+/// A sum, as partial sums that are still to be added.
 pub(crate) type Parts = [f64; PARTS];
 
-/// All parts.
+/// The total of the partial sums.
 pub(crate) fn total([a, b, c, d]: Parts) -> f64 {
     (a + c) + (b + d)
 }
 
-/// Sums that are computed together: as many as registers hold.
+/// Sums that are computed together: as many as fit into registers.
 const GROUP: usize = 5;
 
 /// Factors of the texels of a row, for several sums. In groups of [`GROUP`] sums; within one, [`LANES`] factors of

@@ -1,4 +1,5 @@
-//! Spherical harmonics: images of all directions to a few coefficients, and those to irradiance and glossy light.
+//! Spherical harmonics of light: images of all directions are projected to a few coefficients, and these give
+//! irradiance and glossy light.
 //!
 //! ```
 //! use glam::{DVec3, dvec3};
@@ -15,37 +16,41 @@
 //! ```
 //!
 //! The basis is real and orthonormal, without the sign (−1)^m, in world axes, ordered by band l and then by m = −l…l:
-//! Y00, Y1−1 ~ y, Y10 ~ z, Y11 ~ x, Y2−2 ~ xy, Y2−1 ~ yz, Y20 ~ 3z² − 1, Y21 ~ xz, Y22 ~ x² − y², … up to [`MAX_ORDER`].
-//! Coefficients are those of radiance, L_lm = ∫ L·Y_lm dω.
+//! Y00, Y1−1 ~ y, Y10 ~ z, Y11 ~ x, Y2−2 ~ xy, Y2−1 ~ yz, Y20 ~ 3z² − 1, Y21 ~ xz, Y22 ~ x² − y², … up to
+//! [`MAX_ORDER`]. Coefficients are those of radiance, L_lm = ∫ L·Y_lm dω.
 //!
-//! * Images: [`CubeMap`] and [`Panorama`], projected by [`CubeProjector`] and [`PanoramaProjector`]; [`Response`] undoes what a
-//!   camera did to a photograph. [`Weights`] says how much each texel counts.
-//! * [`Sh`]: coefficients, of colors or of one number (visibility); evaluated, blended, turned ([`Rotation`]), multiplied ([`Product`]).
-//! * Use: [`Sh::irradiance`] for any order, [`IrradianceMatrix`] and [`Irradiance`] to evaluate it quickly, [`Lobe`] for glossy
-//!   reflection, [`Sh::deringed`], [`Sh::split`] and [`DominantLight`] against negative light, [`Sh::ambient_occlusion`].
+//! * Images: [`CubeMap`] and [`Panorama`], projected by [`CubeProjector`] and [`PanoramaProjector`]; [`Response`]
+//!   inverts the response of a camera. [`Weights`] are the quadrature weights of texels.
+//! * [`Sh`]: coefficients, of colors or of one number (visibility); evaluated, blended, turned ([`Rotation`]),
+//!   multiplied ([`Product`]).
+//! * Use: [`Sh::irradiance`] for any order, [`IrradianceMatrix`] and [`Irradiance`] to evaluate it quickly, [`Lobe`]
+//!   for glossy reflection, [`Sh::deringed`], [`Sh::split`] and [`DominantLight`] against negative light,
+//!   [`Sh::ambient_occlusion`].
 //!
 //! # Accuracy
-//! The basis, rotation, products and irradiance are exact up to rounding (1e-12 of the largest coefficient, 1e-13 for irradiance of
-//! order 2, 2e-6 in single precision). Projection of point samples: see [`Weights`]. Minima: see [`Sh::minimum`].
+//! The basis, rotation, products and irradiance are exact up to rounding (1e-12 of the largest coefficient, 1e-13 for
+//! irradiance of order 2, 2e-6 in single precision). Projection of point samples: see [`Weights`]. Minima: see
+//! [`Sh::minimum`].
 //!
 //! # Features
-//! `rayon` (default) makes images and sums up panoramas on all cores; it never changes a result. `invariants`: the module of
-//! that name, facts for property tests and fuzzing, also of crates that build on this one.
+//! `rayon` (default) computes images and sums of panoramas on all cores; it never changes a result. `invariants`: the
+//! module of that name, facts for property tests and fuzzing, also of crates that build on this one.
 //!
-//! Builds for `wasm32-unknown-unknown` without default features; last bits of coefficients differ there from those of x86-64, because
-//! sines and powers come from another library. Times in the README are with thin LTO and `codegen-units = 1` in the profile of the
-//! dependent program.
+//! Builds for `wasm32-unknown-unknown` without default features; last bits of coefficients differ there from those of
+//! x86-64, because sines and powers come from another library. Times in the README are with thin LTO and
+//! `codegen-units = 1` in the profile of the dependent program.
 //!
 //! # References
 //! 1. R. Ramamoorthi, P. Hanrahan: *An efficient representation for irradiance environment maps*, SIGGRAPH 2001.
 //! 2. R. Green: *Spherical harmonic lighting: the gritty details*, GDC 2003.
 //! 3. P.-P. Sloan: *Stupid spherical harmonics (SH) tricks*, GDC 2008.
-//! 4. J. Ivanic, K. Ruedenberg: *Rotation matrices for real spherical harmonics*, J. Phys. Chem. 100 (1996); corrected in
-//!    J. Phys. Chem. A 102 (1998).
+//! 4. J. Ivanic, K. Ruedenberg: *Rotation matrices for real spherical harmonics*, J. Phys. Chem. 100 (1996); corrected
+//!    in J. Phys. Chem. A 102 (1998).
 //! 5. P. J. Davis, P. Rabinowitz: *Methods of numerical integration*, 2nd ed. 1984: Gauss–Legendre (2.7), Gregory's end
 //!    corrections (2.9), Fejér's first rule (2.5.5).
 //! 6. A. Van Oosterom, J. Strackee: *The solid angle of a plane triangle*, IEEE Trans. Biomed. Eng. 30 (1983).
-//! 7. B. Karis: *Real shading in Unreal Engine 4*, SIGGRAPH courses 2013: the lobe of a reflection seen along the normal.
+//! 7. B. Karis: *Real shading in Unreal Engine 4*, SIGGRAPH courses 2013: the lobe of a reflection seen along the
+//!    normal.
 
 #![forbid(unsafe_code)]
 

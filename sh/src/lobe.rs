@@ -32,8 +32,8 @@ impl Lobe {
         }
     }
 
-    /// Phong's lobe max(cos θ, 0)^n, with integral 1: a_l = (n+1) ∫₀¹ tⁿ P_l(t) dt, which each second band gets from the one before
-    /// by the factor (n − l + 2)/(n + l + 1).
+    /// Phong's lobe max(cos θ, 0)^n, with integral 1: a_l = (n+1) ∫₀¹ tⁿ P_l(t) dt, which each second band gets from
+    /// the one before by the factor (n − l + 2)/(n + l + 1).
     ///
     /// # Errors
     /// `LobeShape` unless the exponent is finite and at least 0.
@@ -50,7 +50,8 @@ impl Lobe {
         Ok(Self { bands })
     }
 
-    /// The reflection of GGX with α = `roughness_alpha`, seen along the normal (\[7\]): D(θ/2)·max(cos θ, 0), with integral 1.
+    /// The reflection of GGX with α = `roughness_alpha`, seen along the normal (\[7\]): D(θ/2)·max(cos θ, 0), with
+    /// integral 1.
     ///
     /// # Errors
     /// `LobeShape` unless 1e-4 ≤ α ≤ 1.

@@ -5,14 +5,14 @@ use crate::eigen::eigen;
 use crate::{Sh, search};
 use glam::{DMat3, DVec3, dvec3};
 
-/// Halvings that leave nothing of an interval of `f64`.
+/// Bisection steps after which no interval of `f64` can be divided further.
 const HALVINGS: usize = 100;
 
 impl Sh<f64> {
     /// The direction and value of the minimum over all directions.
     ///
-    /// Up to order 2 it is that of a quadratic form on the sphere, from its secular equation: the value is within 1e-14 of the
-    /// largest coefficient. Above, the lowest of a search from 40 (order + 1)² even directions, refined: the
+    /// Up to order 2 it is that of a quadratic form on the sphere, from its secular equation: the value is within 1e-14
+    /// of the largest coefficient. Above, the lowest of a search from 40 (order + 1)² even directions, refined: the
     /// value of a minimum, within 1e-12; in theory one in a narrow valley could be missed.
     #[must_use]
     pub fn minimum(&self) -> (DVec3, f64) {
@@ -23,8 +23,9 @@ impl Sh<f64> {
 
 /// Where c + 2b·n + nᵀAn is least among unit vectors n.
 ///
-/// With multiplier μ, (A − a₀ + μ)·n = −b where a₀ is the least eigenvalue and μ ≥ 0; in the eigenbasis
-/// n_i = −b_i/(a_i − a₀ + μ), and |n| falls with μ. Where it is below 1 even at μ = 0, the eigenvector of a₀ makes up for it.
+/// With multiplier μ, (A − a₀ + μ)·n = −b where a₀ is the least eigenvalue and μ ≥ 0; in the eigenbasis n_i = −b_i/(a_i
+/// − a₀ + μ), and |n| decreases with μ. If |n| < 1 even at μ = 0, a multiple of the eigenvector of a₀ is added to reach
+/// unit length.
 fn quadratic_minimum(sh: &Sh<f64>) -> DVec3 {
     let c = |l, m| sh.coefficient(l, m);
     let b = 0.5 * Y1 * dvec3(c(1, 1), c(1, -1), c(1, 0));
@@ -42,7 +43,7 @@ fn quadratic_minimum(sh: &Sh<f64>) -> DVec3 {
     let at = |mu: f64| -> [f64; 3] {
         std::array::from_fn(|i| if parts[i] == 0.0 { 0.0 } else { -parts[i] / (gaps[i] + mu) })
     };
-    // |n| ≥ |b₀|/μ and |n| ≤ |b|/μ.
+    // Brackets the root: |n| ≥ |b₀|/μ and |n| ≤ |b|/μ.
     let (mut low, mut high) = (parts[0].abs(), DVec3::from(parts).length());
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);

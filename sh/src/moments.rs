@@ -28,7 +28,8 @@ pub(crate) fn coefficients_from_moments(order: usize) -> Vec<f64> {
     (0..6).flat_map(|face| of_face(order, face)).collect()
 }
 
-/// Expands each basis function times r^degree in products of Legendre polynomials, by quadrature that is exact for them.
+/// Expands each basis function times r^degree in products of Legendre polynomials, by quadrature that is exact for
+/// them.
 fn of_face(order: usize, face: usize) -> Vec<f64> {
     let count = coefficient_count(order);
     let mut matrix = vec![0.0; count * count];

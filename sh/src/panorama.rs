@@ -4,8 +4,8 @@ use crate::ShError;
 use glam::{DVec3, Vec3, dvec3};
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
-/// Radiance in all directions as an equirectangular image: row 0 is at the zenith (+Y), the centre column looks along −Z, and
-/// columns run towards +X.
+/// Radiance in all directions as an equirectangular image: row 0 is at the zenith (+Y), the centre column looks along
+/// −Z, and columns run towards +X.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panorama {
     width: usize,
@@ -20,7 +20,8 @@ impl Panorama {
     /// From colors in rows from the top.
     ///
     /// # Errors
-    /// `PanoramaSize` if there is not one color per pixel, or a side is 0 or above [`Panorama::MAX_SIDE`]; `PixelNotFinite`.
+    /// `PanoramaSize` if there is not one color per pixel, or a side is 0 or above [`Panorama::MAX_SIDE`];
+    /// `PixelNotFinite`.
     pub fn new(width: usize, height: usize, pixels: &[[f32; 3]]) -> Result<Self, ShError> {
         Self::from_planes(width, height, std::array::from_fn(|c| pixels.iter().map(|p| p[c]).collect()))
     }
@@ -85,8 +86,8 @@ impl Panorama {
         if y >= self.height { 0.0 } else { solid_angle(self.width, self.height, y) }
     }
 
-    /// Radiance from a direction of any length but 0, bilinear between the centres of pixels, around the seam and over the
-    /// poles.
+    /// Radiance from a direction of any length but 0, bilinear between the centres of pixels, around the seam and over
+    /// the poles.
     #[must_use]
     pub fn at(&self, direction: DVec3) -> Vec3 {
         let DVec3 { x, y, z } = direction;

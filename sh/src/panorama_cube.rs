@@ -5,8 +5,8 @@ use crate::{CubeMap, CubePoint, Panorama, cube_direction};
 use glam::{DVec3, dvec3};
 
 impl Panorama {
-    /// A cube map of this panorama. Each texel is the mean of k×k bilinear samples, weighted by their solid angles, with k
-    /// such that no pixel is missed: samples are at most a pixel's width at the horizon apart.
+    /// A cube map of this panorama. Each texel is the mean of k×k bilinear samples, weighted by their solid angles,
+    /// with k such that no pixel is missed: samples are at most a pixel's width at the horizon apart.
     ///
     /// # Errors
     /// `CubeSize`.

@@ -1,4 +1,4 @@
-//! Panoramas to coefficients.
+//! Projects panoramas to coefficients.
 
 use crate::ShError;
 use crate::basis::{MAX_ORDER, checked_order, coefficient_count, coefficient_index, fill_basis};
@@ -12,12 +12,12 @@ use std::f64::consts::{PI, TAU};
 
 const MAX_SUMS: usize = 2 * MAX_ORDER + 1;
 
-/// Makes coefficients of panoramas of one size; made once, used for many.
+/// Projects panoramas of one size to coefficients. Its tables are computed once and serve for many panoramas.
 ///
 /// Rows are summed with cos mφ and sin mφ of their pixels' centres, and those sums with the functions of θ; with
-/// [`Weights::Gregory`] this is exact for any sky of order up to the smaller of width and height less the order, and second
-/// order with the others. (To integrate the basis over each pixel, as if radiance were constant there, would damp
-/// band m by the factor sin(mΔ/2)/(mΔ/2), Δ = 2π/width; also of pixels that are means, which it would damp again.)
+/// [`Weights::Gregory`] this is exact for any sky of order up to the smaller of width and height less the order, and
+/// second order with the others. (To integrate the basis over each pixel, as if radiance were constant there, would
+/// damp band m by the factor sin(mΔ/2)/(mΔ/2), Δ = 2π/width; also of pixels that are means, which it would damp again.)
 pub struct PanoramaProjector {
     width: usize,
     height: usize,
@@ -43,7 +43,8 @@ impl PanoramaProjector {
             fill_basis(order, dvec3(sin, 0.0, cos), row);
             row.iter_mut().for_each(|value| *value *= weight * TAU / width as f64);
         }
-        // The zenith as z axis, as the functions have it; to be right-handed, angles run against the columns.
+        // The basis functions have the zenith as z axis. For a right-handed frame, angles increase against the
+        // direction of columns.
         let world_from_zenith = DMat3::from_cols(DVec3::NEG_Z, DVec3::NEG_X, DVec3::Y);
         Ok(Self {
             width,

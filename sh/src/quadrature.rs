@@ -7,8 +7,8 @@ use crate::{Channel, Sh};
 use glam::{DVec3, dvec3};
 use std::f64::consts::TAU;
 
-/// Directions and weights that integrate spherical polynomials up to a degree exactly: Gauss–Legendre in z, equal steps in
-/// the angle about it.
+/// Directions and weights that integrate spherical polynomials up to a degree exactly: Gauss–Legendre in z, equal steps
+/// in the angle about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SphereQuadrature {
     points: Vec<(DVec3, f64)>,

@@ -107,8 +107,8 @@ fn check_rising(values: &[f32]) -> Result<usize, ShError> {
 }
 
 impl Panorama {
-    /// From a photograph of 8-bit levels: radiance after `response` and exposure (see [`Response::radiance`]), and which
-    /// share of the sphere is clipped.
+    /// From a photograph of 8-bit levels: radiance after `response` and exposure (see [`Response::radiance`]), and
+    /// which share of the sphere is clipped.
     ///
     /// # Errors
     /// `PanoramaSize`, `Exposure`; `PixelNotFinite` if a calibrated radiance is too large with that exposure.

@@ -16,16 +16,16 @@ pub struct Rotation {
 }
 
 impl Rotation {
-    /// Turns what is seen along d to where R·d points, for bands 0 to `order`.
+    /// The rotation R for bands 0 to `order`: what was seen along d is seen along R·d afterwards.
     ///
     /// # Errors
-    /// `OrderTooHigh`; `NotARotation` if the columns are not orthonormal within 1e-6, or mirror. Errors that small are kept:
-    /// the result is exact for exact rotations.
+    /// `OrderTooHigh`; `NotARotation` if the columns are not orthonormal within 1e-6, or mirror. Errors that small are
+    /// kept: the result is exact for exact rotations.
     pub fn new(order: usize, rotation: DMat3) -> Result<Self, ShError> {
         checked_order(order)?;
         let rest = rotation.transpose() * rotation - DMat3::IDENTITY;
         let error = rest.to_cols_array().iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-        // A NaN is not below it.
+        // Written so that NaN, which compares false, is refused.
         if !(rotation.is_finite() && error < ROTATION_TOLERANCE && rotation.determinant() > 0.0) {
             return Err(ShError::NotARotation);
         }
@@ -66,7 +66,8 @@ impl Rotation {
 }
 
 impl<T: Channel> Sh<T> {
-    /// Turned: what is seen along d is then seen along R·d. For many with the same rotation, see [`Rotation`].
+    /// The rotated function: what was seen along d is seen along R·d. For many functions with the same rotation, see
+    /// [`Rotation`].
     ///
     /// # Errors
     /// `NotARotation` unless the quaternion has unit length.

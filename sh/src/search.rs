@@ -5,10 +5,10 @@ use glam::{DVec2, DVec3, dvec2, dvec3};
 
 /// Starting directions per coefficient: neighbours are about a sixth of the shortest wave apart.
 const STARTS_PER_COEFFICIENT: usize = 40;
-/// The lowest of them, from which the search goes on.
+/// Number of starting directions, those with the lowest values, that are refined.
 const KEPT: usize = 8;
-/// Distance of differences, in radians: their error is about its square times the function's fourth derivative, and does
-/// not move the minimum, only slow the way to it.
+/// Step of finite differences, in radians. Their error is about the square of the step times the fourth derivative; it
+/// does not move the minimum, it only slows convergence.
 const STEP: f64 = 1e-3;
 const STEPS: usize = 20;
 
@@ -43,7 +43,7 @@ fn descend(sh: &Sh<f64>, mut value: f64, mut direction: DVec3) -> (f64, DVec3) {
             step *= 0.5;
             lower = sh.at(moved(step));
         }
-        // As low as rounding allows.
+        // No step lowers the value any more: the minimum is found up to rounding.
         if lower >= value || lower.is_nan() {
             break;
         }
@@ -52,7 +52,7 @@ fn descend(sh: &Sh<f64>, mut value: f64, mut direction: DVec3) -> (f64, DVec3) {
     (value, direction)
 }
 
-/// By differences; down the gradient where the function is not convex.
+/// A Newton step from finite differences; steepest descent where the function is not convex.
 fn newton_step(f: impl Fn(DVec2) -> f64, value: f64) -> DVec2 {
     let at = |x: f64, y: f64| f(dvec2(x * STEP, y * STEP));
     let [e, w, n, s] = [at(1.0, 0.0), at(-1.0, 0.0), at(0.0, 1.0), at(0.0, -1.0)];

@@ -8,15 +8,16 @@ use std::f64::consts::PI;
 /// Smaller faces have too few texels for end corrections: [`Weights::Gregory`] is [`Weights::Paper`] there.
 pub const GREGORY_FROM: usize = 16;
 
-/// Factors of the outer five texels of a row or column: the midpoint rule, sixth order. They integrate what the Euler–Maclaurin
-/// formula leaves at an end, −f′/24 + 7f‴/5760, of polynomials of degree up to 4 through the five samples.
+/// Factors of the outer five texels of a row or column: the midpoint rule, sixth order. They integrate what the
+/// Euler–Maclaurin formula leaves at an end, −f′/24 + 7f‴/5760, of polynomials of degree up to 4 through the five
+/// samples.
 const GREGORY: [f64; 5] = [741.0 / 640.0, 3547.0 / 5760.0, 527.0 / 384.0, 1571.0 / 1920.0, 2983.0 / 2880.0];
 
-/// How much each sample of an image counts in an integral over the sphere. Whichever it is, coefficients are then scaled by
-/// 4π/ΣA, so that a constant image is projected exactly.
+/// How much each sample of an image counts in an integral over the sphere. Whichever it is, coefficients are then
+/// scaled by 4π/ΣA, so that a constant image is projected exactly.
 ///
-/// Errors of the worst L2 coefficient of smooth skies (quadratic in the direction), relative to L00, with faces of 128²; and
-/// of panoramas of 256×128:
+/// Errors of the worst L2 coefficient of smooth skies (quadratic in the direction), relative to L00, with faces of
+/// 128²; and of panoramas of 256×128:
 ///
 /// | rule | cube | panorama |
 /// |---|---|---|
@@ -29,13 +30,13 @@ const GREGORY: [f64; 5] = [741.0 / 640.0, 3547.0 / 5760.0, 527.0 / 384.0, 1571.0
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Weights {
-    /// Cubes: the differential solid angle of the centre with Gregory's end corrections, factors of
-    /// the outer five texels of each row and column; below [`GREGORY_FROM`] as `Paper`. Panoramas: Fejér's rule, whose nodes the
-    /// rows' centres are.
+    /// Cubes: the differential solid angle of the centre with Gregory's end corrections, factors of the outer five
+    /// texels of each row and column; below [`GREGORY_FROM`] as `Paper`. Panoramas: Fejér's rule, whose nodes the rows'
+    /// centres are.
     #[default]
     Gregory,
-    /// The exact solid angle of each texel or pixel: of panoramas Δφ·(cos θ₀ − cos θ₁), which is sin θ of the centre but
-    /// for a factor.
+    /// The exact solid angle of each texel or pixel: of panoramas Δφ·(cos θ₀ − cos θ₁), which is sin θ of the centre
+    /// but for a factor.
     Exact,
     /// The paper's rule dS·(n·r̂)/|r|²: the differential solid angle of the centre. Panoramas: as `Exact`.
     Paper,
@@ -55,12 +56,13 @@ impl Weights {
         Ok((0..size).flat_map(row).map(|i| quarter[i]).collect())
     }
 
-    /// As [`Weights::of_face`], of the upper left quarter with the middle row and column: the others are its mirror images.
+    /// As [`Weights::of_face`], of the upper left quarter with the middle row and column: the others are its mirror
+    /// images.
     pub(crate) fn of_quarter(self, size: usize) -> Vec<f64> {
         let half = size.div_ceil(2);
         let mut weights = vec![0.0; half * half];
         let mut sum = 0.0;
-        // How often a row or column is there: the middle one of an odd number once.
+        // Number of rows or columns that have these weights: one for the middle one of an odd number, otherwise two.
         let times = |i: usize| if 2 * i + 1 == size { 1.0 } else { 2.0 };
         for y in 0..half {
             // A texel and the one across the diagonal weigh the same: an eighth of the face is computed.

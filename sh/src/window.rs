@@ -3,7 +3,7 @@
 use crate::{Channel, Lobe, Sh};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Halvings of the interval in which the strength is sought: to 1e-9.
+/// Bisection steps for the strength: it is found to within 1e-9.
 const HALVINGS: usize = 30;
 
 /// How higher bands are damped: by a factor that falls with the band, from 1 without damping to 0 at full strength.
@@ -16,9 +16,9 @@ pub enum Window {
     Lanczos,
     /// 1/(1 + λ·l²(l+1)²), which costs the least squared error for a given curvature \[3\]; λ = s/(1 − s).
     Laplacian,
-    /// 1 − s for all bands but 0: towards the mean. Against negative irradiance this changes least: the others lose band 2
-    /// first, which in a dark direction is what keeps band 1 from going below 0. Of a map with a minimum of −1.5 % of the peak
-    /// it made the error 9 % of the mean, the others 49 to 62 %, and without it was 7.5 %.
+    /// 1 − s for all bands but 0: towards the mean. Against negative irradiance this changes least: the others lose
+    /// band 2 first, which in a dark direction is what keeps band 1 from going below 0. Of a map with a minimum of −1.5
+    /// % of the peak it made the error 9 % of the mean, the others 49 to 62 %, and without it was 7.5 %.
     #[default]
     Even,
 }
@@ -47,8 +47,9 @@ impl<T: Channel> Sh<T> {
         self.map_bands(|l| window.factor(l, strength))
     }
 
-    /// The least strength, within 1e-9, at which the convolution with `lobe` is negative nowhere, in no channel; 0 where
-    /// nothing needs to be done. Channels whose mean is not above 0 are not looked at: no window helps them.
+    /// The least strength, within 1e-9, at which the convolution with `lobe` is nowhere negative, in no channel; 0
+    /// where nothing needs to be done. Channels whose mean is not above 0 are ignored: no window makes them
+    /// non-negative.
     #[must_use]
     pub fn strength_for(&self, lobe: &Lobe, window: Window) -> f64 {
         let channels = (0..T::CHANNELS).map(|i| self.channel(i).convolved(lobe));
@@ -66,9 +67,10 @@ impl<T: Channel> Sh<T> {
         high
     }
 
-    /// With irradiance that is negative nowhere: damped as little as that takes, the mean kept. What is not negative stays as it is.
+    /// The function with its bands damped just enough that irradiance is nowhere negative; the mean is kept. A function
+    /// without negative irradiance comes back unchanged.
     ///
-    /// Where a bright light is in sight, [`Sh::split`] loses less.
+    /// For radiance with a bright light in it, [`Sh::split`] has a smaller error.
     #[must_use]
     pub fn deringed(&self) -> Self {
         let window = Window::default();

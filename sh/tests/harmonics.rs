@@ -346,8 +346,8 @@ fn dominant_light_finds_a_lamp() {
         found.direction.distance(lamp.direction) < 1e-14
             && found.irradiance.distance(lamp.irradiance) < 1e-13
     );
-    // Bands 3 and 4 show that it is a lamp: all of it is taken out, and the rest is the sky. A peak is flat: its direction is
-    // known to the root of its value's error.
+    // Bands 3 and 4 show that it is a lamp: all of it is taken out, and the rest is the sky. A peak is flat: its
+    // direction is known to the root of its value's error.
     let split = both.split(2).unwrap();
     assert!(facts::difference(&sky.with_order(2).unwrap(), &split.rest) < 1e-6);
     let n = dvec3(0.6, 0.0, 0.8);
@@ -479,7 +479,8 @@ mod regressions {
         assert!(near(at(0, DVec3::Z), PI.sqrt() / 2.0));
     }
 
-    /// Laplacian damping removed band 2 before band 1 and had to remove nearly all: 49 % error on a map with 1.5 % ringing.
+    /// Laplacian damping removed band 2 before band 1 and had to remove nearly all: 49 % error on a map with 1.5 %
+    /// ringing.
     #[test]
     fn damping_all_bands_alike_changes_less_than_a_smooth_window() {
         let lamp = DominantLight { direction: DVec3::Y, irradiance: DVec3::ONE };

@@ -53,7 +53,7 @@ impl Casters {
         let index = self.list.len() as u32;
         let links = &mut self.links;
         let first = links.len();
-        grid.darken_near(caster.bounds, caster.face.nearness.1, |group| match covers(&caster, group) {
+        grid.darken_near(caster.bounds, caster.face.nearness.most, |group| match covers(&caster, group) {
             Cover::Nothing => false,
             Cover::All => true,
             Cover::Some => {
@@ -81,7 +81,7 @@ impl Casters {
             if caster.opacity == Some(0.0) {
                 continue;
             }
-            let (bounds, nearest, id) = (caster.bounds, caster.face.nearness.1, caster.face.id);
+            let (bounds, nearest, id) = (caster.bounds, caster.face.nearness.most, caster.face.id);
             nearby.push(Nearby { bounds, nearest, id, index });
         }
     }
@@ -108,6 +108,6 @@ fn covers(caster: &Caster, group: &Group) -> Cover {
         }
         all_inside &= half.value(against) >= 0.0;
     }
-    let clearly_before = caster.face.nearness.0 > group.nearness.1 + 1e-6 * group.nearness.1.abs();
+    let clearly_before = caster.face.nearness.least > group.nearness.most + 1e-6 * group.nearness.most.abs();
     if all_inside && clearly_before && caster.opacity == Some(1.0) { Cover::All } else { Cover::Some }
 }

@@ -71,19 +71,19 @@ fn find_blockers(
     let rest = nearby.iter().enumerate().filter(|(i, _)| Some(*i) != last).map(|(_, n)| n);
     for near in last.map(|i| &nearby[i]).into_iter().chain(rest) {
         let overlaps = near.bounds.0.cmplt(high).all() && near.bounds.1.cmpgt(low).all();
-        if !overlaps || near.nearest < target.nearness.0 || near.id == face.id {
+        if !overlaps || near.nearest < target.nearness.least || near.id == face.id {
             continue;
         }
         let (c, caster) = (near.index, &query.casters[near.index as usize]);
-        let place = place(&caster.polygon, outline);
-        if place == Place::Apart || convex::has_separating_edge(outline, caster.polygon.vertices()) {
+        let overlap = overlap(&caster.polygon, outline);
+        if overlap == Overlap::Apart || convex::has_separating_edge(outline, caster.polygon.vertices()) {
             continue;
         }
         let upper =
             Layer { face: &caster.face, outline: caster.polygon.vertices(), nearness: caster.face.nearness };
         let lower = Layer { face, outline, nearness: target.nearness };
         let front = in_front(query.lens, DVec2::ZERO, upper, lower, false);
-        if front == Front::Everywhere && place == Place::Over {
+        if front == Front::Everywhere && overlap == Overlap::Over {
             // Receivers are small: over most of them a mask is 0 or 1 throughout.
             let opacity = query.opacity(caster, outline);
             if opacity >= 1.0 {
@@ -105,7 +105,7 @@ fn find_blockers(
 
 /// How a caster's outline lies to a target.
 #[derive(PartialEq)]
-enum Place {
+enum Overlap {
     /// One of its edges separates them.
     Apart,
     /// It contains the target.
@@ -113,7 +113,7 @@ enum Place {
     Other,
 }
 
-fn place(caster: &ConvexPolygon, target: &[DVec2]) -> Place {
+fn overlap(caster: &ConvexPolygon, target: &[DVec2]) -> Overlap {
     let mut over = true;
     for half in convex::half_planes(caster.vertices()) {
         let mut most = f64::NEG_INFINITY;
@@ -123,10 +123,10 @@ fn place(caster: &ConvexPolygon, target: &[DVec2]) -> Place {
             most = most.max(value);
         }
         if most <= 0.0 {
-            return Place::Apart;
+            return Overlap::Apart;
         }
     }
-    if over { Place::Over } else { Place::Other }
+    if over { Overlap::Over } else { Overlap::Other }
 }
 
 impl Occluders for Query<'_> {
@@ -148,7 +148,7 @@ impl Occluders for Query<'_> {
 pub(crate) fn compare(a: &Caster, b: &Caster) -> Ordering {
     let key = |c: &Caster| {
         let (low, high) = c.bounds;
-        [-c.face.nearness.1, -c.face.nearness.0, low.x, low.y, high.x, high.y]
+        [-c.face.nearness.most, -c.face.nearness.least, low.x, low.y, high.x, high.y]
     };
     let (ka, kb) = (key(a), key(b));
     let places = ka.iter().zip(&kb).map(|(x, y)| x.total_cmp(y));

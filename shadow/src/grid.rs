@@ -3,7 +3,7 @@
 use crate::options::Resolution;
 use crate::target::Target;
 use glam::DVec2;
-use pointillist_micropoint::{Bounds, Lens, ProjectedVertex};
+use pointillist_micropoint::{Bounds, Interval, Lens, ProjectedVertex};
 
 /// Most cells on a side of the local grid; a batch is a tile's receivers, so more would stay empty.
 const MOST_CELLS: f64 = 64.0;
@@ -16,7 +16,7 @@ pub(crate) struct Group {
     pub(crate) low: DVec2,
     pub(crate) high: DVec2,
     /// Least and largest nearness of its targets.
-    pub(crate) nearness: (f64, f64),
+    pub(crate) nearness: Interval,
     /// Head of its list of casters, if there is any.
     pub(crate) first_link: Option<u32>,
     /// One opaque caster covers all of it, in front of all of it.
@@ -29,7 +29,7 @@ impl Group {
         end_target: 0,
         low: DVec2::INFINITY,
         high: DVec2::NEG_INFINITY,
-        nearness: (f64::INFINITY, f64::NEG_INFINITY),
+        nearness: Interval::EMPTY,
         first_link: None,
         dark: false,
     };
@@ -43,7 +43,7 @@ impl Group {
     pub(crate) fn may_be_darkened(&self, low: DVec2, high: DVec2, nearness: f64) -> bool {
         !self.is_empty()
             && !self.dark
-            && self.nearness.0 <= nearness
+            && self.nearness.least <= nearness
             && self.low.cmple(high).all()
             && self.high.cmpge(low).all()
     }
@@ -136,7 +136,7 @@ impl LightGrid {
             let extent = (t.bounds.1 - t.bounds.0).max_element();
             extents += extent;
             reach = reach.max(0.5 * extent);
-            self.least_nearness = self.least_nearness.min(t.nearness.0);
+            self.least_nearness = self.least_nearness.min(t.nearness.least);
         }
         let mean = extents / self.unsorted.len() as f64;
         let cell = match resolution {
@@ -168,7 +168,7 @@ impl LightGrid {
             group.end_target += 1;
             group.low = group.low.min(t.bounds.0);
             group.high = group.high.max(t.bounds.1);
-            group.nearness = (group.nearness.0.min(t.nearness.0), group.nearness.1.max(t.nearness.1));
+            group.nearness = group.nearness.union(t.nearness);
         }
     }
 
@@ -208,9 +208,10 @@ impl LightGrid {
 
     /// Whether some open group may lie behind a box.
     pub(crate) fn may_be_darkened_by(&self, lens: &Lens, bounds: &Bounds) -> bool {
-        let Some((low, high, nearness)) = lens.shadow_of_box(bounds) else { return true };
-        let concerned = |g: u32| self.groups[g as usize].may_be_darkened(low, high, nearness);
-        self.layout.any_near(low, high, concerned)
+        let Some(image) = lens.shadow_of_box(bounds) else { return true };
+        let concerned =
+            |g: u32| self.groups[g as usize].may_be_darkened(image.low, image.high, image.nearest);
+        self.layout.any_near(image.low, image.high, concerned)
     }
 
     /// Calls `visit` with every open group that a caster with these bounds may darken; it returns whether the group is now dark.

@@ -4,12 +4,12 @@ use crate::cells::LightCells;
 use crate::query::Query;
 use glam::{DVec2, IVec2};
 use pointillist_dice::{CellWindow, ConvexPolygon, Cut, HalfPlane, convex, cut};
-use pointillist_micropoint::Face;
+use pointillist_micropoint::{Face, Interval};
 
 /// What a caster does to one light cell.
 #[derive(Clone, Copy, Debug)]
 struct Cast {
-    nearness: (f64, f64),
+    nearness: Interval,
     opacity: f64,
 }
 
@@ -94,7 +94,7 @@ fn transmittance(
         let opacity = area / (size * size) * query.opacity(caster, inside.vertices());
         work.casts.push(Cast { nearness, opacity });
     }
-    let key = |c: &Cast| (-c.nearness.1, -c.nearness.0, c.opacity);
+    let key = |c: &Cast| (-c.nearness.most, -c.nearness.least, c.opacity);
     work.casts.sort_unstable_by(|a, b| {
         let (ka, kb) = (key(a), key(b));
         ka.0.total_cmp(&kb.0).then(ka.1.total_cmp(&kb.1)).then(ka.2.total_cmp(&kb.2))
@@ -103,15 +103,15 @@ fn transmittance(
     let mut passed = 1.0;
     let mut i = 0;
     while i < work.casts.len() {
-        let (mut bottom, mut opacity) = (work.casts[i].nearness.0, work.casts[i].opacity);
+        let (mut bottom, mut opacity) = (work.casts[i].nearness.least, work.casts[i].opacity);
         i += 1;
-        while i < work.casts.len() && work.casts[i].nearness.1 >= bottom - TOUCH * bottom.abs() {
-            bottom = bottom.min(work.casts[i].nearness.0);
+        while i < work.casts.len() && work.casts[i].nearness.most >= bottom - TOUCH * bottom.abs() {
+            bottom = bottom.min(work.casts[i].nearness.least);
             opacity += work.casts[i].opacity;
             i += 1;
         }
         // The receiver's own layer, and all that lie behind, do not shade it.
-        if bottom <= receiver.1 + TOUCH * receiver.1.abs() {
+        if bottom <= receiver.most + TOUCH * receiver.most.abs() {
             break;
         }
         passed *= 1.0 - opacity.min(1.0);
@@ -128,7 +128,8 @@ fn clipped_to(polygon: &ConvexPolygon, square: &ConvexPolygon) -> ConvexPolygon 
     inside
 }
 
-fn range(face: &Face, polygon: &ConvexPolygon) -> (f64, f64) {
-    let start = (f64::INFINITY, f64::NEG_INFINITY);
-    polygon.vertices().iter().map(|&v| face.nearness_at(v)).fold(start, |(l, h), q| (l.min(q), h.max(q)))
+fn range(face: &Face, polygon: &ConvexPolygon) -> Interval {
+    let mut range = Interval::EMPTY;
+    polygon.vertices().iter().for_each(|&v| range.include(face.nearness_at(v)));
+    range
 }

@@ -14,8 +14,8 @@ use crate::{copies, exact, layers};
 use glam::{DVec2, DVec3};
 use pointillist_dice::{ConvexPolygon, clip_ring, share_before_crossing};
 use pointillist_micropoint::{
-    Bounds, Face, FaceVisitor, Geometry, GridRect, Lens, LensKind, Occlusion, ProjectedVertex, Setup,
-    Surface, TexturedOpacity,
+    Bounds, Face, FaceVisitor, Geometry, GridRect, Interval, Lens, LensKind, Occlusion, ProjectedVertex,
+    Setup, Surface, TexturedOpacity,
 };
 
 /// A light with its screens, ready to be asked from any thread.
@@ -128,7 +128,7 @@ impl<'a> ShadowLight<'a> {
     }
 
     fn lit_side(&self, face: &Face) -> Side {
-        let [a, b, c] = self.geometry.corners(face.source.0, face.source.1);
+        let [a, b, c] = self.geometry.corners(face.source);
         let normal = (b - a).cross(c - a);
         let towards = match self.emitter {
             Emitter::Point { position, .. } => position - a,
@@ -172,13 +172,13 @@ impl<'a> ShadowLight<'a> {
     /// The receiver's own triangle as the light sees it: casters are compared with its plane.
     fn face_on_screen(&self, face: &Face, screen: usize) -> Face {
         let lens = &self.screens.lenses[screen];
-        let corners = self.geometry.corners(face.source.0, face.source.1).map(|p| lens.local(p));
+        let corners = self.geometry.corners(face.source).map(|p| lens.local(p));
         let least = corners.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
         let nearness = if lens.kind == LensKind::Perspective && least <= 0.0 {
-            (0.0, f64::INFINITY)
+            Interval { least: 0.0, most: f64::INFINITY }
         } else {
             let q = corners.map(|p| lens.nearness(p.z));
-            (q[0].min(q[1]).min(q[2]), q[0].max(q[1]).max(q[2]))
+            Interval { least: q[0].min(q[1]).min(q[2]), most: q[0].max(q[1]).max(q[2]) }
         };
         Face { corners, nearness, plane: lens.plane(corners), ..*face }
     }

@@ -3,6 +3,7 @@
 use crate::cells::LightCells;
 use glam::DVec2;
 use pointillist_dice::convex;
+use pointillist_micropoint::Interval;
 
 /// A receiver on a light screen.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +16,7 @@ pub(crate) struct Target {
     vertex_count: u32,
     pub(crate) bounds: (DVec2, DVec2),
     /// Least and largest nearness of a corner.
-    pub(crate) nearness: (f64, f64),
+    pub(crate) nearness: Interval,
     pub(crate) area: f64,
     /// The receiver lies on more than one screen: its parts are weighed by their areas in the picture.
     pub(crate) shared: bool,
@@ -46,10 +47,10 @@ impl Targets {
         outline: impl Iterator<Item = (DVec2, f64)>,
     ) {
         let first = self.vertices.len();
-        let mut nearness = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut nearness = Interval::EMPTY;
         for (v, q) in outline {
             self.vertices.push(v);
-            nearness = (nearness.0.min(q), nearness.1.max(q));
+            nearness.include(q);
         }
         let outline = &mut self.vertices[first..];
         let area = convex::area(outline);
@@ -65,7 +66,7 @@ impl Targets {
         if let Some(cells) = &self.light_cells {
             // Whatever shares a cell with the target may merge into a layer with its casters.
             bounds = cells.around(bounds);
-            nearness = (f64::NEG_INFINITY, f64::INFINITY);
+            nearness = Interval::ALL;
         }
         self.list.push(Target {
             receiver,

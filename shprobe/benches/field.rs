@@ -1,5 +1,6 @@
-//! How long light between probes takes: moving objects and surfaces among 432 and 10 000 random probes of order 2, with and without
-//! walls. The error in each name: of a light that is linear in the position, at positions inside the hull, over its largest value.
+//! How long light between probes takes: moving objects and surfaces among 432 and 10 000 random probes of order 2, with
+//! and without walls. The error in each name: of a light that is linear in the position, at positions inside the hull,
+//! over its largest value.
 //!
 //! `cargo bench -p pointillist-shprobe --bench field`
 

@@ -5,7 +5,7 @@ use crate::sh::{CubePoint, cube_direction, texel_solid_angle};
 use crate::{ProbeError, parallel};
 use glam::{DVec3, dvec2};
 
-/// Mean distance to the nearest surface, and its variation, in the directions of an octahedral square.
+/// Mean distance to the nearest surface, and its mean square, in the directions of an octahedral square.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DistanceMap {
     size: usize,
@@ -16,10 +16,10 @@ pub struct DistanceMap {
 /// Texels on a side of a map that [`DistanceMap::from_cube`] makes by default: a texel is some 10° wide.
 pub const DEFAULT_DISTANCE_SIZE: usize = 16;
 
-/// Farther than this times the mean, a position counts as unseen however little is known about the surface.
+/// Lower bound of the standard deviation of a texel's distances, relative to their mean.
 const RELATIVE_SLACK: f64 = 0.01;
 
-/// Refuses maps without texels, and those too large to be meant.
+/// Refuses a size of 0, and one above [`DistanceMap::MAX_SIZE`].
 const fn check_size(size: usize) -> Result<(), ProbeError> {
     let limit = DistanceMap::MAX_SIZE;
     if size == 0 || size > limit { Err(ProbeError::MapSize { size, limit }) } else { Ok(()) }
@@ -29,13 +29,15 @@ impl DistanceMap {
     /// Most texels along an edge, of maps and of cube maps of distances.
     pub const MAX_SIZE: usize = 8192;
 
-    /// Largest distance: its square is a number in single precision.
+    /// Largest distance, world units: its square is finite in single precision.
     pub const FARTHEST: f32 = 1e19;
 
-    /// Of moments, mean and mean square of each texel of a `size` × `size` square, row by row.
+    /// A map of these moments: mean (world units) and mean square of each texel of a `size` × `size` square, row by
+    /// row.
     ///
     /// # Errors
-    /// [`ProbeError::MapSize`]; [`ProbeError::BadDistances`] if there are not `size²`, or one is negative or not finite.
+    /// [`ProbeError::MapSize`]; [`ProbeError::BadDistances`] if there are not `size²`, or one is negative or not
+    /// finite.
     pub fn new(size: usize, moments: Vec<[f32; 2]>) -> Result<Self, ProbeError> {
         check_size(size)?;
         if moments.len() != size * size {
@@ -48,12 +50,12 @@ impl DistanceMap {
         }
     }
 
-    /// Of a cube map of distances: six faces of `cube_size`² texels, row by row. What is farther than `far`, or infinite, counts as
-    /// `far`: world units, above 0, at most [`DistanceMap::FARTHEST`].
+    /// A map from a cube map of distances: six faces of `cube_size`² texels, row by row. Distances above `far`, also
+    /// infinite ones, count as `far`: world units, above 0, at most [`DistanceMap::FARTHEST`].
     ///
     /// # Errors
-    /// [`ProbeError::MapSize`] if either size is 0 or above [`DistanceMap::MAX_SIZE`]; [`ProbeError::BadOption`] for `far`;
-    /// [`ProbeError::BadDistances`] if there are not `6 · cube_size²`, or one is negative or NaN.
+    /// [`ProbeError::MapSize`] if either size is 0 or above [`DistanceMap::MAX_SIZE`]; [`ProbeError::BadOption`] for
+    /// `far`; [`ProbeError::BadDistances`] if there are not `6 · cube_size²`, or one is negative or NaN.
     pub fn from_cube(size: usize, cube_size: usize, distances: &[f32], far: f32) -> Result<Self, ProbeError> {
         check_size(size)?;
         check_size(cube_size)?;
@@ -104,11 +106,12 @@ impl DistanceMap {
         &self.moments
     }
 
-    /// How much of the neighbourhood of a position this far from the probe the probe sees, 0..=1; continuous in the position. NaN for an
-    /// offset that is not finite.
+    /// Share of the neighbourhood of a position that the probe sees, 0 to 1. `offset` leads from the probe to the
+    /// position, world units. Continuous in the position; NaN for an offset that is not finite.
     ///
-    /// Where the position is farther than the surface on average, Chebyshev's inequality bounds how much of the surface is farther
-    /// still (Donnelly & Lauritzen, *Variance shadow maps*, 2006, eq. 5), and its cube keeps light from leaking past edges.
+    /// Where the position is farther than the mean distance of the surface, Chebyshev's inequality bounds the share of
+    /// the surface that is farther still (Donnelly & Lauritzen, *Variance shadow maps*, 2006, eq. 5). The bound is
+    /// cubed to reduce light leaks at edges.
     #[must_use]
     pub fn visibility(&self, offset: DVec3) -> f64 {
         let distance = offset.length();

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use std::ops::Range;
 
 impl Field {
-    /// Gives a probe other light, in constant time.
+    /// Replaces the light that a probe holds, in constant time.
     ///
     /// # Errors
     /// [`ProbeError::NoSuchProbe`], [`ProbeError::MixedOrders`] if it has another order than those of the field, or [`ProbeError::BadRadiance`].
@@ -20,7 +20,7 @@ impl Field {
         Ok(())
     }
 
-    /// Tells a probe that it sees other distances, in constant time.
+    /// Replaces a probe's map of distances, in constant time.
     ///
     /// # Errors
     /// [`ProbeError::NoSuchProbe`], or [`ProbeError::NoDistances`] if the field was made without distances.
@@ -31,8 +31,8 @@ impl Field {
         Ok(())
     }
 
-    /// Adds probes behind those there are and divides space anew, in the time of [`Field::new`]: several at once cost no more than one.
-    /// Their indices come back. `distances` holds a map for each if the field has distances, and nothing otherwise.
+    /// Adds probes after those of the field and divides space anew, in the time of [`Field::new`]; adding many in one call costs that
+    /// once. Returns the indices of the new probes. `distances` holds a map for each if the field has distances, and nothing otherwise.
     ///
     /// # Errors
     /// As [`Field::new`] and [`Field::with_distances`]; the field is then as it was.
@@ -48,11 +48,7 @@ impl Field {
         for (i, sh) in radiance.iter().enumerate() {
             check_radiance(before + i, sh, self.order)?;
         }
-        self.positions.extend_from_slice(positions);
-        if let Err(error) = self.divide() {
-            self.positions.truncate(before);
-            return Err(error);
-        }
+        self.divide([&self.positions, positions].concat())?;
         self.irradiance.extend(radiance.iter().flat_map(irradiance_of));
         self.lights.extend(radiance.iter().map(Irradiance::new));
         if let Some(maps) = &mut self.distances {
@@ -61,8 +57,8 @@ impl Field {
         Ok(before as u32..self.probe_count() as u32)
     }
 
-    /// Removes probes and divides space anew, in the time of [`Field::new`]. Those that are left keep their order; the index before of each
-    /// comes back. Hints from before are still valid, if slow for a moment.
+    /// Removes probes and divides space anew, in the time of [`Field::new`]. The remaining probes keep their order; returns the former
+    /// index of each. A [`Hint`](crate::delaunay::Hint) from before the call stays valid: only the next lookup with it takes longer.
     ///
     /// # Errors
     /// [`ProbeError::NoSuchProbe`], or [`ProbeError::NoProbes`] if none would be left; the field is then as it was.
@@ -77,7 +73,7 @@ impl Field {
         }
         let count = coefficient_count(self.order);
         let of = |i: &u32| *i as usize;
-        self.positions = left.iter().map(|i| self.positions[of(i)]).collect();
+        self.divide(left.iter().map(|i| self.positions[of(i)]).collect())?;
         self.irradiance =
             left.iter().flat_map(|i| &self.irradiance[of(i) * count..][..count]).copied().collect();
         self.lights = left.iter().map(|i| self.lights[of(i)]).collect();
@@ -85,7 +81,6 @@ impl Field {
             let mut kept = gone.iter().map(|gone| !gone);
             maps.retain(|_| kept.next().unwrap_or(false));
         }
-        self.divide()?;
         Ok(left)
     }
 

@@ -1,4 +1,4 @@
-//! What can be wrong with probes and what they hold.
+//! Errors of probes, their harmonics and their distances.
 
 use crate::delaunay::DelaunayError;
 use crate::sh::ShError;
@@ -7,30 +7,30 @@ use crate::sh::ShError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProbeError {
-    /// There is no point at all.
+    /// There are no probes.
     #[error("there are no probes; at least one is needed")]
     NoProbes,
     /// A position has a coordinate that is NaN or infinite.
     #[error("position {index} is not finite")]
     PositionNotFinite {
-        /// Which, from 0.
+        /// Its index, from 0.
         index: usize,
     },
-    /// More points than 32-bit indices can tell apart.
+    /// There are more probes than 32-bit indices of cells allow for.
     #[error("{count} probes are too many: at most {limit} fit")]
     TooManyProbes {
-        /// How many there are.
+        /// Number that was given.
         count: usize,
-        /// How many there may be.
+        /// Largest number.
         limit: usize,
     },
-    /// A position asked for has a coordinate that is NaN or infinite.
+    /// A query position, or a normal, has a coordinate that is NaN or infinite.
     #[error("query {index} is not finite")]
     QueryNotFinite {
-        /// Which, from 0.
+        /// Its index, from 0.
         index: usize,
     },
-    /// There is no probe of this index, or no longer.
+    /// There is no probe of this index, or it was removed.
     #[error("there is no probe {index}")]
     NoSuchProbe {
         /// The index.
@@ -57,10 +57,10 @@ pub enum ProbeError {
     /// A coordinate of a probe is beyond [`Field::FARTHEST`](crate::Field::FARTHEST).
     #[error("position {index} is too far from the origin: coordinates can be up to 1e150")]
     PositionTooFar {
-        /// Which, from 0.
+        /// Its index, from 0.
         index: usize,
     },
-    /// A coefficient of what a probe holds is not finite, or beyond [`Field::BRIGHTEST`](crate::Field::BRIGHTEST).
+    /// A coefficient of a probe is not finite, or beyond [`Field::BRIGHTEST`](crate::Field::BRIGHTEST).
     #[error("probe {index} holds a coefficient that is not from −1e30 to 1e30")]
     BadRadiance {
         /// Which probe, from 0.
@@ -91,28 +91,28 @@ pub enum ProbeError {
     MapSize {
         /// Texels along an edge.
         size: usize,
-        /// How many there can be.
+        /// Largest number.
         limit: usize,
     },
     /// A distance is negative or not finite, or there are not as many as the map has texels.
     #[error("distance {index} of a map is missing, negative or not finite, or one too many")]
     BadDistances {
-        /// Which, from 0.
+        /// Its index, from 0.
         index: usize,
     },
-    /// A probe is told what it sees in a field that has no distances.
+    /// Distances were set for a probe of a field that has no distances.
     #[error("the field has no distances: it was made without `with_distances`")]
     NoDistances,
-    /// What a probe holds, or an image of it, is wrong.
+    /// The harmonics of a probe, or an image that they are projected from, are invalid.
     #[error(transparent)]
     Harmonics(#[from] ShError),
-    /// Space cannot be divided between the probes.
+    /// Cells between the probes are invalid, or there are too many.
     #[error("cells between probes: {0}")]
     Cells(DelaunayError),
 }
 
 impl From<DelaunayError> for ProbeError {
-    /// Points are probes here: what is wrong with them is said of the probes.
+    /// Errors of points become errors of probes; all others are [`ProbeError::Cells`].
     fn from(error: DelaunayError) -> Self {
         match error {
             DelaunayError::NoPoints => Self::NoProbes,

@@ -8,8 +8,8 @@ use glam::{DVec3, Vec3};
 
 /// Probes with what they hold, ready to light positions between them.
 ///
-/// Space is divided into Delaunay tetrahedra; a position takes from the four probes around it by barycentric weights, and, where
-/// the probes' distances are known, from those among them that see it.
+/// Space is divided into Delaunay tetrahedra; a position takes from the four probes around it by barycentric weights,
+/// and, where the probes' distances are known, from those among them that see it.
 #[derive(Clone, Debug)]
 pub struct Field {
     pub(crate) positions: Vec<DVec3>,
@@ -21,11 +21,11 @@ pub struct Field {
     /// The same up to band 2, for objects.
     pub(crate) lights: Vec<Irradiance>,
     pub(crate) distances: Option<Vec<DistanceMap>>,
-    /// Where probes are that help out, once it is known what they see.
+    /// Positions of probes by box, once their distances are known.
     near: Near,
     /// Mean distance between neighbouring probes.
     spacing: f64,
-    /// What the caller set in the place of [`BIAS`].
+    /// The bias that the caller set; [`BIAS`] times the spacing without.
     bias: Option<f64>,
 }
 
@@ -49,7 +49,7 @@ impl LitObject {
     }
 }
 
-/// How far away probes may be that help out where those of a cell see nothing, over the mean spacing of probes.
+/// Largest distance of probes that light a position where those of its cell see nothing, in mean spacings of probes.
 const HELP: f64 = 2.0;
 
 /// Default distance, over the mean spacing of probes, by which positions on a surface are lifted off it.
@@ -66,16 +66,18 @@ impl Field {
     ///
     /// # Errors
     /// [`ProbeError::NoProbes`], [`ProbeError::CountMismatch`] if there is not one function for each position,
-    /// [`ProbeError::PositionNotFinite`], [`ProbeError::PositionTooFar`], [`ProbeError::MixedOrders`], [`ProbeError::BadRadiance`].
+    /// [`ProbeError::PositionNotFinite`], [`ProbeError::PositionTooFar`], [`ProbeError::MixedOrders`],
+    /// [`ProbeError::BadRadiance`].
     pub fn new(positions: &[DVec3], radiance: &[Sh]) -> Result<Self, ProbeError> {
         expect_count(positions.len(), radiance.len())?;
         Self::from_parts(positions, Delaunay::new(positions)?.partition(), radiance)
     }
 
-    /// The same with cells that are known already, from [`Field::partition`] of an equal field: nothing is divided anew.
+    /// The same with cells that are known already, from [`Field::partition`] of an equal field: nothing is divided
+    /// anew.
     ///
-    /// Cells must be between these positions and know their neighbours, and that is checked. Whether they fill the hull once and are
-    /// Delaunay's is not: [`Partition::verify`] says that of cells from elsewhere.
+    /// Cells must be between these positions and know their neighbours, and that is checked. Whether they fill the hull
+    /// once and are Delaunay's is not: [`Partition::verify`] checks that for cells from elsewhere.
     ///
     /// # Errors
     /// As [`Field::new`], and [`ProbeError::Cells`] for the first cell that is wrong.
@@ -102,11 +104,13 @@ impl Field {
         })
     }
 
-    /// Divides space anew, after positions have changed.
-    pub(crate) fn divide(&mut self) -> Result<(), ProbeError> {
-        check_positions(&self.positions)?;
-        self.partition = Delaunay::new(&self.positions)?.partition();
-        self.locator = Locator::new(&self.positions, &self.partition)?;
+    /// Divides space between other positions; if they are refused, the field is as it was.
+    pub(crate) fn divide(&mut self, positions: Vec<DVec3>) -> Result<(), ProbeError> {
+        check_positions(&positions)?;
+        let partition = Delaunay::new(&positions)?.partition();
+        self.locator = Locator::new(&positions, &partition)?;
+        self.partition = partition;
+        self.positions = positions;
         self.spacing = spacing(&self.positions, &self.partition);
         if self.distances.is_some() {
             self.near = Near::new(&self.positions, HELP * self.spacing);
@@ -125,8 +129,8 @@ impl Field {
         Ok(self)
     }
 
-    /// Sets how far positions on a surface are lifted off it along its normal before they are looked up. Default: 2 % of the mean
-    /// distance between neighbouring probes. World units, from −[`Field::FARTHEST`] to [`Field::FARTHEST`].
+    /// Sets how far positions on a surface are lifted off it along its normal before they are looked up. Default: 2 %
+    /// of the mean distance between neighbouring probes. World units, from −[`Field::FARTHEST`] to [`Field::FARTHEST`].
     ///
     /// # Errors
     /// [`ProbeError::BadOption`].
@@ -154,7 +158,7 @@ impl Field {
         &self.partition
     }
 
-    /// Finds cells, without regard to what is seen.
+    /// Finds the cell of a position. It does not take visibility into account.
     #[must_use]
     pub const fn locator(&self) -> &Locator {
         &self.locator
@@ -172,7 +176,7 @@ impl Field {
         self.lights.len()
     }
 
-    /// From which probes a position takes how much; continuous in the position.
+    /// The probes that light a position with their shares, which are above 0 and sum to 1; continuous in the position.
     ///
     /// # Errors
     /// [`ProbeError::QueryNotFinite`].
@@ -188,8 +192,8 @@ impl Field {
         Ok(by_sight(&cell, position, at, &self.near, visibility))
     }
 
-    /// Irradiance on a surface in space: `face_normal` points away from it, on the side that is lit, and `normal` is what it is
-    /// shaded with, both of length 1. Linear RGB, at least 0.
+    /// Irradiance on a surface in space: `face_normal` points away from it, on the side that is lit, and `normal` is
+    /// what it is shaded with, both of length 1. Linear RGB, at least 0.
     ///
     /// # Errors
     /// [`ProbeError::QueryNotFinite`] if the position or a normal is not finite.
@@ -270,7 +274,8 @@ pub(crate) fn expect_count(probes: usize, given: usize) -> Result<(), ProbeError
     if probes == given { Ok(()) } else { Err(ProbeError::CountMismatch { probes, given }) }
 }
 
-/// Refuses positions whose distances have no squares. What is not finite is left to the triangulation.
+/// Refuses positions whose squared distances would overflow. Coordinates that are not finite are refused by the
+/// triangulation.
 fn check_positions(positions: &[DVec3]) -> Result<(), ProbeError> {
     let is_far = |p: &DVec3| p.is_finite() && p.abs().max_element() > Field::FARTHEST;
     match positions.iter().position(is_far) {
@@ -301,7 +306,7 @@ pub(crate) fn check_radiance(index: usize, sh: &Sh, expected: usize) -> Result<(
     if sh.coefficients().iter().all(is_good) { Ok(()) } else { Err(ProbeError::BadRadiance { index }) }
 }
 
-/// How far away a probe may be and still help.
+/// The distance, world units, up to which a probe outside of the cell can light a position.
 pub(crate) fn help(positions: &[DVec3], partition: &Partition) -> f64 {
     HELP * spacing(positions, partition)
 }

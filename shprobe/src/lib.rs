@@ -1,4 +1,5 @@
-//! Light between probes: from what light arrives at some points in space, as spherical harmonics, that at any other.
+//! Light between probes: the light that arrives at some points in space, as spherical harmonics, is interpolated at any
+//! other.
 //!
 //! ```
 //! use glam::{DVec3, Vec3, dvec3};
@@ -19,32 +20,36 @@
 //! ```
 //!
 //! * [`Field`]: light at a position, on a surface, and on many moving objects at once.
-//! * [`DistanceMap`]: what a probe sees, so that light does not pass through walls.
+//! * [`DistanceMap`]: distances to what a probe sees, so that light does not pass through walls.
 //! * [`place`]: where to put probes; [`place::adaptive`] chooses them by the error of interpolation.
 //!
-//! What probes hold are functions of the crate [`sh`]; the space between them is divided by the crate [`delaunay`], into tetrahedra, or triangles,
-//! segments or a point where probes span less. Beyond their hull the light is that at the hull's nearest point.
+//! What probes hold are functions of the crate [`sh`]; the space between them is divided by the crate [`delaunay`],
+//! into tetrahedra, or triangles, segments or a point where probes span less. Beyond their hull the light is that at
+//! the hull's nearest point.
 //!
 //! Capturing what a probe sees is left to the caller: any renderer can make the six pictures of a cube map.
 //!
 //! # Accuracy and cost
-//! Cells are exact for any positions. Weights sum to 1, reproduce linear functions up to rounding, and are continuous, also across the
-//! hull. Ten thousand moving objects take 0.6 ms on two threads, 1.7 ms with distances.
+//! Cells are exact for any positions. Weights sum to 1, reproduce linear functions up to rounding, and are continuous,
+//! also across the hull. Ten thousand moving objects take 0.6 ms on two threads, 1.7 ms with distances.
 //!
 //! # Features
-//! `rayon` (default) uses all cores; it never changes a result. Facts for property tests and fuzzing are in [`sh`] and [`delaunay`], with
-//! the feature `invariants` of those crates.
+//! `rayon` (default) uses all cores; it never changes a result. `invariants`: the module of that name, facts for
+//! property tests and fuzzing, also of crates that build on this one; those about cells and harmonics are in
+//! [`delaunay`] and [`sh`], with their feature of that name.
 //!
-//! Builds for `wasm32-unknown-unknown` without default features. Cells and [`place::grid`], [`place::random`] and [`place::spread`] are the
-//! same to the bit there; last bits of light, and with them ties of [`place::adaptive`], may differ, because `sh` uses sines and powers of
-//! another library. Times are with thin LTO and `codegen-units = 1` in the profile of the dependent program.
+//! Builds for `wasm32-unknown-unknown` without default features. Cells and [`place::grid`], [`place::random`] and
+//! [`place::spread`] are the same to the bit there; last bits of light, and with them ties of [`place::adaptive`], may
+//! differ, because `sh` uses sines and powers of another library. Times are with thin LTO and `codegen-units = 1` in
+//! the profile of the dependent program.
 //!
 //! # References
-//! 1. The seed of this crate: capture-based lighting (in Japanese): probes, nine coefficients, Delaunay tetrahedra, barycentric blending.
+//! 1. The seed of this crate: capture-based lighting (in Japanese): probes, nine coefficients, Delaunay tetrahedra,
+//!    barycentric blending.
 //! 2. R. Ramamoorthi, P. Hanrahan: *An efficient representation for irradiance environment maps*, SIGGRAPH 2001.
 //! 3. R. Cupisz: *Light probe interpolation using tetrahedral tessellations*, GDC 2012.
-//! 4. Z. Majercik, J.-P. Guertin, D. Nowrouzezahrai, M. McGuire: *Dynamic diffuse global illumination with ray-traced irradiance
-//!    fields*, JCGT 2019: octahedral maps of distance, and visibility from them.
+//! 4. Z. Majercik, J.-P. Guertin, D. Nowrouzezahrai, M. McGuire: *Dynamic diffuse global illumination with ray-traced
+//!    irradiance fields*, JCGT 2019: octahedral maps of distance, and visibility from them.
 //! 5. W. Donnelly, A. Lauritzen: *Variance shadow maps*, I3D 2006.
 //! 6. L. Kavan, A. W. Bargteil, P.-P. Sloan: *Least squares vertex baking*, EGSR 2011.
 #![forbid(unsafe_code)]
@@ -53,6 +58,8 @@ mod distance;
 mod edit;
 mod error;
 mod field;
+#[cfg(feature = "invariants")]
+pub mod invariants;
 mod octahedron;
 pub mod place;
 mod sight;

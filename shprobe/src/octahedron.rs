@@ -1,7 +1,8 @@
 //! Directions on a square: the octahedral map.
 //!
-//! The sphere is projected to an octahedron, whose lower half is folded outward around the upper one (Cigolle et al., *A survey of
-//! efficient representations for independent unit vectors*, JCGT 2014). Texels differ in solid angle by less than a factor of 5.
+//! The sphere is projected to an octahedron, whose lower half is folded outward around the upper one (Cigolle et al.,
+//! *A survey of efficient representations for independent unit vectors*, JCGT 2014). Texels differ in solid angle by
+//! less than a factor of 5.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
@@ -25,7 +26,8 @@ fn fold(p: DVec2) -> DVec2 {
     dvec2((1.0 - p.y.abs()).copysign(p.x), (1.0 - p.x.abs()).copysign(p.y))
 }
 
-/// The texel that continues the square at a column or row one outside of it: across a side one comes back mirrored about its middle.
+/// The texel that continues the square at a column or row one outside of it: across a side one comes back mirrored
+/// about its middle.
 pub(crate) fn wrapped(x: i32, y: i32, size: i32) -> (i32, i32) {
     let (mut x, mut y) = (x, y);
     if x < 0 || x >= size {

@@ -11,8 +11,8 @@ pub(crate) struct Shares {
     count: usize,
 }
 
-/// Most probes that share in a position: those of a cell and what is near. More are not needed to be continuous, since those at the
-/// rim of what counts as near have next to no weight.
+/// Most probes that light a position: those of its cell and those nearby. Shares stay continuous with this limit in
+/// practice, since probes at the rim of the neighbourhood have almost no weight.
 const MOST: usize = 64;
 
 impl Shares {
@@ -40,11 +40,12 @@ impl Shares {
     }
 }
 
-/// Share of the weight of a probe that does not see the position. More than none, so that a position that no probe sees gets
-/// light as if all did.
+/// Factor on the weight of a probe that does not see the position. It is above 0, so that a position that no probe sees
+/// is lit as if all did.
 const UNSEEN: f64 = 1e-4;
 
-/// If the probes of the cell that see the position have less weight than this, others nearby that see it help out.
+/// If the probes of the cell that see the position have less weight than this together, nearby probes that see it get
+/// shares, too.
 const ENOUGH: f64 = 0.25;
 
 /// Probes by where they are.
@@ -55,7 +56,7 @@ pub(crate) struct Near {
 }
 
 impl Near {
-    /// `reach` is how far away a probe may be and still help.
+    /// `reach` is the distance, world units, up to which a probe outside of the cell can light a position.
     pub(crate) fn new(positions: &[DVec3], reach: f64) -> Self {
         let mut near = Self { boxes: HashMap::new(), reach };
         if reach > 0.0 {
@@ -67,7 +68,7 @@ impl Near {
     }
 
     fn number(&self, p: DVec3) -> IVec3 {
-        // Beyond the range of numbers all is one box, and too far to help.
+        // Clamped to the range of `i32`: positions beyond are too far from all probes to take shares.
         (p / self.reach).floor().clamp(DVec3::splat(-1e9), DVec3::splat(1e9)).as_ivec3()
     }
 
@@ -78,8 +79,8 @@ impl Near {
     }
 }
 
-/// The shares of a position in `cell`, by what is seen: weights times visibility, and where little of the cell's weight is left,
-/// other probes nearby that see it, the nearer the more. Continuous if visibility is.
+/// The shares of a position in `cell`, by what is seen: weights times visibility, and where little of the cell's weight
+/// is left, other probes nearby that see it, the nearer the more. Continuous if visibility is.
 pub(crate) fn by_sight(
     cell: &Blend,
     p: DVec3,
@@ -105,7 +106,7 @@ pub(crate) fn by_sight(
                 shares.push(probe, weight);
             }
         }
-        // Nothing nearby may see it either: then their share fades, not jumps, away.
+        // `UNSEEN` keeps the shares continuous where no nearby probe sees the position either.
         let scale = (ENOUGH - seen) / (sum + UNSEEN);
         shares.list[first..shares.count].iter_mut().for_each(|(_, weight)| *weight *= scale);
     }

@@ -1,7 +1,7 @@
-//! How long for how much error: clouds of a sphere made ready (octree alone; with radii; with normals too), and frames of 97,000
-//! and 362,000 points at 400×400, sharp and blurred, by each procedure. The error in each name is the root mean square over
-//! color and opacity: of sharp frames against the sphere itself inside its outline, of blurred ones against 97 views from
-//! the opening of the lens.
+//! How long for how much error: clouds of a sphere made ready (octree alone; with radii; with normals too), and frames
+//! of 97,000 and 362,000 points at 400×400, sharp and blurred, by each procedure. The error in each name is the root
+//! mean square over color and opacity: of sharp frames against the sphere itself inside its outline, of blurred ones
+//! against 97 views from the opening of the lens.
 //!
 //! `cargo bench -p pointillist-surfel --bench drawing`
 
@@ -65,8 +65,8 @@ fn error_of_sharp(frame: &Frame) -> f64 {
     }))
 }
 
-/// The mean of sharp pictures from all over the lens, of which each has its own frustum onto the plane of the focus: shifted
-/// by whole and part pixels, so that this plane stays where it is.
+/// The mean of sharp pictures from all over the lens, of which each has its own frustum onto the plane of the focus:
+/// shifted by whole and part pixels, so that this plane stays where it is.
 fn through_the_lens(cloud: &Cloud, blur_px: f64) -> Vec<[f64; 4]> {
     let (aperture, focus) = lens(blur_px);
     let focal_px = 0.5 * f64::from(SIZE) / (0.5 * FOV).tan();

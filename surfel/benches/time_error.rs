@@ -1,5 +1,5 @@
-//! How long for how even: a sphere by both methods. The error in each name is the standard deviation of the distance to the
-//! nearest neighbour, relative to its mean.
+//! Run time against evenness: a sphere sampled by both methods. The error in each name is the standard deviation of the
+//! distance to the nearest neighbour, relative to its mean.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{DVec3, dvec3};

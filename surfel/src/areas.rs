@@ -1,10 +1,10 @@
-//! How much of the surface each point of a cloud stands for.
+//! The area of the surface that each point of a cloud represents.
 //!
-//! A picture is a sum of kernels, one about each point, of the point's area in volume. It shows a surface of one color as
-//! one color only if the kernels add up to 1 everywhere. The areas for which they do best, in the sense of least squares
-//! over the surface, have `Σⱼ aⱼ ∫ Kᵢ Kⱼ = ∫ Kᵢ = 1` for every point `i`: the sum is 1 in the mean over each kernel. (To make
-//! it 1 at the points alone looks simpler, but there each kernel has its peak: for points on rays, all areas are then 5 %
-//! too large, and the sum at other places ripples by 0.090 where it does by 0.071 here.)
+//! A picture is a sum of kernels, one about each point, whose integral is the area of the point. It shows a surface of
+//! one color as one color only if the kernels add up to 1 everywhere. The areas for which they do best, in the sense of
+//! least squares over the surface, have `Σⱼ aⱼ ∫ Kᵢ Kⱼ = ∫ Kᵢ = 1` for every point `i`: the sum is 1 in the mean over
+//! each kernel. (To make it 1 at the points alone looks simpler, but there each kernel has its peak: for points on
+//! rays, all areas are then 5 % too large, and the sum at other places ripples by 0.090 where it does by 0.071 here.)
 
 use crate::neighbours::{Places, Sides};
 use glam::Vec3;
@@ -15,8 +15,9 @@ use std::f64::consts::PI;
 /// `4πσ²/3`.
 pub(crate) const SIGMA_PER_RADIUS: f64 = 0.75;
 
-/// How often the areas are improved. Mean and deviation of the kernel sum at 4000 random places of a sphere of 4000 points
-/// (two scans: 5474), for the first guess and after 1, 3 and 6 sweeps; at the points, and the sum of all areas, after 3:
+/// How often the areas are improved. Mean and deviation of the kernel sum at 4000 random places of a sphere of 4000
+/// points (two scans: 5474), for the first guess and after 1, 3 and 6 sweeps; at the points, and the sum of all areas,
+/// after 3:
 ///
 /// |              | 0             | 1             | 3             | 6             | at the points | area  |
 /// |--------------|---------------|---------------|---------------|---------------|---------------|-------|
@@ -29,29 +30,30 @@ pub(crate) const SIGMA_PER_RADIUS: f64 = 0.75;
 /// kernels do.
 const SWEEPS: usize = 3;
 
-/// Most that an area exceeds the mean of the first guesses in its kernel by: points on a border would grow to fill what
-/// lies beyond.
+/// Largest ratio of an area to the mean of the first guesses in its kernel: without it, areas of points on a border
+/// would grow to fill what lies beyond.
 const MOST_GROWTH: f64 = 2.0;
 
-/// Most places that a kernel meets. Where there are more, a narrower kernel tells their areas as well; the time stays
-/// linear for discs that are far too large.
+/// Most places that a kernel meets. Where there are more, a narrower kernel gives their areas as well, and the time
+/// stays linear for discs that are far too large.
 const MOST_NEAR: usize = 64;
 
-/// Square of the reach of `∫ Kᵢ Kⱼ`, in parts of twice the root mean square of the kernels' radii: beyond it lies less than
-/// 0.2 % of the whole, `(1 − 0.6)⁷`.
+/// Square of the reach of `∫ Kᵢ Kⱼ`, in parts of twice the root mean square of the kernels' radii: beyond it lies less
+/// than 0.2 % of the whole, `(1 − 0.6)⁷`.
 const CORRELATION_REACH2: f64 = 0.6;
 
-/// Radii in places' units are kept where their squares are normal numbers.
+/// Radii, in units of the places, are limited to numbers whose squares are normal.
 const RADII: (f64, f64) = (1e-150, 1e150);
 
-/// The area of each point of a cloud, in the caller's order and the square of the cloud's unit, from normals and radii of
-/// its points.
+/// The area of each point of a cloud, in the caller's order and the square of the cloud's unit, from normals and radii
+/// of its points.
 ///
-/// Only points that face to the same side (less than 90° apart) share the surface; `two_sided`: the sign of a normal has
-/// no meaning. Points that coincide and face the same way have equal parts of one area; it is that for the largest of their radii. A
-/// point with no other in its kernel has the area of its disc, and none has more. On a border, areas are larger than inside
-/// by what kernels lose beyond: a fifth on a lattice. All areas are normal numbers of `f32`, more than 0: those below 1e-38, in clouds smaller than
-/// about 1e-17, are rounded up to that. Does not depend on the order of points.
+/// Only points that face to the same side (less than 90° apart) share the surface; `two_sided`: the sign of a normal
+/// has no meaning. Points that coincide and face the same way have equal parts of one area; it is that for the largest
+/// of their radii. A point with no other in its kernel has the area of its disc, and none has more. On a border, areas
+/// are larger than inside by what kernels lose beyond: a fifth on a lattice. All areas are normal numbers of `f32`,
+/// more than 0: those below 1e-38, in clouds smaller than about 1e-17, are rounded up to that. Does not depend on the
+/// order of points.
 pub(crate) fn of_cloud(places: &Places, normals: &[Vec3], radii: &[f32], two_sided: bool) -> Vec<f32> {
     let sides = Sides::new(places, normals, two_sided);
     let mut kernels = vec![RADII.0; sides.len()];
@@ -63,7 +65,7 @@ pub(crate) fn of_cloud(places: &Places, normals: &[Vec3], radii: &[f32], two_sid
         counts[side as usize] += 1.0;
     }
     let around = parallel::map(sides.len(), |side| around(places, &sides, side, kernels[side]));
-    // Discs that leave no gap hold the cells of their points, and a disc alone shows no more than itself.
+    // Upper bounds: discs that leave no gap contain the cells of their points, and a lone disc covers its own area.
     let disc = |around: &Around| PI * (around.kernel / (2.0 * SIGMA_PER_RADIUS)).powi(2);
     let discs: Vec<f64> = around.iter().map(disc).collect();
     let areas = solve(&discs, &overlaps(places, &sides, &around));
@@ -100,8 +102,8 @@ struct Overlap {
     integral: f64,
 }
 
-/// The integrals of all pairs that have a place in common, each pair once: with the wider kernel, or the first of equally
-/// wide ones. Distances are taken in the tangent plane of that one.
+/// The integrals of all pairs that have a place in common, each pair once: with the wider kernel, or the first of
+/// equally wide ones. Distances are taken in the tangent plane of that one.
 fn overlaps(places: &Places, sides: &Sides, around: &[Around]) -> Vec<Overlap> {
     parallel::flat_map(around.len(), |side, list| {
         let wide = around[side].kernel;
@@ -121,8 +123,9 @@ fn overlaps(places: &Places, sides: &Sides, around: &[Around]) -> Vec<Overlap> {
     })
 }
 
-/// `∫ K K'` of two kernels of this mean square radius `R²` at this squared distance, as `(1 − d²/4R²)⁶` over its integral
-/// `4πR²/7`: that has the same integral over all distances and the same deviation as the true one, and 0.97 of its peak.
+/// `∫ K K'` of two kernels of this mean square radius `R²` at this squared distance, as `(1 − d²/4R²)⁶` over its
+/// integral `4πR²/7`: that has the same integral over all distances and the same deviation as the true one, and 0.97 of
+/// its peak.
 fn correlation(distance2: f64, radius2: f64) -> f64 {
     let share = distance2 / (4.0 * radius2);
     if share < CORRELATION_REACH2 { (1.0 - share).powi(6) / (4.0 * PI / 7.0 * radius2) } else { 0.0 }

@@ -33,7 +33,7 @@ impl Attributes {
         Vec3::from_array([0, 1, 2].map(|axis| self.normals[axis][point]))
     }
 
-    /// Puts the point that was at `places[i]` at place i.
+    /// Reorders the values: the one that was at `places[i]` goes to place i.
     pub(crate) fn reorder(&mut self, places: &[u32]) {
         fn reordered<T: Copy>(list: &mut Vec<T>, places: &[u32]) {
             *list = places.iter().map(|&old| list[old as usize]).collect();
@@ -46,7 +46,8 @@ impl Attributes {
     }
 }
 
-/// Estimates missing attributes and sorts points by Morton code, then by attributes, so that the order of input does not matter.
+/// Estimates missing attributes and sorts points by Morton code, then by attributes, so that the order of input does
+/// not matter.
 pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, Vec<u64>) {
     let count = points.positions.len();
     let cells = parallel::map(count, |i| lattice.cell(points.positions[i]));
@@ -54,7 +55,7 @@ pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, V
     parallel::sort_by(&mut keys, |a, b| {
         a.0.cmp(&b.0).then_with(|| compare(points, &cells, a.1 as usize, b.1 as usize))
     });
-    // In units about the cube's corner: estimates see the same numbers wherever the cloud lies.
+    // In units about the cube's corner, so that estimates do not depend on where the cloud lies.
     let at = |i: u32| (points.positions[i as usize] - lattice.low) / lattice.side;
     let positions: Vec<DVec3> = keys.iter().map(|&(_, i)| at(i)).collect();
     let places = Places::new(&positions);

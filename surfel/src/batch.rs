@@ -1,4 +1,4 @@
-//! The items of a node that are projected together, value by value.
+//! Items of a node that are projected together, as one list per value.
 
 use crate::splat::Splat;
 use crate::vector::Vector;
@@ -9,7 +9,7 @@ pub(crate) const BATCH: usize = 64;
 
 pub(crate) type Values = [f32; BATCH];
 
-/// What [`Projected`] holds of each item.
+/// The values that [`Projected`] holds of each item.
 #[derive(Clone, Copy)]
 pub(crate) enum Value {
     X,
@@ -88,7 +88,8 @@ impl Projected {
     }
 }
 
-/// Added to a number of pixels, it leaves no bits for fractions: the sum is that of the nearest whole number, which is in its last bits.
+/// Adding this rounds a number of pixels to the nearest whole number, which is then in the last bits of the sum: no
+/// bits are left for fractions.
 pub(crate) const WHOLE: f32 = 8_388_608.0;
 
 /// The whole number to which [`WHOLE`] was added.

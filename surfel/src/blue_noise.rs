@@ -9,16 +9,17 @@ use pointillist_parallel as parallel;
 const OVERSAMPLING: usize = 5;
 
 /// No point of a smooth surface is farther than this many [`lattice_spacing`]s from the nearest sample. Found by
-/// experiment: corners of cubes are the worst, where points of other faces take the place (`discs_of_blue_noise_leave_no_gap` in `tests/properties.rs`).
+/// experiment: corners of cubes are the worst, where points of other faces take the place
+/// (`discs_of_blue_noise_leave_no_gap` in `tests/properties.rs`).
 pub(crate) const COVER: f64 = 3.0;
 
-/// Radius on a border, in the same unit: so far reaches the surface there at most.
+/// Radius on a border, in the same unit: the surface reaches at most this far there.
 pub(crate) const ON_BORDER: f64 = 2.0;
 
 /// Area that a point has to itself in a hexagonal lattice of unit spacing: √3/2.
 const HEXAGON: f64 = 0.866_025_403_784_438_6;
 
-/// Spacing of the hexagonal lattice of so many points on this area: `2·r_max` of \[2\], eq. 2.
+/// Spacing of the hexagonal lattice with this number of points on this area: `2·r_max` of \[2\], eq. 2.
 pub(crate) fn lattice_spacing(area: f64, count: usize) -> f64 {
     (area / (HEXAGON * count as f64)).sqrt()
 }
@@ -28,19 +29,20 @@ pub(crate) fn count_for(area: f64, spacing: f64) -> f64 {
     (area / spacing / spacing / HEXAGON).round().max(1.0)
 }
 
-/// Exactly `count` samples in the order of their triangles. `done` is told shares of the work.
+/// Exactly `count` samples in the order of their triangles. `done` is called with the share of the work that is done, 0
+/// to 1.
 pub(crate) fn points(mesh: &Mesh<'_>, count: usize, seed: u64, done: &dyn Fn(f64)) -> Vec<SurfacePoint> {
     let candidates = parallel::map(count * OVERSAMPLING, |i| candidate(mesh, i, count * OVERSAMPLING, seed));
     let kept = eliminate::kept(&candidates, count, lattice_spacing(mesh.area(), count), done);
     kept.into_iter().map(|i| candidates[i as usize]).collect()
 }
 
-/// Random point `i` of `count`. Each comes from its own slice of the area, which spreads them more evenly than chance; it depends
-/// on nothing but its number and the seed.
+/// Random point `i` of `count`. Each comes from its own slice of the area, which spreads them more evenly than chance;
+/// it depends on nothing but its number and the seed.
 fn candidate(mesh: &Mesh<'_>, i: usize, count: usize, seed: u64) -> SurfacePoint {
     let [slice, u, v] = [0, 1, 2].map(|dimension| unit(seed, 3 * i as u64 + dimension));
     let triangle = mesh.triangle_at((i as f64 + slice) / count as f64 * mesh.area());
-    // The square root makes a unit square of a triangle with all areas kept.
+    // The square root maps the unit square to the triangle uniformly by area.
     let u = u.sqrt();
     mesh.point(triangle, DVec3::new(1.0 - u, u * (1.0 - v), u * v))
 }

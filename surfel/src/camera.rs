@@ -7,12 +7,13 @@ use crate::vector::Real;
 use glam::{DVec3, Vec3};
 use pointillist_view::View;
 
-/// How far the plane of a blurred disc is followed beyond the disc itself, in blur radii: what lies on one slanted surface
-/// then has one depth in a pixel, and belongs to one layer. Found by experiment.
+/// How far the plane of a blurred disc is followed beyond the disc itself, in blur radii: what lies on one slanted
+/// surface then has one depth in a pixel, and belongs to one layer. Found by experiment.
 const BLURRED_PLANE: f32 = 2.0;
 
-/// How far behind the nearest one a disc may lie and still belong to the same surface: so many radii of the disc and of its
-/// blur, and what a slanted surface gains over so many pixels and blur radii. Found by experiment.
+/// How far behind the nearest disc another may lie and still belong to the same surface, as a sum of four lengths, all
+/// found by experiment: these multiples of the disc's radius and of its blur radius, and the change of depth of a
+/// slanted surface over these multiples of a pixel and of the blur radius.
 const THICKNESS: f32 = 1.5;
 const BLURRED_DISC_THICKNESS: f32 = 1.75;
 const SLANTED_THICKNESS: f32 = 1.5;
@@ -38,7 +39,8 @@ pub(crate) struct Camera {
     pub(crate) focal: f32,
     /// The principal point, pixels.
     pub(crate) centre: [f64; 2],
-    /// Depths are kept relative to this one, near the cloud: a telephoto view of a far cloud then loses nothing in `f32`.
+    /// Depths are kept relative to this one, near the cloud: a telephoto view of a far cloud then loses nothing in
+    /// `f32`.
     pub(crate) reference: f64,
     /// Relative depths must be above this.
     pub(crate) near: f32,
@@ -89,7 +91,8 @@ impl Camera {
         (depth - self.focus).abs() * self.blur
     }
 
-    /// The depth that is affine over the picture on planes: d·z₀/z for a perspective camera, d = z − z₀ from the reference z₀.
+    /// The depth that is affine over the picture on planes: d·z₀/z for a perspective camera, d = z − z₀ from the
+    /// reference z₀.
     pub(crate) fn bent(&self, depth: f32) -> f32 {
         if self.is_perspective {
             let reference = self.reference as f32;

@@ -1,4 +1,4 @@
-//! A cloud, made ready for drawing.
+//! A cloud, prepared for drawing.
 
 use crate::attributes::{Attributes, in_order};
 use crate::error::SurfelError;
@@ -23,11 +23,12 @@ pub struct Cloud {
 }
 
 impl Cloud {
-    /// Sorts points into an octree; estimates what they lack.
+    /// Sorts points into an octree and estimates the attributes that are missing.
     ///
     /// # Errors
-    /// [`SurfelError::NoPoints`], [`SurfelError::TooManyPoints`], [`SurfelError::LengthMismatch`], [`SurfelError::PointNotFinite`],
-    /// [`SurfelError::PointTooFar`], [`SurfelError::BadNormal`], [`SurfelError::BadColor`], [`SurfelError::BadRadius`].
+    /// [`SurfelError::NoPoints`], [`SurfelError::TooManyPoints`], [`SurfelError::LengthMismatch`],
+    /// [`SurfelError::PointNotFinite`], [`SurfelError::PointTooFar`], [`SurfelError::BadNormal`],
+    /// [`SurfelError::BadColor`], [`SurfelError::BadRadius`].
     pub fn new(points: &Points<'_>) -> Result<Self, SurfelError> {
         points.check()?;
         let lattice = Lattice::around(points.positions);

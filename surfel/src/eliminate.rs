@@ -5,7 +5,8 @@ use crate::rows::Rows;
 use glam::DVec3;
 use pointillist_parallel as parallel;
 
-/// \[2\], eq. 4, β and γ: distances below `β·(1 − (count/candidates)^γ)` of the lattice's spacing crowd no more than that one.
+/// \[2\], eq. 4, β and γ: distances below `β·(1 − (count/candidates)^γ)` of the lattice's spacing crowd no more than
+/// that one.
 const BETA: f64 = 0.65;
 const GAMMA: f64 = 1.5;
 
@@ -34,8 +35,9 @@ impl Crowding {
 
 /// Points by weight, heaviest first, to within `1 / STEPS` of the largest.
 ///
-/// A departure from the heap of \[2\], for speed: a point whose weight has fallen stays where it is until its turn comes, and
-/// then moves down in constant time. The patterns are as good, since weights differ by much more than a step.
+/// A departure from the heap of \[2\], for speed: a point whose weight has fallen stays where it is until its turn
+/// comes, and then moves down in constant time. The patterns are as good, since weights differ by much more than a
+/// step.
 struct Queue {
     steps_per_weight: f64,
     /// The point inserted last into each step.
@@ -82,7 +84,7 @@ impl Queue {
             }
             let place = first as usize;
             self.first[self.top] = self.next[place];
-            // Weights only fall: what is up to date in the highest step is the heaviest.
+            // Weights only fall: a point of the highest step whose weight is up to date is the heaviest.
             if self.step(weights[place]) == self.top {
                 return Some(place);
             }
@@ -91,8 +93,8 @@ impl Queue {
     }
 }
 
-/// Numbers of the `count` points (at most all) to keep, in order. `spacing` is that of a lattice of as many. `done` is told
-/// shares of the work.
+/// Numbers of the `count` points (at most all) to keep, in order. `spacing` is that of a lattice of as many. `done` is
+/// told shares of the work.
 pub(crate) fn kept(points: &[SurfacePoint], count: usize, spacing: f64, done: &dyn Fn(f64)) -> Vec<u32> {
     let share = count as f64 / points.len() as f64;
     let crowding = Crowding { reach: spacing, nearest: spacing * BETA * (1.0 - share.powf(GAMMA)) };

@@ -1,17 +1,18 @@
 //! Discs on the picture: ellipses with planes, a vector of items at a time.
 //!
-//! A disc of radius r stands for the covariance σ²·(1 − n·nᵀ) of the plane that it lies in, with unit normal n and σ a share of
-//! r. On the picture that is V = J·σ²(1 − n·nᵀ)·Jᵀ with the Jacobian J of the projection, plus the variance of the lens's blur and
-//! of the pixel, which are discs and squares of the picture itself. With d the way from the projected centre in pixels, the
-//! disc's parameter is
+//! A disc of radius r stands for the covariance σ²·(1 − n·nᵀ) of the plane that it lies in, with unit normal n and σ a
+//! share of r. On the picture that is V = J·σ²(1 − n·nᵀ)·Jᵀ with the Jacobian J of the projection, plus the variance of
+//! the lens's blur and of the pixel, which are discs and squares of the picture itself. With d the way from the
+//! projected centre in pixels, the disc's parameter is
 //!
 //! q(d) = dᵀ·V⁻¹·d / h(d)²,  h(d) = 1 + k·d,
 //!
 //! where h is the depth of the centre over the depth of the plane at d: with V of the disc alone this is the exact
 //! conic of its perspective image, evaluated about the image's own centre, and 1/h scales a depth that is affine in d.
 //!
-//! Steps 1 and 2, place and normal, are those of [`Placed`]. [`project`] goes on with 3 the covariance V, 4 the plane (k, gradient
-//! of the depth, thickness), 5 the kernel (its end, weight and edge), 6 the box of pixels that it may touch.
+//! Steps 1 and 2, place and normal, are those of [`Placed`]. [`project`] goes on with 3 the covariance V, 4 the plane
+//! (k, gradient of the depth, thickness), 5 the kernel (its end, weight and edge), 6 the box of pixels that it may
+//! touch.
 
 use crate::batch::{Projected, Value, WHOLE};
 use crate::camera::Camera;
@@ -34,7 +35,7 @@ struct Covariance<S: Simd> {
     /// Radius of the blur and of the disc (with the blur, where the shape is widened by it), units.
     blur_radius: Vector<S>,
     radius: Vector<S>,
-    /// Of the disc alone.
+    /// Covariance of the disc alone.
     disc: [Vector<S>; 3],
     /// Variance of the blur.
     blur: Vector<S>,
@@ -94,9 +95,10 @@ impl<S: Simd> Plane<S> {
         let edge_on = (facing.at_most(-1e-6) * focal).inverse();
         let (kx, ky) = (a * edge_on, b * edge_on);
         let slope = (kx * kx + ky * ky).sqrt() * focal;
-        // Of a disc as wide as a pair.
+        // The radius of a disc as wide as the pair.
         let whole_radius = (disc_radius * disc_radius + (p * p + q * q + r * r) * 4.0).sqrt();
-        // What the pixel adds to the disc must not make its plane longer, nor may it come too near to the eye.
+        // The pixel's part of the ellipse does not extend the disc's plane, and the plane is not followed too close to
+        // the eye.
         let reach = camera.plane_reach(whole_radius * shape.deviation, blur_radius) * (scale * (1.0 / focal));
         let longest = (reach * reach).at_most(NEAREST_PLANE2) * (1.0 / shape.reach2);
         let long = along([kx, ky], [disc[0] + blur, disc[1], disc[2] + blur]).min(longest);
@@ -122,7 +124,7 @@ struct Kernel<S: Simd> {
     reach2: Vector<S>,
     /// 1/(|V|·R), which makes V⁻¹/R of V's entries.
     conic: Vector<S>,
-    /// At the centre.
+    /// Weight at the centre.
     weight: Vector<S>,
     /// How much steeper than the kernel's an edge has to be to look sharp.
     edge: Vector<S>,
@@ -143,7 +145,7 @@ impl<S: Simd> Kernel<S> {
         let narrow = (v[0] + v[2]) * 0.5 - (half_difference * half_difference + v[1] * v[1]).sqrt();
         let conic = (determinant * reach2).inverse();
         let edge = (narrow / (blur + EDGE_VARIANCE)).at_least(1.0).sqrt();
-        // Discs of any size next to the eye: sums of weights have to stay numbers.
+        // Limited: discs next to the eye can have any size, and sums of weights must stay finite.
         let weight = (share / (integral * root)).at_most(1e3);
         Self { is_flat, reach2, conic, weight, edge }
     }
@@ -201,7 +203,8 @@ pub(crate) fn project<S: Simd>(
     }
 }
 
-/// First column, last column (not included), first row and last row of the box around q ≤ R, within a tile, with [`WHOLE`].
+/// First column, last column (not included), first row and last row of the box around q ≤ R, within a tile, with
+/// [`WHOLE`].
 ///
 /// With t = V·k and τ = R·k·t < 1, q ≤ R is an ellipse about R·t/(1 − τ) with the covariance V + R·t·tᵀ/(1 − τ), to the
 /// reach R/(1 − τ).

@@ -1,6 +1,6 @@
-//! What can be wrong.
+//! Errors of meshes, clouds and options.
 
-/// What can be wrong with a mesh or a cloud, or with what is asked of them.
+/// Errors of meshes, clouds, views and options.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfelError {
@@ -12,12 +12,12 @@ pub enum SurfelError {
         /// Its coordinates.
         value: [f64; 3],
     },
-    /// A triangle names a vertex that does not exist.
+    /// A triangle has an index of a vertex that does not exist.
     #[error("triangle {triangle} names vertex {vertex}, but there are {count}")]
     VertexOutOfRange {
         /// Position in the triangle array.
         triangle: usize,
-        /// The vertex it names.
+        /// The index.
         vertex: u32,
         /// How many vertices there are.
         count: usize,
@@ -38,31 +38,31 @@ pub enum SurfelError {
         /// Its coordinates.
         value: [f64; 3],
     },
-    /// There is nothing to put points on: no triangle has an area, or the sum is beyond the range of numbers, which is
-    /// 1e-280 to 1e280.
+    /// The sum of the triangles' areas is 0, or outside of the range 1e-280 to 1e280.
     #[error("the triangles have an area of {area}; points need one from 1e-280 to 1e280")]
     NoArea {
         /// The sum of all areas.
         area: f64,
     },
-    /// No points are asked for.
+    /// A count of 0 points is asked for.
     #[error("a count of 0 points; at least 1 is needed")]
     ZeroCount,
-    /// The spacing is not a length.
+    /// The spacing is not finite, or not above 0.
     #[error("a spacing of {spacing}; it must be finite and more than 0")]
     BadSpacing {
         /// As given.
         spacing: f64,
     },
-    /// More points than [`MAX_COUNT`](crate::MAX_COUNT) to be sampled, or [`Points::MOST`](crate::Points::MOST) in a cloud.
+    /// More points than [`MAX_COUNT`](crate::MAX_COUNT) to be sampled, or [`Points::MOST`](crate::Points::MOST) in a
+    /// cloud.
     #[error("about {count:.3e} points, and there can be at most {limit}")]
     TooManyPoints {
-        /// How many there would be, as far as it can be told beforehand.
+        /// How many there would be; an estimate, since points are only counted while they are made.
         count: f64,
         /// How many there can be.
         limit: usize,
     },
-    /// The mesh is too long for so fine a grid of rays.
+    /// The spacing is too small for the extent of the mesh: the grid of rays would be too large.
     #[error("the mesh is {cells:.3e} spacings long, and a grid has at most {limit} rays a side")]
     TooFine {
         /// Rays along the longest side.
@@ -73,7 +73,7 @@ pub enum SurfelError {
     /// A cloud without points.
     #[error("the cloud has no points")]
     NoPoints,
-    /// Attributes are not as many as positions.
+    /// The number of an attribute's values is not that of positions.
     #[error("{length} {what} for {count} positions")]
     LengthMismatch {
         /// Which attribute.
@@ -95,7 +95,7 @@ pub enum SurfelError {
         /// Number of the point.
         index: usize,
     },
-    /// A radius is not a length.
+    /// A radius is not finite, or not above 0.
     #[error(
         "the radius of point {index} is {radius}; it must be above 0 and finite (leave radii out to have them estimated)"
     )]

@@ -1,4 +1,4 @@
-//! What is sharp.
+//! Depth of field: which depth is sharp, and how much others blur.
 
 use crate::error::SurfelError;
 
@@ -35,7 +35,7 @@ impl Focus {
         Self::Lens { aperture: 0.5 * focal_length / f_number, focus }
     }
 
-    /// d and f; d = 0 for sharp pictures.
+    /// The blur per distance d and the depth in focus f; d = 0 for sharp pictures.
     pub(crate) fn depth_and_focus(&self) -> (f64, f64) {
         match *self {
             Self::Everywhere => (0.0, 1.0),
@@ -66,7 +66,8 @@ impl Focus {
 }
 
 /// Full field of view in radians of a lens that is focused: a sensor of this height stands behind it at the distance
-/// 1/(1/focal length − 1/focus). All lengths in one unit; the focus may be infinite. `None` if it is not beyond the focal length.
+/// 1/(1/focal length − 1/focus). All lengths in one unit; the focus may be infinite. `None` if it is not beyond the
+/// focal length.
 #[must_use]
 pub fn field_of_view_rad(focal_length: f64, sensor_height: f64, focus: f64) -> Option<f64> {
     let image_distance = focal_length / (1.0 - focal_length / focus);

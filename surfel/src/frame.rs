@@ -1,13 +1,13 @@
-//! The picture.
+//! The picture, in tiles. `ibpr/src/frame.rs` says why `pointillist-ibpr` has one of its own.
 
 use crate::grid::{HEIGHT, TileRect, WIDTH};
 
 /// A drawn frame: layers of `width · height` entries, row by row from the top left pixel.
 ///
-/// Frames of `pointillist-ibpr` and `pointillist-surfel` have the same form. Color and depth are always there; the other layers are
-/// empty unless [`Options::surface_layers`](crate::Options::surface_layers) asks for them. A new frame has no pixels. Keep one and
-/// draw into it again: memory is allocated for the first frame, and when the size of the picture changes; tiles that stay empty are
-/// not touched.
+/// Frames of `pointillist-ibpr` and `pointillist-surfel` have the same form. Color and depth are always there; the
+/// other layers are empty unless [`Options::surface_layers`](crate::Options::surface_layers) asks for them. A new frame
+/// has no pixels. Keep one and draw into it again: memory is allocated for the first frame, and when the size of the
+/// picture changes; tiles that stay empty are not touched.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
     width: usize,
@@ -28,9 +28,9 @@ pub struct FrameCounts {
     pub nodes: usize,
     /// Nodes among them that were skipped in all tiles, because other surfaces hide them.
     pub nodes_hidden: usize,
-    /// Nodes outside the view; what is below them is not looked at.
+    /// Nodes outside the view; their children are not visited.
     pub nodes_outside: usize,
-    /// Nodes that face away; what is below them is not looked at.
+    /// Nodes that face away; their children are not visited.
     pub nodes_facing_away: usize,
     /// Points of the drawn nodes, links included.
     pub points: usize,
@@ -63,8 +63,8 @@ impl Frame {
         &self.color
     }
 
-    /// Distance from the eye along the view direction, world units, of the nearest surface that, with those before it, covers half
-    /// the pixel or more; `f32::INFINITY` where there is none.
+    /// Distance from the eye along the view direction, world units, of the nearest surface that, with those before it,
+    /// covers half the pixel or more; `f32::INFINITY` where there is none.
     #[must_use]
     pub fn depth(&self) -> &[f32] {
         &self.depth

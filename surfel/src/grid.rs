@@ -4,7 +4,7 @@
 pub(crate) const WIDTH: usize = 128;
 pub(crate) const HEIGHT: usize = 64;
 
-/// Side of the squares for which the farthest depth is kept, to skip what is hidden.
+/// Side, in pixels, of the squares for which the farthest depth is kept, to skip hidden nodes.
 pub(crate) const SQUARE: usize = 16;
 
 /// Where a tile lies in the picture, in pixels.

@@ -1,4 +1,4 @@
-//! What a node draws, in the node's own frame: its points or links, one by one or in pairs.
+//! The items that are drawn for a node, in the node's own frame: its points or links, one by one or in pairs.
 
 use crate::attributes::Attributes;
 use crate::batch::BATCH;
@@ -78,7 +78,7 @@ struct Take<'a> {
 impl NullaryFnOnce for Take<'_> {
     type Output = ();
 
-    // Everything is inlined: what is compiled on its own stays narrow.
+    // Everything is inlined: a function compiled on its own would not use the wide instructions.
     #[inline(always)]
     fn call(self) {
         let Self { discs, cloud, node, run } = self;
@@ -143,8 +143,9 @@ impl Items {
         }
     }
 
-    /// Makes one disc of two that follow one another: with the sum of their areas, the means by area of all else, and the
-    /// covariance that both have together. All that there is room for: a number known beforehand makes vectors of the loops.
+    /// Makes one disc of two that follow one another: with the sum of their areas, the means by area of all else, and
+    /// the covariance of both together. It computes the whole capacity, because the compiler vectorises loops of
+    /// constant length.
     #[inline(always)]
     fn unite(&mut self) {
         let (mut shares, mut deviations) = ([0.0; BATCH], [0.0; BATCH]);
@@ -171,7 +172,7 @@ impl Items {
     }
 }
 
-/// Makes vectors unit vectors. Roots for all of them at once, as vectors.
+/// Normalises vectors. The square roots are computed for a whole vector of items at once.
 #[inline(always)]
 fn normalise([x, y, z]: &mut [Values; 3], count: usize) {
     for (((x, y), z), _) in x.iter_mut().zip(y).zip(z).zip(0..count) {

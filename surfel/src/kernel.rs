@@ -1,4 +1,4 @@
-//! Discs into a tile: nearest depths, then weighted sums.
+//! Draws discs into a tile: nearest depths first, then weighted sums.
 
 use crate::grid::SQUARE;
 use crate::layer::{Depths, LANES, Layer, Normals, Open, PITCH, RAMP, Sums};
@@ -18,15 +18,16 @@ pub(crate) fn nearest_behind(layer: &mut Layer, splats: &[Splat], numbers: &[u32
     Arch::new().dispatch(Nearest::<false, _> { depths: &mut layer.depths, splats, open });
 }
 
-/// Puts the sharpness of the disc that is nearest into the first of the sums; the largest of those that are equally near.
+/// Puts the sharpness of the disc that is nearest into the first of the sums; the largest of those that are equally
+/// near.
 pub(crate) fn sharpness_of_nearest(layer: &mut Layer, splats: &[Splat]) {
     layer.sums.fill(Sums::NOTHING);
     Arch::new().dispatch(SharpnessOfNearest { layer, splats });
 }
 
-/// Adds up the splats with these numbers that belong to the nearest surface, in the `FIRST` layer or else in blocks that are `open`; `behind` gets the numbers of those that have
-/// parts behind it. Discs may lie behind a surface by `slack` more than their thickness (bent depth). Normals are added up if
-/// they are `WANTED`.
+/// Adds up the splats with these numbers that belong to the nearest surface, in the `FIRST` layer or else in blocks
+/// that are `open`; `behind` gets the numbers of those that have parts behind it. Discs may lie behind a surface by
+/// `slack` more than their thickness (bent depth). Normals are added up if they are `WANTED`.
 pub(crate) fn add<const FIRST: bool, const WANTED: bool>(
     layer: &mut Layer,
     splats: &[Splat],
@@ -54,7 +55,8 @@ struct Nearest<'a, const FIRST: bool, I> {
 impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<'_, FIRST, I> {
     type Output = ();
 
-    // Everything is inlined, and there are no closures: what is compiled on its own stays narrow.
+    // Everything is inlined, and there are no closures: a function compiled on its own would not use the wide
+    // instructions.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let (none, nothing) = (simd.splat_f32s(0.0), simd.splat_f32s(f32::INFINITY));
@@ -73,8 +75,8 @@ impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<
                         strip.step(simd);
                         let is_there = simd.greater_than_f32s(rest, none);
                         let near = &mut S::as_mut_simd_f32s(&mut block.near).0[i];
-                        // A minimum, not a choice between the old and the new: that would become a masked store, which
-                        // takes longer than all the rest.
+                        // A minimum instead of a choice between the old and the new value: the latter would become a
+                        // masked store, which takes longer than all the rest.
                         *near = simd.min_f32s(simd.select_f32s(is_there, depth, nothing), *near);
                     }
                 }
@@ -222,8 +224,8 @@ fn add_value<S: Simd>(simd: S, value: f32, weights: S::f32s, sums: &mut S::f32s)
     *sums = simd.add_f32s(*sums, simd.mul_f32s(weights, simd.splat_f32s(value)));
 }
 
-/// A column of blocks under a splat, in one of its rows. What changes by the same from row to row is added up: that takes
-/// a third of the operations of computing it anew, and loses a digit in the last of 64 rows.
+/// A column of blocks under a splat, in one of its rows. Terms that change by a constant from row to row are advanced
+/// by an addition: a third of the operations of computing them anew, at the cost of one digit in the last of 64 rows.
 struct Strip<S: Simd> {
     /// xx·dx², 2·xy·dx + yy·dy, dy, 1 + kx·dx + ky·dy and the depth.
     qx: S::f32s,
@@ -266,9 +268,9 @@ impl<S: Simd> Strip<S> {
         self.depth = simd.add_f32s(self.depth, self.depth_step);
     }
 
-    /// (1 − q/R)·h², not above 0 where the kernel is not or lies before the floor; and the bent depth.
+    /// (1 − q/R)·h², which is not above 0 outside of the kernel and in front of the floor, and the bent depth.
     ///
-    /// The factor h² spares a division: it is 1 at the centre and not far from it anywhere. Beyond the horizon of the
+    /// The factor h² saves a division: it is 1 at the centre and not far from it anywhere. Beyond the horizon of the
     /// disc's plane h is not above 0. Multiplied and added apart, not fused, so that all processors agree.
     #[inline(always)]
     fn at<const FIRST: bool>(&self, simd: S, s: &Splat, floor: S::f32s) -> (S::f32s, S::f32s) {

@@ -1,12 +1,10 @@
-//! Positions as whole numbers: a cube of 2³² cells a side around the cloud.
+//! Positions as integers: cells of a cube with 2³² cells a side around the cloud.
 //!
 //! A position is off by less than 2⁻³² of the cloud's extent, wherever the cloud lies, and differences to any origin
 //! in the cloud are exact before they become `f32`.
 
 use glam::{DVec3, Vec3};
-
-/// Bits of a cell number that go into a Morton code: three times this fits into 64.
-pub(crate) const CODE_BITS: u32 = 21;
+use pointillist_view::{MORTON_BITS, morton_code};
 
 /// Cells per side of the cube.
 const CELLS: f64 = 4_294_967_296.0;
@@ -26,7 +24,7 @@ impl Lattice {
             .iter()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
         let extent = (high - low).max_element();
-        // Points in one place need some length to measure their discs in.
+        // Coincident points have no extent, but discs need a unit of length.
         let extent = if extent > 0.0 { extent.max(1e-290) } else { 1.0 };
         Self { low, side: extent }
     }
@@ -41,21 +39,22 @@ impl Lattice {
         self.way(DVec3::ZERO, cell)
     }
 
-    /// The way from a place in the world to the middle of a cell. Places near the lattice lose no digits to their distance from the
-    /// origin: the picture is the same wherever the scene lies.
+    /// The vector from a position in the world to the middle of a cell. It is computed from differences to the
+    /// lattice's corner, so that the distance to the origin of the world costs no digits: the picture is the same
+    /// wherever the scene lies.
     pub(crate) fn way(&self, from: DVec3, cell: [u32; 3]) -> DVec3 {
         let middle = DVec3::from_array(cell.map(|c| (f64::from(c) + 0.5) / CELLS));
         (self.low - from) + middle * self.side
     }
 }
 
-/// The way from one cell to another in units. Rounded once per coordinate.
+/// The vector from one cell to another, in units. Rounded once per coordinate.
 pub(crate) fn between(from: [u32; 3], to: [u32; 3]) -> Vec3 {
     let coordinate = |i: usize| (i64::from(to[i]) - i64::from(from[i])) as f32 * (1.0 / CELLS as f32);
     Vec3::from_array([0, 1, 2].map(coordinate))
 }
 
-/// The cell that is so many units away from one.
+/// The cell at this vector, in units, from another cell.
 pub(crate) fn moved(from: [u32; 3], way: Vec3) -> [u32; 3] {
     let place = |i: usize| f64::from(from[i]) + f64::from(way[i]) * CELLS;
     [0, 1, 2].map(|i| place(i).round().clamp(0.0, CELLS - 1.0) as u32)
@@ -67,18 +66,8 @@ pub(crate) fn offset(from: u32, to: u32) -> f32 {
     to.wrapping_sub(from) as i32 as f32 * (1.0 / CELLS as f32)
 }
 
-/// Cells in an order in which those of a cube of the octree follow one another.
+/// The Morton code of a cell, from the highest bits of its numbers: the cells of a node of the octree follow one
+/// another.
 pub(crate) fn morton(cell: [u32; 3]) -> u64 {
-    let [x, y, z] = cell.map(|c| spread(u64::from(c >> (32 - CODE_BITS))));
-    x | y << 1 | z << 2
-}
-
-/// Puts two zeros between the bits of a number of [`CODE_BITS`] bits.
-fn spread(x: u64) -> u64 {
-    let mut x = x & 0x1f_ffff;
-    x = (x | x << 32) & 0x1f_0000_0000_ffff;
-    x = (x | x << 16) & 0x1f_0000_ff00_00ff;
-    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-    (x | x << 2) & 0x1249_2492_4924_9249
+    morton_code(cell.map(|c| c >> (32 - MORTON_BITS)))
 }

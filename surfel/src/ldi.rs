@@ -1,8 +1,8 @@
 //! Samples by layered depth images along the three axes.
 //!
-//! In \[1\] every ray keeps all of its intersections, and a surface gets up to three sets of points. Here each triangle is
-//! met only by the rays along the axis that its normal is nearest to. It gets one set, of `|n|∞ / spacing²`
-//! points per area, which varies by √3 at most; keeping all three sets would vary as much, with 1.5 times the points.
+//! In \[1\] every ray keeps all of its intersections, and a surface gets up to three sets of points. Here each triangle
+//! is met only by the rays along the axis that its normal is nearest to. It gets one set, of `|n|∞ / spacing²` points
+//! per area, which varies by √3 at most; keeping all three sets would vary as much, with 1.5 times the points.
 
 use crate::cover::{self, MAX_CELLS};
 use crate::mesh::Mesh;
@@ -13,9 +13,9 @@ use std::cmp::Ordering;
 
 /// No point of a smooth surface is farther than this many spacings from the nearest sample: √6.
 ///
-/// Seen along the rays, samples are the corners of unit squares, and any disc of radius 1/√2 holds one. Beside the line where another
-/// axis takes over, or a border, half a disc must hold one; half a disc of radius √2 holds that disc. The plane
-/// is stretched along its slope by `1 / |n|∞ ≤ √3` at most. (Within a plane it is half as much.)
+/// Seen along the rays, samples are the corners of unit squares, and any disc of radius 1/√2 holds one. Beside the line
+/// where another axis takes over, or a border, half a disc must hold one; half a disc of radius √2 holds that disc. The
+/// plane is stretched along its slope by `1 / |n|∞ ≤ √3` at most. (Within a plane it is half as much.)
 pub(crate) const COVER: f64 = 2.449_489_742_783_178;
 
 /// A sample and the ray that found it.
@@ -48,7 +48,7 @@ pub(crate) fn expected_count(mesh: &Mesh<'_>, spacing: f64) -> f64 {
     facing_area(mesh) / spacing / spacing
 }
 
-/// The spacing at which so many points are to be expected.
+/// The spacing at which this number of points is to be expected.
 pub(crate) fn spacing_for(mesh: &Mesh<'_>, count: f64) -> f64 {
     (facing_area(mesh) / count).sqrt()
 }
@@ -65,8 +65,8 @@ pub(crate) fn points(mesh: &Mesh<'_>, spacing: f64) -> Result<Vec<SurfacePoint>,
     Ok(hits.into_iter().map(|hit| hit.point).collect())
 }
 
-/// Ray by ray, from low to high. Points in the same place are ordered by how they lie, and only equal ones by the numbers
-/// of their triangles.
+/// Ray by ray, from low to high. Points in the same place are ordered by how they lie, and only equal ones by the
+/// numbers of their triangles.
 fn compare(a: &Hit, b: &Hit) -> Ordering {
     let ray = |h: &Hit| (h.axis, h.row, h.column);
     let numbers = |h: &Hit| {

@@ -29,40 +29,45 @@
 //!
 //! # Sampling
 //!
-//! * [`Method::Ldi`]: the intersections with three orthogonal grids of parallel rays (\[1\], §5.1). Regular and fast; the
-//!   density is `|n|∞ / spacing²`, between 0.58 and 1 points per square of the spacing.
+//! * [`Method::Ldi`]: the intersections with three orthogonal grids of parallel rays (\[1\], §5.1). Regular and fast;
+//!   the density is `|n|∞ / spacing²`, between 0.58 and 1 points per square of the spacing.
 //! * [`Method::Poisson`]: blue noise by the elimination of the most crowded of five times as many random
 //!   points (\[2\]). Exactly as many points as asked for, without pattern, evenly over the area.
 //!
 //! # Drawing
 //!
-//! * [`Cloud`]: an octree whose leaves hold the points and whose inner nodes hold links to a few of them, each with the area
-//!   and the mean place, normal and color of what it stands for.
-//! * [`Renderer`] takes each part of the cloud from the coarsest level on which about one point falls on a pixel, or, out of focus,
-//!   points are as far apart as the blur is wide. Between two levels it draws pairs of neighbours as one disc. Discs become ellipses
-//!   with exact perspective and are lit; in each pixel those of the nearest surface are averaged and composited over what is behind.
+//! * [`Cloud`]: an octree whose leaves hold the points and whose inner nodes hold links to a few of them, each with the
+//!   area and the mean place, normal and color of what it stands for.
+//! * [`Renderer`] takes each part of the cloud from the coarsest level on which about one point falls on a pixel, or,
+//!   out of focus, points are as far apart as the blur is wide. Between two levels it draws pairs of neighbours as one
+//!   disc. Discs become ellipses with exact perspective and are lit; in each pixel those of the nearest surface are
+//!   averaged and composited over what is behind.
 //! * [`Focus`]: the paper's parameter d (\[3\], §3), or a thin lens, of which d = aperture/focus is the same.
 //! * [`Procedure::Paper`]: what the paper does (\[3\]), for comparison.
 //!
 //! # Accuracy and cost
-//! Sampled points lie on their triangles up to rounding; rays through shared edges and vertices hit
-//! exactly once: coverage is decided in integers. Drawn positions are those given to 2⁻³² of the cloud's extent. No result depends on threads
-//! or on the order of points, and none of drawing on where the cloud lies. Accuracy and time of frames: `studies/results/surfel.md`.
+//! Sampled points lie on their triangles up to rounding; rays through shared edges and vertices hit exactly once:
+//! coverage is decided in integers. Drawn positions are those given to 2⁻³² of the cloud's extent. No result depends on
+//! threads or on the order of points, and none of drawing on where the cloud lies. Accuracy and time of frames:
+//! `studies/results/surfel.md`.
 //!
 //! # Features
 //! `rayon` (default) uses all cores; it never changes a result. `invariants`: the module of that name, facts
 //! for property tests and fuzzing, also of crates that build on this one.
 //!
-//! Builds for `wasm32-unknown-unknown` without default features; last bits of samples and pictures may differ there, because sines and
-//! powers come from another library. Figures here and in the README are with thin LTO and `codegen-units = 1` (`[profile.release]` of the
-//! program that depends on this crate): without them expect somewhat more.
+//! Builds for `wasm32-unknown-unknown` without default features; last bits of samples and pictures may differ there,
+//! because sines and powers come from another library. Figures here and in the README are with thin LTO and
+//! `codegen-units = 1` (`[profile.release]` of the program that depends on this crate): without them expect somewhat
+//! more.
 //!
 //! # References
-//! 1. H. Pfister, M. Zwicker, J. van Baar, M. Gross: *Surfels: surface elements as rendering primitives*, SIGGRAPH 2000.
+//! 1. H. Pfister, M. Zwicker, J. van Baar, M. Gross: *Surfels: surface elements as rendering primitives*, SIGGRAPH
+//!    2000.
 //! 2. C. Yuksel: *Sample elimination for generating Poisson disk sample sets*, Eurographics 2015.
-//! 3. The seed of this crate: surfel rendering with depth of field by two z-buffers and a filter that follows the distance
-//!    (in Japanese; 97,000 points at 400×400 with 0.98 and 0.86 frames a second).
-//! 4. J. Křivánek, J. Žára, K. Bouatouch: *Fast depth of field rendering with surface splatting*, CGI 2003: blur as a level of detail.
+//! 3. The seed of this crate: surfel rendering with depth of field by two z-buffers and a filter that follows the
+//!    distance (in Japanese; 97,000 points at 400×400 with 0.98 and 0.86 frames a second).
+//! 4. J. Křivánek, J. Žára, K. Bouatouch: *Fast depth of field rendering with surface splatting*, CGI 2003: blur as a
+//!    level of detail.
 #![forbid(unsafe_code)]
 
 mod areas;
@@ -118,9 +123,9 @@ pub use cloud::Cloud;
 pub use error::SurfelError;
 pub use focus::{Focus, field_of_view_rad};
 pub use frame::{Frame, FrameCounts};
-pub use options::{Light, Options, Procedure};
+pub use options::{Options, Procedure};
 pub use point::SurfacePoint;
-pub use pointillist_view::{PixelRect, Projected, Projection, Ray, View, ViewError};
+pub use pointillist_view::{Light, PixelRect, Projected, Projection, Ray, View, ViewError};
 pub use points::Points;
 pub use render::Renderer;
 pub use sample::{Amount, MAX_COUNT, Method, SampleOptions, sample, sample_with};

@@ -1,32 +1,33 @@
-//! Coarser levels: links to a few of a cube's points, each of which stands for its surroundings.
+//! Coarser levels: links to a few of a cube's points, each of which represents the points around it.
 //!
-//! A link names the point that is nearest to the middle of what it stands for; place, normal and color are the means of that, and the
-//! area is the sum, as the prefiltered textures of \[1\] are, so that a coarse level is not a noisy one.
+//! A link names the point that is nearest to the middle of those that it represents. Its place, normal and color are
+//! their means and its area is their sum, like the prefiltered textures of \[1\], so that coarse levels are not noisy.
 
 use crate::attributes::Attributes;
-use crate::lattice::{CODE_BITS, between, morton, moved};
+use crate::lattice::{between, morton, moved};
 use crate::octree::Cube;
 use glam::Vec3;
 use pointillist_parallel as parallel;
+use pointillist_view::MORTON_BITS;
 
-/// A cube of the octree is divided into 2^DIVISIONS cells a side; each cell in which there is surface gets a link for every
-/// side that the surface has there.
+/// A cube of the octree is divided into 2^DIVISIONS cells a side; each cell in which there is surface gets a link for
+/// every side that the surface has there.
 const DIVISIONS: u32 = 3;
 
-/// A point that stands for others, while levels are made.
+/// A point that represents others, while levels are made.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link {
     pub(crate) point: u32,
     /// Where it is drawn.
     pub(crate) cell: [u32; 3],
-    /// Area of all that it stands for, square units.
+    /// Area of all points that it represents, square units.
     pub(crate) area: f32,
     pub(crate) normal: Vec3,
     pub(crate) color: Vec3,
 }
 
 impl Link {
-    /// A point that stands for itself.
+    /// A link that represents one point only.
     fn of_point(points: &Attributes, point: usize) -> Self {
         let color = points.colors.as_ref().map_or(Vec3::ZERO, |all| Vec3::from_array(all[point]));
         Self {
@@ -39,8 +40,8 @@ impl Link {
     }
 }
 
-/// Radius of a disc over the square root of its share of the surface: a little more than half the diagonal of a square (0.71), so that discs
-/// on a square lattice overlap at its corners.
+/// Radius of a disc over the square root of its share of the surface: a little more than half the diagonal of a square
+/// (0.71), so that discs on a square lattice overlap at its corners.
 const RADIUS_PER_ROOT_AREA: f32 = 0.75;
 
 /// The radius that a link is drawn with.
@@ -71,7 +72,7 @@ fn links_of(cube: &Cube, cubes: &[Cube], links: &[Vec<Link>], points: &Attribute
             finer.extend_from_slice(&links[child]);
         }
     }
-    let below = CODE_BITS.saturating_sub(cube.level + DIVISIONS);
+    let below = MORTON_BITS.saturating_sub(cube.level + DIVISIONS);
     let cell = |link: &Link| morton(points.cell(link.point as usize)) >> (3 * below);
     let mut made = vec![];
     for of_cell in finer.chunk_by_mut(|a, b| cell(a) == cell(b)) {
@@ -83,10 +84,11 @@ fn links_of(cube: &Cube, cubes: &[Cube], links: &[Vec<Link>], points: &Attribute
     made
 }
 
-/// A link for less than this share of the mean area is none: its neighbour stands for it too.
+/// Links with less than this share of the mean area are merged into a neighbour.
 const SLIVER: f32 = 0.4;
 
-/// Surfaces cut corners off cells: links for those would lie close to others and leave gaps elsewhere.
+/// Merges links with less than [`SLIVER`] of the mean area into a neighbour. Surfaces cut corners off cells, and links
+/// for those corners would lie close to others and leave gaps elsewhere.
 fn absorb_slivers(links: &mut Vec<Link>) {
     let least = SLIVER * links.iter().map(|l| l.area).sum::<f32>() / links.len() as f32;
     // The smallest first, so that several small ones may make a large one.
@@ -122,7 +124,7 @@ fn partition(links: &mut [Link], passes: impl Fn(&Link) -> bool) -> usize {
     let mut count = 0;
     for i in 0..links.len() {
         if passes(&links[i]) {
-            // What does not pass keeps its order too: the picture must not depend on how this is done.
+            // Points that do not pass keep their order, too: the picture must not depend on how this is done.
             links[count..=i].rotate_right(1);
             count += 1;
         }

@@ -1,13 +1,13 @@
-//! A mesh that was looked at.
+//! A validated mesh, with its areas and normals.
 
 use crate::{SurfacePoint, SurfelError};
 use glam::DVec3;
 use pointillist_parallel as parallel;
 
-/// Areas whose square roots, divided by any count, can be squared again.
+/// Range of areas: square roots of these, divided by any count, have squares that are normal numbers.
 const AREAS: std::ops::RangeInclusive<f64> = 1e-280..=1e280;
 
-/// A mesh whose numbers are in order.
+/// A mesh whose indices are in range, whose coordinates are finite, and which has an area.
 pub(crate) struct Mesh<'a> {
     positions: &'a [DVec3],
     triangles: &'a [[u32; 3]],
@@ -75,7 +75,7 @@ impl<'a> Mesh<'a> {
 
     /// The triangle in which this much area, from 0 to all, is used up.
     pub(crate) fn triangle_at(&self, area: f64) -> usize {
-        // Rounding may ask for all of it, which is used up in the last triangle that adds to the sum.
+        // By rounding this may be the whole area: then it is the last triangle that adds to the sum.
         let area = area.min(self.area().next_down());
         self.area_up_to.partition_point(|&up_to| up_to <= area)
     }

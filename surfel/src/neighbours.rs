@@ -9,10 +9,11 @@ use glam::{DVec3, Vec3};
 use pointillist_parallel as parallel;
 use std::cmp::Ordering;
 
-/// Places that are not split any further: from 6 to 16, the time of searches is the same to within what can be measured.
+/// Places that are not split any further: from 6 to 16, the time of searches is the same to within what can be
+/// measured.
 const LEAF: usize = 8;
 
-/// Halves with fewer places are not worth a thread.
+/// Halves with fewer places are not worth the cost of a thread.
 const PARALLEL_LEAST: usize = 1 << 12;
 
 /// How a range of places is split: the lower half comes first.
@@ -104,8 +105,8 @@ impl Places {
         &self.points[self.starts[place] as usize..self.starts[place + 1] as usize]
     }
 
-    /// Puts into `found` the `count` places nearest to `place`, itself first, that are at most `reach` away; nearest first,
-    /// of equally near ones the one with the smaller coordinates: whatever the order of points.
+    /// Puts into `found` the `count` places nearest to `place`, itself first, that are at most `reach` away; nearest
+    /// first, of equally near ones the one with the smaller coordinates: whatever the order of points.
     pub(crate) fn nearest(&self, place: usize, count: usize, reach: f64, found: &mut Vec<Near>) {
         found.clear();
         let mut search =
@@ -150,16 +151,17 @@ struct Search<'a> {
     places: &'a Places,
     from: DVec3,
     count: usize,
-    /// Nothing farther is wanted: the reach, or the last one found once they are as many as wanted.
+    /// Squared distance beyond which places are ignored: that of the reach or, once `count` places are found, of the
+    /// last one.
     limit2: f64,
     found: &'a mut Vec<Near>,
 }
 
 impl Search<'_> {
-    /// Looks into a range of places whose box is so far away along each axis.
+    /// Searches a range of places whose box is at these distances along the axes.
     ///
-    /// Rounding cannot hide a place: differences, squares and sums are made in the same order as for a place's distance,
-    /// and each of them rounds a smaller number to no larger one.
+    /// Rounding cannot make it miss a place: differences, squares and sums are made in the same order as for a place's
+    /// distance, and each of them rounds a smaller number to no larger one.
     fn visit(&mut self, splits: &[Split], range: std::ops::Range<usize>, away: DVec3) {
         let Some((split, rest)) = splits.first().zip(splits.get(1..)).filter(|_| range.len() > LEAF) else {
             range.for_each(|place| self.look_at(place));
@@ -220,7 +222,7 @@ pub(crate) struct Sides {
     pub(crate) normals: Vec<DVec3>,
     /// Side of each point, in the caller's order.
     pub(crate) of_points: Vec<u32>,
-    /// Whether a normal stands for its opposite too.
+    /// Whether a normal and its opposite are equivalent.
     two_sided: bool,
 }
 
@@ -236,7 +238,8 @@ impl Sides {
         };
         for place in 0..places.len() {
             let facing = places.points(place).iter().map(|&i| facing(normals[i as usize], two_sided));
-            // Of the points that count as one, the normal with the smallest coordinates: it must not depend on their order.
+            // Of the points that count as one, the normal with the smallest coordinates: it must not depend on their
+            // order.
             let mut first = [None; 6];
             for (class, normal) in facing.clone() {
                 let old = first[class].get_or_insert(normal);

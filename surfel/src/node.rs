@@ -1,4 +1,4 @@
-//! The nodes of the octree as the renderer sees them: boxes, cones of normals, and what is drawn for them.
+//! The nodes of the octree for the renderer: boxes, cones of normals, and the items that are drawn for them.
 
 use crate::attributes::{Attributes, SMALLEST};
 use crate::lattice::{between, offset};
@@ -19,7 +19,7 @@ pub(crate) struct Cone {
     pub(crate) half_angle_rad: f32,
 }
 
-/// A cube of the octree as the renderer sees it.
+/// A cube of the octree, for the renderer.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Node {
     /// Middle of the box around its points.
@@ -53,8 +53,8 @@ impl Node {
         self.spacing * (self.items.len() as f32 / self.count_in_pairs() as f32).sqrt()
     }
 
-    /// A bound of radii with one disc for every pair: kernels have half of that for a standard deviation, and the places of a
-    /// pair up to half of what they are apart.
+    /// A bound of radii with one disc for every pair: kernels have half of that for a standard deviation, and the
+    /// places of a pair up to half of what they are apart.
     pub(crate) fn widest_of_pairs(&self) -> f32 {
         self.widest * (1.0 + FARTHEST * FARTHEST).sqrt()
     }
@@ -103,8 +103,8 @@ pub(crate) fn nodes(
     nodes.into_iter().flatten().collect()
 }
 
-/// The middle of a box of cells, and half its sides in units, rounded up. The middle is rounded up too: from it, no cell of the
-/// lattice is more than 2³¹ cells down or 2³¹ − 1 up, as [`offset`] wants it.
+/// The middle of a box of cells, and half its sides in units, rounded up. The middle is rounded up too: from it, no
+/// cell of the lattice is more than 2³¹ cells down or 2³¹ − 1 up, as [`offset`] requires.
 fn middle_and_half(low: [u32; 3], high: [u32; 3]) -> ([u32; 3], Vec3) {
     let middle = [0, 1, 2].map(|i| low[i] + (high[i] - low[i]).div_ceil(2));
     let half = between(middle, high).max(between(low, middle)) * (1.0 + 1e-6) + SMALLEST;

@@ -1,27 +1,27 @@
 //! Normals of a cloud that has none.
 //!
 //! The plane through a point's neighbours that is nearest to them in the sense of least squares: its normal is the
-//! direction in which they vary least, the eigenvector of their covariance for its smallest eigenvalue (H. Hoppe et al.,
-//! *Surface reconstruction from unorganized points*, SIGGRAPH 1992, §3.2).
+//! direction in which they vary least, the eigenvector of their covariance for its smallest eigenvalue (H. Hoppe et
+//! al., *Surface reconstruction from unorganized points*, SIGGRAPH 1992, §3.2).
 
 use crate::neighbours::Places;
 use glam::{DVec3, Vec3};
 use pointillist_parallel as parallel;
 
-/// Places that a plane is fitted to, the point's own among them. Mean angle to the true normal on a sphere of 4000 points of
-/// blue noise, and with noise of 0.1 spacings along the normal: 0.70° and 3.5° with 8, 0.50° and 2.0° with 14, 0.42° and 1.0°
-/// with 28, which round off what is thinner.
+/// Places that a plane is fitted to, the point's own among them. Mean angle to the true normal on a sphere of 4000
+/// points of blue noise, and with noise of 0.1 spacings along the normal: 0.70° and 3.5° with 8, 0.50° and 2.0° with
+/// 14, 0.42° and 1.0° with 28, which round off what is thinner.
 const FITTED: usize = 14;
 
 /// Most rotations of all three pairs of axes. Each squares what is left off the diagonal: about 5 are needed.
 const SWEEPS: usize = 8;
 
-/// The unit normal of every point, in the caller's order; the side on which it stands is arbitrary: its largest component
-/// is positive. On a smooth surface the angle to the true one falls with the spacing, and with noise across the surface
-/// it is about 0.35 of the noise per spacing, rad.
+/// The unit normal of every point, in the caller's order; the side on which it stands is arbitrary: its largest
+/// component is positive. On a smooth surface the angle to the true one falls with the spacing, and with noise across
+/// the surface it is about 0.35 of the noise per spacing, rad.
 ///
-/// Points that coincide have the same normal. Where all neighbours lie on a line the normal is some direction across it,
-/// and that of a lone place is +Z. Does not depend on the order of points.
+/// Points that coincide have the same normal. Where all neighbours lie on a line the normal is some direction across
+/// it, and that of a lone place is +Z. Does not depend on the order of points.
 pub(crate) fn estimate(places: &Places) -> Vec<Vec3> {
     let of_places = parallel::map(places.len(), |place| {
         let mut found = Vec::with_capacity(FITTED);

@@ -1,12 +1,12 @@
-//! The tree: which points lie in which cube.
+//! The octree: which points lie in which cube.
 
-use crate::lattice::CODE_BITS;
+use pointillist_view::MORTON_BITS;
 use std::ops::Range;
 
 /// Most points of a leaf that can be divided.
 pub(crate) const LEAF: usize = 256;
 
-/// A cube that holds points, without what is in it.
+/// A cube of the octree: the range of its points, and its children.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cube {
     /// Its points, in Morton order.
@@ -28,11 +28,11 @@ pub(crate) fn divide(codes: &[u64]) -> (Vec<Cube>, Vec<usize>) {
         let end = cubes.len();
         for parent in start..end {
             let Cube { points, level, .. } = cubes[parent].clone();
-            if points.len() <= LEAF || level == CODE_BITS {
+            if points.len() <= LEAF || level == MORTON_BITS {
                 continue;
             }
             let first = cubes.len();
-            let octant = |code: u64| code >> (3 * (CODE_BITS - 1 - level)) & 7;
+            let octant = |code: u64| code >> (3 * (MORTON_BITS - 1 - level)) & 7;
             let mut rest = points;
             while !rest.is_empty() {
                 let here = octant(codes[rest.start]);
@@ -52,5 +52,5 @@ pub(crate) fn divide(codes: &[u64]) -> (Vec<Cube>, Vec<usize>) {
 fn cube(codes: &[u64], points: Range<usize>) -> Cube {
     let differing = codes[points.start] ^ codes[points.end - 1];
     let below = (64 - differing.leading_zeros()).div_ceil(3);
-    Cube { points, level: CODE_BITS - below, children: 0..0 }
+    Cube { points, level: MORTON_BITS - below, children: 0..0 }
 }

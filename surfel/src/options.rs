@@ -1,9 +1,10 @@
-//! What a frame is made with.
+//! Options of a frame.
 
 use crate::error::SurfelError;
 use crate::focus::Focus;
 use crate::points::Points;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
+use pointillist_view::Light;
 
 /// How discs become a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,17 +16,6 @@ pub enum Procedure {
     Paper,
 }
 
-/// Where light comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub enum Light {
-    /// From the eye.
-    #[default]
-    Eye,
-    /// From far away: direction towards the light, world space.
-    Towards(DVec3),
-}
-
 /// How a frame is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -34,11 +24,11 @@ pub struct Options {
     pub focus: Focus,
     /// Default: [`Procedure::Blended`].
     pub procedure: Procedure,
-    /// Level of detail: points are taken from the coarsest level on which they are at most this many pixels apart, up to √2 times
-    /// as far where the surface is seen at an angle; 0 always takes all points. Default: 1.4, with which about one point falls on a
-    /// pixel, and never less than half a one.
+    /// Level of detail: points are taken from the coarsest level on which they are at most this many pixels apart, up
+    /// to √2 times as far where the surface is seen at an angle; 0 always takes all points. Default: 1.4, with which
+    /// about one point falls on a pixel, and never less than half a one.
     pub level: f32,
-    /// Whether nodes that face away or are hidden are skipped; they never show. Default: true.
+    /// Whether nodes that face away or are hidden are skipped, which never changes the picture. Default: true.
     pub culling: bool,
     /// Default: [`Light::Eye`].
     pub light: Light,
@@ -69,7 +59,7 @@ impl Options {
         surface_layers: false,
     };
 
-    /// Sets what is sharp.
+    /// Sets the depth of field.
     #[must_use]
     pub const fn with_focus(mut self, focus: Focus) -> Self {
         self.focus = focus;
@@ -135,10 +125,8 @@ impl Options {
         for c in self.base.to_array() {
             check("base", c, (0.0..=Points::BRIGHTEST).contains(&c), "it must be 0 to 1e30")?;
         }
-        if let Light::Towards(d) = self.light
-            && !(d.is_finite() && d != DVec3::ZERO)
-        {
-            check("light", d.x as f32, false, "the direction must be finite and not zero")?;
+        if let Light::Towards(d) = self.light {
+            check("light", d.x as f32, self.light.is_valid(), "the direction must be finite and not zero")?;
         }
         Ok(())
     }

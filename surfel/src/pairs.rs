@@ -1,7 +1,7 @@
 //! An order of points and links in which neighbours follow one another, two by two.
 //!
-//! Between a level of the octree and the next lies a factor of more than two in distance. A node that is drawn with one disc
-//! for every pair gives a level in between, and needs no memory for it.
+//! Between a level of the octree and the next lies a factor of more than two in distance. A node that is drawn with one
+//! disc for every pair gives a level in between, and needs no memory for it.
 
 use crate::attributes::Attributes;
 use crate::lattice::between;
@@ -10,8 +10,8 @@ use crate::octree::Cube;
 use glam::Vec3;
 use pointillist_parallel as parallel;
 
-/// Neighbours whose normals have a smaller product than this are no pair, nor are those that are farther apart than this, in
-/// the larger of their radii: one disc cannot stand for both.
+/// Neighbours whose normals have a smaller product than this are no pair, nor are those that are farther apart than
+/// this, in the larger of their radii: one disc cannot stand for both.
 const ALIKE: f32 = 0.5;
 pub(crate) const FARTHEST: f32 = 2.0;
 
@@ -101,7 +101,8 @@ fn front_first(items: &mut [Item], facing: Vec3) -> usize {
     items.partition_point(is_front).max(1)
 }
 
-/// Halves items across the longest side of their box until two are left, so that those which follow one another are close.
+/// Halves items across the longest side of their box until two are left, so that those which follow one another are
+/// close.
 fn halve(items: &mut [Item]) {
     if items.len() <= 2 {
         return;

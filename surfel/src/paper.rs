@@ -1,13 +1,17 @@
-//! The paper's procedure: z-buffers of discs, links in the pixels of their centres, and a filter over the pixels between.
+//! The paper's procedure: z-buffers of discs, links in the pixels of their centres, and a filter over the pixels
+//! between.
 //!
-//! Discs have hard edges and the radius r₀, or r = r₀ + d·|l − f| with depth of field. One z-buffer is drawn with each.
-//! A disc whose centre is not hidden in the first leaves a link in its centre's pixel. A covered pixel without a link is a
-//! hole: it gets the mean of the links around it within the radius of the disc that covers it, weighted with a
-//! Gaussian. Pixels that are out of focus are filtered in the same way. Where the two z-buffers differ, things at different
-//! depths meet, and every link is weighted with the Gaussian of its own radius.
+//! Discs have hard edges and the radius r₀, or r = r₀ + d·|l − f| with depth of field (l: depth of the disc, f: depth
+//! in focus).
 //!
-//! Departures: blurred pixels are as opaque as the share of the filter that the first z-buffer covers (the paper's figures
-//! have no background to tell), and a disc is never so small that it misses all pixel centres.
+//! 1. Two z-buffers are drawn, one with r₀ and one with r. A disc whose centre is not hidden in the first leaves a link
+//!    in the pixel of its centre.
+//! 2. A covered pixel without a link is a hole: it gets the mean of the links within the radius of the disc that covers
+//!    it, weighted with a Gaussian. Pixels that are out of focus are filtered in the same way. Where the two z-buffers
+//!    differ, surfaces at different depths meet, and every link is weighted with the Gaussian of its own radius.
+//!
+//! Departures: blurred pixels are as opaque as the share of the filter that the first z-buffer covers (the paper's
+//! figures have no background to tell), and a disc is never so small that it misses all pixel centres.
 
 use crate::camera::Camera;
 use crate::frame::Band;
@@ -109,7 +113,7 @@ impl PaperTile {
                 }
             }
         }
-        // The splats are those with r: a link knows its filter.
+        // The splats are those with r, which is the radius of a link's filter.
         for s in self.splats.as_slice() {
             let (x, y) = (s.x.floor(), s.y.floor());
             let inside = x >= 0.0 && y >= 0.0 && x < rect.width as f32 && y < rect.height as f32;
@@ -194,7 +198,7 @@ impl<'a> Filter<'a> {
             }
         });
         if sums.weight == 0.0 {
-            // No link in reach: what is covered stays covered.
+            // No link in reach: a covered pixel stays opaque.
             return self.nearest_link(radius, depth).unwrap_or(blank);
         }
         let alpha = if blurred || differ { sums.covered / sums.all } else { 1.0 };

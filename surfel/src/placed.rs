@@ -55,12 +55,12 @@ pub(crate) struct Placed<S: Simd> {
     /// 1/distance from the eye along the view axis, and pixels per unit there.
     pub(crate) inverse: Vector<S>,
     pub(crate) scale: Vector<S>,
-    /// The way from the eye, for one along the view axis.
+    /// Vector from the eye to the centre, over its component along the view axis.
     pub(crate) way: [Vector<S>; 2],
     pub(crate) normal: [Vector<S>; 3],
     /// See [`crate::items::Items::spreads`].
     pub(crate) spread: [Vector<S>; 3],
-    /// Below 0 towards the eye.
+    /// Product of the normal and the vector (`way`, 1): below 0 where the disc faces the eye.
     pub(crate) facing: Vector<S>,
 }
 

@@ -44,13 +44,14 @@ impl<'a> Points<'a> {
         self
     }
 
-    /// Most points of a cloud: numbers of points are 32 bits wide, and some stay free.
+    /// Most points of a cloud: indices of points have 32 bits, some values of which have other meanings.
     pub const MOST: usize = 1 << 30;
 
-    /// Largest absolute value of a coordinate, a quarter of `f64::MAX`: differences of coordinates, and twice those, are finite.
+    /// Largest absolute value of a coordinate, a quarter of `f64::MAX`: differences of coordinates, and twice those,
+    /// are finite.
     pub const FARTHEST: f64 = 0.25 * f64::MAX;
 
-    /// Largest channel of a color: weighted sums of it are still numbers.
+    /// Largest channel of a color: weighted sums of it are finite in `f32`.
     pub const BRIGHTEST: f32 = 1e30;
 
     pub(crate) fn check(&self) -> Result<(), SurfelError> {
@@ -71,7 +72,7 @@ impl<'a> Points<'a> {
                 return Err(SurfelError::LengthMismatch { what, length, count });
             }
         }
-        // Not `max_element`, which passes over NaN.
+        // Not `max_element`, which ignores NaN.
         let good = |p: &DVec3| p.abs().cmple(DVec3::splat(Self::FARTHEST)).all();
         if let Some(index) = self.positions.iter().position(|p| !good(p)) {
             let (finite, value) = (self.positions[index].is_finite(), self.positions[index].to_array());

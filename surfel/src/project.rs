@@ -1,4 +1,4 @@
-//! From the items of a node to discs on the picture.
+//! Projects the items of a node to discs on the picture.
 
 use crate::batch::{Projected, Value};
 use crate::ellipse::project;
@@ -23,7 +23,7 @@ impl Projector {
         Box::new(Self { discs: Items::NOTHING, out: Projected::NOTHING })
     }
 
-    /// Appends what `selected` puts into a tile.
+    /// Appends the discs of `selected` that may touch the tile.
     pub(crate) fn project(
         &mut self,
         scene: &Scene<'_>,

@@ -1,8 +1,8 @@
 //! How large a disc must be so that no gap stays between it and its neighbours' discs.
 //!
 //! On a plane, discs leave no gap exactly if each reaches to the farthest corner of its point's Voronoi cell: the place
-//! that is as near to two neighbours, the farthest that are needed. The cell is cut out of the tangent plane, neighbour by
-//! neighbour, up to the distance at which none can cut any more.
+//! that is as near to two neighbours, the farthest that are needed. The cell is cut out of the tangent plane, neighbour
+//! by neighbour, up to the distance at which none can cut any more.
 
 use crate::SurfacePoint;
 use crate::eliminate::OTHER_SIDE;
@@ -19,8 +19,8 @@ const SQUARE: [DVec2; 4] =
 /// What is nearer to the square's side than this is on it.
 const ROUNDING: f64 = 1e-9;
 
-/// Cosine of the angle between the normals of neighbours above which their discs cover for each other: 60°. Beyond it the
-/// surface has a crease between them: each side has to be covered by its own discs, but only up to the crease.
+/// Cosine of the angle between the normals of neighbours above which their discs cover for each other: 60°. Beyond it
+/// the surface has a crease between them: each side has to be covered by its own discs, but only up to the crease.
 const SAME_SURFACE: f64 = 0.5;
 
 /// Points between two calls of `done`.
@@ -29,8 +29,9 @@ const TOLD: usize = 1 << 14;
 /// Parts of the reach that are tried first.
 const PARTS: [f64; 2] = [1.0 / 3.0, 0.5];
 
-/// Gives every point its radius, at most `reach`: no place of the surface is farther from its nearest point. Points on a
-/// border, where no neighbours close their cells, get another. `done` is told shares of the work.
+/// Gives every point its radius, at most `reach`: no place of the surface is farther from its nearest point. Points on
+/// a border, where no neighbours close their cells, get another. `done` is called with the share of the work that is
+/// done, 0 to 1.
 pub(crate) fn assign(points: &mut [SurfacePoint], reach: f64, on_border: f64, done: &(dyn Fn(f64) + Sync)) {
     let count = AtomicUsize::new(0);
     let rows = Rows::new(points.len(), reach, |i| points[i].position);
@@ -59,32 +60,32 @@ fn rounded_up(radius: f64) -> f32 {
     up.min(f32::MAX)
 }
 
-/// Of a cloud, how far a disc may reach, in parts of the distance of its point's [`REACH_RANK`]th neighbour. Cells of lattices,
-/// also of those four times as long as wide, reach to 0.5 to 0.7 of it. Of a sphere of 4000 random points, the most uneven there
-/// are, 0.3 % is bare with 1 and nothing with 1.5.
+/// Of a cloud, how far a disc may reach, in parts of the distance of its point's [`REACH_RANK`]th neighbour. Cells of
+/// lattices, also of those four times as long as wide, reach to 0.5 to 0.7 of it. Of a sphere of 4000 random points,
+/// the most uneven there are, 0.3 % is bare with 1 and nothing with 1.5.
 const REACH: f64 = 1.5;
 const REACH_RANK: usize = 6;
 
-/// No disc of a cloud is larger than this many times the median spacing, which is the distance of the [`REACH_RANK`]th neighbour:
-/// enough for places six times as sparse as most are, and no more for a few points far from all others.
+/// No disc of a cloud is larger than this many times the median spacing, which is the distance of the [`REACH_RANK`]th
+/// neighbour: enough for places six times as sparse as most are, and no more for a few points far from all others.
 const MOST_MEDIANS: f64 = 4.0;
 
-/// No disc of a cloud is larger than this many times the largest spacing of those neighbours: enough beside a scan that is
-/// four times as dense, and no more for one point far from all others.
+/// No disc of a cloud is larger than this many times the largest spacing of those neighbours: enough beside a scan that
+/// is four times as dense, and no more for one point far from all others.
 const MOST_NEIGHBOURS: f64 = 2.0;
 
-/// How many of the nearest places are tried, until no other could cut the cell. The first closes most cells; the last is for
-/// borders, where a cell stays open.
+/// How many of the nearest places are tried, until no other could cut the cell. The first closes most cells; the last
+/// is for borders, where a cell stays open.
 const TRIES: [usize; 3] = [14, 32, 96];
 
-/// The radius of each point of a cloud, in the caller's order and the cloud's unit, from its normal: the discs leave no gap that a
-/// disc can close which reaches no farther than 1.5 times to the point's sixth neighbour.
+/// The radius of each point of a cloud, in the caller's order and the cloud's unit, from its normal: the discs leave no
+/// gap that a disc can close which reaches no farther than 1.5 times to the point's sixth neighbour.
 ///
-/// What lies farther from all points is a border or a hole: it does not count, and a point on a border has about
-/// the radius of one inside. Points far from all others get what becomes their neighbours: see the constants. One whose cell no
-/// neighbour limits within reach gets half the way to the nearest, and at most half the median spacing; a lone place
-/// gets 1. All radii are normal numbers of `f32`, more than 0.
-/// Points that coincide and face the same way have the same radius. Does not depend on the order of points.
+/// What lies farther from all points is a border or a hole and stays uncovered; a point on a border has about the
+/// radius of one inside. Radii of points far from all others are limited by the spacing of the other points: see the
+/// constants. A point whose cell no neighbour limits within reach gets half the distance to the nearest one, and at
+/// most half the median spacing; a single place gets 1. All radii are normal numbers of `f32`, above 0. Points that
+/// coincide and face the same way have the same radius. The result does not depend on the order of points.
 ///
 /// `two_sided`: the sign of a normal has no meaning.
 pub(crate) fn of_cloud(places: &Places, normals: &[Vec3], two_sided: bool) -> Vec<f32> {
@@ -100,14 +101,14 @@ pub(crate) fn of_cloud(places: &Places, normals: &[Vec3], two_sided: bool) -> Ve
     let radius = |disc: &Disc| {
         let around = disc.nearest.iter().map(|&place| spacings[place as usize]).fold(0.0, f64::max);
         let own = disc.radius.unwrap_or((0.5 * disc.to_nearest).min(0.5 * median));
-        // Rounded up, as for meshes, and so is what cannot be told from 0.
+        // Rounded up, as for meshes; radii below the normal numbers of `f32` become the smallest of these.
         let units = own.min(MOST_NEIGHBOURS * around).min(MOST_MEDIANS * median) / places.scale();
         rounded_up(units.min(f64::from(f32::MAX))).max(f32::MIN_POSITIVE)
     };
     sides.of_points.iter().map(|&side| radius(&discs[side as usize])).collect()
 }
 
-/// What the neighbours of a point of a cloud say of its disc; places' units.
+/// The limits that neighbours set to the disc of a point of a cloud, in units of the places.
 struct Disc {
     /// None if no neighbour limits its cell within reach.
     radius: Option<f64>,
@@ -115,7 +116,7 @@ struct Disc {
     to_nearest: f64,
     /// Distance of the [`REACH_RANK`]th neighbour, or the last one.
     spacing: f64,
-    /// The place of the point itself, where there are not so many neighbours, and those up to that one.
+    /// Places of the neighbours up to that one; the point's own place where there are fewer.
     nearest: [u32; REACH_RANK],
 }
 
@@ -144,7 +145,7 @@ fn disc(places: &Places, sides: &Sides, side: usize) -> Disc {
     disc
 }
 
-/// A neighbour as its point sees it.
+/// A neighbour in the frame of its point.
 struct Neighbour {
     distance2: f64,
     offset: DVec3,
@@ -159,8 +160,8 @@ struct VoronoiCell {
 }
 
 impl VoronoiCell {
-    /// The cell among these neighbours, nearest first, within a square of half side `reach`. Whether there are neighbours that
-    /// are too far to cut any more comes with it.
+    /// The cell among these neighbours, nearest first, within a square of half side `reach`. Whether there are
+    /// neighbours that are too far to cut any more comes with it.
     fn among(neighbours: impl Iterator<Item = Neighbour>, normal: DVec3, reach: f64) -> (Self, bool) {
         let (right, up) = normal.any_orthonormal_pair();
         let flat = |v: DVec3| DVec2::new(right.dot(v), up.dot(v));

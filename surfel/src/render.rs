@@ -16,7 +16,7 @@ use pointillist_view::View;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Draws frames. Keeps its working memory, so that later frames hardly allocate.
+/// Draws frames. Keeps its working memory, so that later frames allocate next to nothing.
 #[derive(Default)]
 pub struct Renderer {
     selected: Vec<Selected>,
@@ -43,7 +43,8 @@ impl Renderer {
     /// The same for every order of points and for every number of threads, bit for bit.
     ///
     /// # Errors
-    /// [`SurfelError::TooLarge`] if a side of the picture is above [`Renderer::LARGEST_SIDE`]; [`SurfelError::BadOption`].
+    /// [`SurfelError::TooLarge`] if a side of the picture is above [`Renderer::LARGEST_SIDE`];
+    /// [`SurfelError::BadOption`].
     pub fn draw(
         &mut self,
         cloud: &Cloud,

@@ -7,14 +7,14 @@ use crate::shade::{INDEPENDENT, LEAST_LIGHT, Shader, opacity};
 use crate::vector::Vector;
 use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
 
-/// Less weight is none: its inverse would not be a number that can be used.
+/// Weights below this count as 0: their inverse could overflow.
 const LEAST_WEIGHT: f32 = 1e-30;
 
-/// Beside a pixel with less weight than this there is an edge.
+/// A pixel next to one with less weight than this lies on an edge.
 const LEAST_INSIDE: f32 = 0.25;
 
-/// Lays a layer under what is in `pixels`, which are empty before the `FIRST`, and clears its sums; where pixels that it
-/// touched let light through. Normals are kept if they are `WANTED`.
+/// Composites a layer behind what is in `pixels` (nothing before the `FIRST` layer), and clears its sums. Returns the
+/// blocks in which pixels that it touched are not yet opaque. Normals are kept if they are `WANTED`.
 pub(crate) fn resolve<const FIRST: bool, const WANTED: bool>(
     layer: &mut Layer,
     pixels: &mut [Pixels],
@@ -48,7 +48,7 @@ impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANT
         for row in touched.rows() {
             lines.take::<S, FIRST>(simd, layer, rect, touched, row);
             if row > touched.rows().start {
-                // Rows below need it no more.
+                // The rows below do not read it any more.
                 layer.clear_sums::<WANTED>(touched.blocks(row - 1));
             }
             for column in touched.columns() {
@@ -58,7 +58,7 @@ impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANT
                     let vector = |lanes: &Lanes| Vector::new(simd, S::as_simd_f32s(lanes).0[i]);
                     let [weight, depth, sharpness, color @ ..] = &layer.sums[index].0;
                     let weight = vector(weight);
-                    // Not where it is NaN.
+                    // False for NaN.
                     let is_there = weight.exceeds(LEAST_WEIGHT);
                     let inverse = weight.if_set(is_there, 1.0).inverse();
                     let mean = |sums: &Lanes| vector(sums) * inverse;
@@ -91,16 +91,16 @@ impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANT
     }
 }
 
-/// A surface that is laid under what is in vector `i` of a block.
+/// A surface that is composited behind what is in vector `i` of a block.
 struct Under<S: Simd> {
     alpha: Vector<S>,
-    /// Where there is one.
+    /// The pixels that the surface covers.
     is_there: S::m32s,
     i: usize,
 }
 
 impl<S: Simd> Under<S> {
-    /// Where pixels became half opaque, and how opaque they are.
+    /// Returns the pixels that became half opaque by it, and the opacity of all.
     #[inline(always)]
     fn blend<const FIRST: bool>(
         &self,
@@ -117,7 +117,7 @@ impl<S: Simd> Under<S> {
         *opacity = after.lanes;
         for (channel, color) in channels.iter_mut().zip(color) {
             let channel = &mut S::as_mut_simd_f32s(channel).0[self.i];
-            // What is not there may be no number.
+            // Outside of the surface the color may be NaN.
             let added = share * color.if_set(self.is_there, 0.0);
             *channel = if FIRST { added } else { Vector::new(simd, *channel) + added }.lanes;
         }
@@ -137,12 +137,12 @@ fn keep<S: Simd, const FIRST: bool>(new: Vector<S>, mask: S::m32s, empty: f32, k
 /// A value of each pixel of a row. With a block of room on either side.
 type Line = [f32; WIDTH + 2 * LANES];
 
-/// Three pixels above one another, for a row: of those that were open before this layer. What others would have shown of it is
-/// not known; they are no edge of it.
+/// Sums and least weights of three pixels above one another, for each column of a row. Only pixels that were open
+/// before this layer count: the weights that it would have in others are unknown, and these do not count as its edge.
 struct Lines {
     sums: Line,
     least: Line,
-    /// How many were open.
+    /// How many of the three were open.
     counts: Line,
     /// 1 where the row before was open: its floors are new already.
     above: Line,
@@ -173,7 +173,7 @@ impl Lines {
         let last = (columns.end + 1).min(rect.width.div_ceil(LANES));
         for column in first..last {
             for i in 0..LANES / S::F32_LANES {
-                // No closures: what is compiled on its own stays narrow.
+                // No closures: a function compiled on its own would not use the wide instructions.
                 let above = Weights::<S>::new::<FIRST>(simd, layer, rows[0] * PITCH + column, i);
                 let own = Weights::<S>::new::<FIRST>(simd, layer, rows[1] * PITCH + column, i);
                 let below = Weights::<S>::new::<FIRST>(simd, layer, rows[2] * PITCH + column, i);
@@ -199,7 +199,8 @@ impl Lines {
 
     /// The weights of a vector of pixels, or, inside a surface, those of the 3×3 pixels around each if they are larger.
     ///
-    /// Weights vary between points. Over an edge that is blurred they fall evenly: there the mean is that of the middle.
+    /// Weights vary between points, which the larger mean evens out. Over a blurred edge weights fall linearly, and the
+    /// mean equals the weight in the middle.
     #[inline(always)]
     fn evened<S: Simd, const FIRST: bool>(&self, own: Vector<S>, column: usize, i: usize) -> Vector<S> {
         let [left, middle, right] = around(&self.sums, own, column, i);
@@ -296,7 +297,7 @@ impl NullaryFnOnce for Write<'_, '_> {
             let colors = band.color[to.clone()].chunks_mut(LANES);
             let depths = band.depth[to.clone()].chunks_mut(LANES);
             for ((pixels, colors), depths) in from.iter().zip(colors).zip(depths) {
-                // Whole blocks by themselves: what has a length known beforehand needs no call to copy.
+                // Whole blocks apart: copies of a length known to the compiler need no call.
                 match (<&mut [_; LANES]>::try_from(&mut *colors), <&mut [_; LANES]>::try_from(&mut *depths)) {
                     (Ok(colors), Ok(depths)) => pixels.write(shader, colors, depths),
                     _ => pixels.write(shader, colors, depths),

@@ -3,11 +3,11 @@
 use glam::DVec3;
 use pointillist_parallel as parallel;
 
-/// Points in rows along the longest side of their box, sorted along each row: a search looks into a few rows and, in each,
-/// at the points within reach only.
+/// Points in rows along the longest side of their box, sorted along each row: a search looks into a few rows and, in
+/// each, at the points within reach only.
 ///
-/// Memory is 40 bytes per point. A search costs what it finds, times a few, for points that are spread over
-/// surfaces; it is right for all.
+/// Memory is 40 bytes per point. For points that are spread over surfaces a search looks at a few times as many points
+/// as it finds; for other points it is slower, and as correct.
 pub(crate) struct Rows {
     /// Which coordinates of a point are along and across the rows.
     axes: [usize; 3],

@@ -1,4 +1,4 @@
-//! The public door.
+//! Sampling a mesh: the public functions and their options.
 
 use crate::mesh::Mesh;
 use crate::{SurfacePoint, SurfelError, blue_noise, ldi, radius};
@@ -11,8 +11,8 @@ pub const MAX_COUNT: usize = 1 << 28;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Amount {
-    /// This many, at least 1. [`Method::Poisson`] makes exactly this many; [`Method::Ldi`] takes the spacing at which this
-    /// many are to be expected.
+    /// This many, at least 1. [`Method::Poisson`] makes exactly this many; [`Method::Ldi`] takes the spacing at which
+    /// this many are to be expected.
     Count(usize),
     /// Points about this far from their neighbours, world units. [`Method::Ldi`]: the distance of the rays.
     /// [`Method::Poisson`]: the distance in a hexagonal lattice of as many points.
@@ -52,14 +52,14 @@ impl SampleOptions {
     /// The defaults, as a constant.
     pub const DEFAULT: Self = Self { amount: Amount::Count(100_000), method: Method::Poisson, seed: 0 };
 
-    /// Asks for so many points.
+    /// Sets the number of points.
     #[must_use]
     pub const fn with_count(mut self, count: usize) -> Self {
         self.amount = Amount::Count(count);
         self
     }
 
-    /// Asks for points so far apart.
+    /// Sets the spacing of the points, world units.
     #[must_use]
     pub const fn with_spacing(mut self, spacing: f64) -> Self {
         self.amount = Amount::Spacing(spacing);
@@ -90,7 +90,8 @@ const CHOSEN: f64 = 0.75;
 /// ([`Method::Poisson`]). The same input gives the same points, bit for bit, on any number of threads.
 ///
 /// # Errors
-/// Positions that are not finite, indices out of range, no area, and amounts that are no amounts or too large.
+/// [`SurfelError::VertexNotFinite`], [`SurfelError::VertexOutOfRange`], [`SurfelError::NoArea`],
+/// [`SurfelError::ZeroCount`], [`SurfelError::BadSpacing`], [`SurfelError::TooManyPoints`], [`SurfelError::TooFine`].
 pub fn sample(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
@@ -99,7 +100,7 @@ pub fn sample(
     sample_with(positions, triangles, options, &|_| ())
 }
 
-/// As [`sample`], and says now and then, from any thread, which share of the work is done.
+/// As [`sample`]; `done` is called now and then, from any thread, with the share of the work that is done, 0 to 1.
 ///
 /// # Errors
 /// As [`sample`].

@@ -1,4 +1,4 @@
-//! What a frame shows, and how.
+//! The parts of a frame that all tiles share.
 
 use crate::camera::Camera;
 use crate::cloud::Cloud;

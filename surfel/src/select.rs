@@ -22,9 +22,9 @@ pub(crate) struct Selected {
     pub(crate) margin: f32,
     /// Whether pairs of its items are drawn as one.
     pub(crate) in_pairs: bool,
-    /// Nothing of it has a smaller bent depth.
+    /// Lower bound of the bent depths of all that it draws.
     pub(crate) nearest: f32,
-    /// Nor does anything belong to a surface farther before it than this.
+    /// Upper bound, as a bent depth, of how far behind the nearest disc these may lie and belong to the same surface.
     pub(crate) thickness: f32,
 }
 

@@ -1,16 +1,17 @@
 //! Light on surfaces, and how much of a pixel they cover.
 
 use crate::camera::{Camera, turned};
-use crate::options::{Light, Options};
+use crate::options::Options;
 use crate::vector::{Real, Vector};
 use glam::Vec3;
+use pointillist_view::Light;
 use pulp::Simd;
 
-/// Light that passes all layers and is less than this is not followed: half a step of 8 bits.
+/// Transmittance of all layers so far below which further layers are not drawn: half a step of an 8-bit picture.
 pub(crate) const LEAST_LIGHT: f32 = 1.0 / 512.0;
 
-/// How independent the edges of two layers are: between 1, where a layer covers its share of what those before leave open, and
-/// 0, where it fills that first, as parts of one surface do. Found by experiment with a lens.
+/// How independent the edges of two layers are: between 1, where a layer covers its share of what those before leave
+/// open, and 0, where it fills that first, as parts of one surface do. Found by experiment with a lens.
 pub(crate) const INDEPENDENT: f32 = 0.4;
 
 /// Shading of a frame.
@@ -50,7 +51,7 @@ impl Shader {
         cosine.at_least(0.0).at_most(1.0)
     }
 
-    /// Cosine between normal and the way to the eye.
+    /// Cosine between the normal and the direction to the eye.
     #[inline(always)]
     fn facing_eye<S: Simd>(&self, normal: [Vector<S>; 3], (x, y): (Vector<S>, Vector<S>)) -> Vector<S> {
         if !self.camera.is_perspective {
@@ -100,9 +101,9 @@ impl Shader {
 #[inline(always)]
 pub(crate) fn opacity<S: Simd>(sum: Vector<S>, sharpness: Vector<S>) -> Vector<S> {
     let covered = (sharpness * (sum - 0.5) + 0.5).at_least(0.0).at_most(1.0);
-    // Sums inside a surface vary by a few per cent: it must not let light through for that.
+    // Sums inside a surface vary by a few per cent, which must not make it translucent.
     (covered * (covered * covered * CLOSING + 1.0)).at_most(1.0)
 }
 
-/// A coverage of 0.9 and more is taken for all.
+/// Coefficient of the cubic that closes surfaces: with it, a coverage of 0.9 and more counts as 1.
 const CLOSING: f32 = 0.15;

@@ -1,21 +1,22 @@
-//! How far apart points of a node may be: for the size of its pixels, for how it faces the eye, and for its blur.
+//! How far apart points of a node may be drawn: limited by the size of pixels, the angle to the eye, and the blur.
 
 use crate::camera::Camera;
 use crate::node::Node;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// Points with a blur of radius R may be 3.5 + 0.4·R apart (pixels), but never more than 1.2·R. Found by experiment: wider apart
-/// they show as dots.
+/// Points with a blur of radius R may be 3.5 + 0.4·R apart (pixels), but never more than 1.2·R. Found by experiment:
+/// wider apart they show as dots.
 const BLURRED_START: f32 = 3.5;
 const BLURRED_SLOPE: f32 = 0.4;
 const BLURRED_MOST: f32 = 1.2;
 
-/// Points on a surface that is seen at an angle may be farther apart, so that as many fall on its pixels; but no farther than at this
-/// cosine of the angle.
+/// Points on a surface that is seen at an angle may be farther apart, so that as many fall on its pixels; but no
+/// farther than at this cosine of the angle.
 const LEAST_FACING: f32 = 0.5;
 
-/// How much of the half angle of a node's normals is taken off the angle of their middle: a bent surface faces the eye somewhere.
+/// How much of the half angle of a node's normals is taken off the angle of their middle: a bent surface faces the eye
+/// somewhere.
 const BENT: f32 = 0.5;
 
 /// For boxes in the axes of the picture.
@@ -54,7 +55,7 @@ impl Depths {
     }
 }
 
-/// Angles between the normals of a node and the way to the eye, radians.
+/// Angles between the normals of a node and the direction to the eye, radians.
 pub(crate) struct Angles {
     /// None is smaller.
     pub(crate) least_rad: f32,
@@ -69,7 +70,7 @@ impl Angles {
         let (towards_eye, spread) = if camera.is_perspective {
             let to_eye = -camera.local(node).as_vec3();
             let (distance, radius) = (to_eye.length(), node.half.length());
-            // An eye inside the box sees it from everywhere.
+            // For an eye inside the box, all directions occur.
             let spread = if distance > radius { (radius / distance).asin() } else { PI };
             (to_eye / distance.max(f32::MIN_POSITIVE), spread)
         } else {

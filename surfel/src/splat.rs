@@ -17,8 +17,8 @@ pub(crate) const REACH2: f32 = 8.0;
 /// The same for the flatter kernel √(1 − q/R) of discs that are mostly blur: a lens blurs evenly over a disc.
 pub(crate) const FLAT_REACH2: f32 = 5.0;
 
-/// The paper's discs have hard edges. In quadrature with this radius, half the diagonal of a pixel, each covers a pixel's
-/// centre.
+/// Added in quadrature to the radius of the paper's hard-edged discs: half the diagonal of a pixel, so that each disc
+/// covers the centre of a pixel.
 pub(crate) const LEAST_RADIUS2: f32 = 0.5;
 
 /// The ellipse of these discs covers both of a pair, where they are a radius apart.
@@ -55,7 +55,7 @@ pub(crate) struct Splat {
     pub(crate) rows: [u8; 2],
     /// How much steeper than the kernel's an edge has to be to look sharp.
     pub(crate) sharpness: f32,
-    /// In its light.
+    /// Color with its light.
     pub(crate) color: [f32; 3],
     /// In the picture's axes.
     pub(crate) normal: [f32; 3],
@@ -101,17 +101,17 @@ impl Splat {
     }
 }
 
-/// How discs are drawn.
+/// Parameters of how discs are drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shape {
     /// Standard deviation of the kernel over the radius, and what it gains from the spread of a pair.
     pub(crate) deviation: f32,
     pub(crate) spread: f32,
-    /// What is added for the pixel.
+    /// Variance that is added for the pixel.
     pub(crate) pixel_variance: f32,
     pub(crate) reach2: f32,
     pub(crate) flat_reach2: f32,
-    /// Blur as a kernel of its own, or as more radius.
+    /// Share of the blur that is a kernel of its own, and share that widens the radius of the disc.
     pub(crate) lens: f32,
     pub(crate) widening: f32,
     /// Whether `sharpness` is to be the radius in pixels.

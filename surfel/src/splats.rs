@@ -1,10 +1,10 @@
-//! The discs of a tile.
+//! The list of the discs of a tile.
 
 use crate::batch::Projected;
 use crate::splat::Splat;
 
-/// A list that keeps its memory, filled, when it is emptied: new entries are written in place. To push what was made
-/// elsewhere would copy it once more.
+/// A list that keeps its memory initialised when it is emptied: new entries are written in place. Pushing entries made
+/// elsewhere would copy them once more.
 #[derive(Default)]
 pub(crate) struct Splats {
     all: Vec<Splat>,

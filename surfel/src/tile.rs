@@ -1,8 +1,8 @@
 //! A tile of the picture, drawn layer by layer.
 //!
-//! Each layer is the nearest surface behind the one before, wherever pixels are not yet opaque: its depth is that of the
-//! nearest disc, and all discs that lie within their thickness behind that are averaged. Neither depends on the order of
-//! discs, up to the rounding of sums, and that is fixed by the order of nodes.
+//! Each layer is the nearest surface behind the one before, wherever pixels are not yet opaque: its depth is that of
+//! the nearest disc, and all discs that lie within their thickness behind that are averaged. Neither depends on the
+//! order of discs, up to the rounding of sums, and that is fixed by the order of nodes.
 
 use crate::frame::Band;
 use crate::grid::{HEIGHT, SQUARE, TileRect, WIDTH};
@@ -17,7 +17,7 @@ use crate::splats::Splats;
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
-/// Surfaces behind one another in a pixel. All that lies behind the last but one is taken for the last.
+/// Most layers of a pixel. All that lies behind the last but one is drawn as one layer, the last.
 const MOST_LAYERS: usize = 4;
 
 /// Squares of a tile: columns, rows.
@@ -31,7 +31,8 @@ pub(crate) struct Tile {
     behind: Vec<u32>,
     layer: Layer,
     pixels: Vec<Pixels>,
-    /// Farthest depth of each square, +∞ as long as a pixel is empty. None where discs were drawn since it was last asked for.
+    /// Farthest depth of each square, +∞ as long as a pixel is empty. None where discs were drawn since it was last
+    /// asked for.
     farthest: [[Option<f32>; SQUARES[0]]; SQUARES[1]],
     /// Nodes that no pixel of the first layer shows.
     hidden: Vec<Selected>,
@@ -88,7 +89,8 @@ impl Tile {
         write(&self.pixels, &scene.shader, rect, band);
     }
 
-    /// From the splats of the first layer, which touch these pixels, to the colors of all, with normals if they are `WANTED`.
+    /// Composites all layers, beginning with the splats of the first, which touch these pixels; with normals if they
+    /// are `WANTED`.
     fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, rect: &TileRect, mut touched: Touched) {
         for blocks in touched.others(rect.height) {
             self.pixels[blocks.clone()].fill(Pixels::EMPTY);
@@ -123,8 +125,8 @@ impl Tile {
         self.projector.project(scene, selected, &Shape::BLENDED, rect, &mut self.splats);
     }
 
-    /// Leaves those of the discs behind that may be seen through `open` pixels, and adds those of hidden nodes, in the order
-    /// of nodes. Returns all that they may touch.
+    /// Leaves those of the discs behind that may be seen through `open` pixels, and adds those of hidden nodes, in the
+    /// order of nodes. Returns all that they may touch.
     fn add_hidden(&mut self, scene: &Scene<'_>, rect: &TileRect, open: &Open) -> Touched {
         let drawn = self.splats.as_slice().len();
         let mut hidden = std::mem::take(&mut self.hidden);
@@ -151,7 +153,7 @@ impl Tile {
             is_seen
         });
         if self.splats.as_slice().len() > drawn {
-            // Sums are rounded: they have to be taken in the order in which they are without culling.
+            // Sums are rounded, so terms must be added in the same order as without culling.
             self.splats.sort_by_node(&mut self.behind);
         }
         touched

@@ -1,5 +1,5 @@
-//! Any values at all into every public function for clouds: an answer or a typed error, never a panic or NaN, in bounded
-//! time.
+//! Every public function for clouds with arbitrary values: it returns an answer or a typed error, never a panic or NaN,
+//! in bounded time.
 
 use glam::{DAffine3, DMat3, Vec3, dvec3};
 use pointillist_surfel::invariants::{self, OwnedPoints, cloud, look_at};

@@ -1,4 +1,4 @@
-//! Frames against what must come out: spheres, lenses, edges.
+//! Frames compared with closed forms: spheres, lenses, edges.
 
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_surfel::invariants::{
@@ -98,8 +98,8 @@ fn a_sphere_has_its_depths_and_normals_by_the_paper_too() {
     }
 }
 
-/// Radius of what is covered and what it has to be, and how far its middle is off, in pixels: of a sphere from 13 to 100 pixels
-/// across, in parallel and in perspective.
+/// Radius of what is covered and what it has to be, and how far its middle is off, in pixels: of a sphere from 13 to
+/// 100 pixels across, in parallel and in perspective.
 fn outlines_of_a_sphere(procedure: Procedure) -> Vec<[f64; 3]> {
     let mut all = vec![];
     for (height, distance) in [(2.5, 5.0), (6.0, 3.0), (20.0, 9.0)] {
@@ -140,7 +140,8 @@ fn a_sphere_has_its_outline_by_the_paper_too() {
     }
 }
 
-/// What is wrong with pictures of a sphere: from 3 pixels across to points that are 20 pixels apart, on all levels between.
+/// Errors of pictures of a sphere: from 3 pixels across to points that are 20 pixels apart, on all levels
+/// between.
 fn holes(cloud: &Cloud, procedure: Procedure) -> Vec<String> {
     let eye = dvec3(0.7, 0.5, 1.0).normalize();
     let near = [80.0, 40.0, 20.0, 14.0, 10.0, 8.0, 6.0, 4.0, 2.8, 2.0, 1.5, 1.1];
@@ -254,7 +255,7 @@ fn a_thin_lens_blurs_a_point_over_its_circle_of_confusion() {
     }
 }
 
-/// What is blurred covers as much as what is sharp.
+/// A blurred surface covers as much as a sharp one.
 #[test]
 fn the_energy_of_a_blurred_point_is_conserved() {
     let dot = OwnedPoints {
@@ -271,8 +272,9 @@ fn the_energy_of_a_blurred_point_is_conserved() {
         for focus in [3.0, 7.0] {
             let blurred = covered(Focus::Depth { depth, focus });
             println!("d = {depth}, focus {focus}: {:.3}", blurred / sharp);
-            // A soft disc is cut where it covers half, which leaves 0.85 of its area. A blurred one's edge is made steep by as much
-            // as the disc is of the blur, which takes from where little is covered: measured 0.83 to 1.12.
+            // A soft disc is cut where it covers half, which leaves 0.85 of its area. A blurred one's edge is made
+            // steep by as much as the disc is of the blur, which takes from where little is covered: measured 0.83 to
+            // 1.12.
             assert!(
                 (blurred / sharp - 1.0).abs() < 0.2,
                 "d = {depth}, focus {focus}: {blurred}, not {sharp}"

@@ -205,7 +205,7 @@ proptest! {
 
     #[test]
     fn culling_of_solids_does_not_change_a_bit(v in view_of_sphere(), o in options(), level in 0.5..3.0f32, depth in 0.0..0.03f64, which in 0..2usize) {
-        // Little blur, and not all points: the tests have no optimizer.
+        // Little blur, and not all points, to save time.
         let o = with(o, |o| o.level = level);
         let o = with(o, |o| if o.focus != Focus::Everywhere { o.focus = Focus::Depth { depth, focus: 4.0 } });
         // Hidden nodes, and nodes that face away.

@@ -189,8 +189,8 @@ fn rays_come_in_about_the_number_asked_for() {
 
 #[test]
 fn points_are_as_dense_on_large_triangles_as_on_small_ones() {
-    // A square of 2 × 16² triangles in one half and 2 in the other, by cells of 8 × 8: a χ² of 63 degrees of freedom is below 93
-    // in 99 % of random samples, and that of blue noise far below.
+    // A square of 2 × 16² triangles in one half and 2 in the other, by cells of 8 × 8: a χ² of 63 degrees of freedom is
+    // below 93 in 99 % of random samples, and that of blue noise far below.
     let strip = |x0: f64, x1: f64, n: u32, mesh: &mut Mesh| {
         let first = mesh.0.len() as u32;
         let at = |i: u32| f64::from(i) / f64::from(n);

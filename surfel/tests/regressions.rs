@@ -15,7 +15,7 @@ fn disc(at: DVec3, normal: Vec3, radius: f32) -> OwnedPoints {
     OwnedPoints { normals: Some(vec![normal]), radii: Some(vec![radius]), ..OwnedPoints::loose(vec![at]) }
 }
 
-/// The largest of three numbers passes over NaN, and so did the check of positions.
+/// `max_element` ignores NaN, and so did the check of positions.
 #[test]
 fn one_coordinate_that_is_nan_is_refused() {
     let points = OwnedPoints::loose(vec![DVec3::ZERO, dvec3(0.0, f64::NAN, 0.0)]);
@@ -23,7 +23,7 @@ fn one_coordinate_that_is_nan_is_refused() {
     assert!(matches!(error, SurfelError::PointNotFinite { index: 1, .. }), "{error:?}");
 }
 
-/// Runs of eight pixels added up what lay beyond a disc's columns; nobody took it away, and the next tile showed it.
+/// Runs of eight pixels added up what lay beyond a disc's columns; it was not cleared, and appeared in the next tile.
 #[test]
 fn a_disc_leaves_nothing_beyond_its_columns() {
     let point = disc(dvec3(0.0, 0.0, -0.887_584_319_129_471_8), Vec3::Z, 0.007_071_067_6);
@@ -49,7 +49,7 @@ fn no_depth_is_behind_the_eye() {
     frame_is_sound(&drawn, 1.0).unwrap();
 }
 
-/// The square of a short direction vanished.
+/// The square of a short direction underflowed to 0.
 #[test]
 fn light_may_come_along_a_short_direction() {
     let point = disc(DVec3::ZERO, Vec3::Z, 0.5);
@@ -68,7 +68,7 @@ fn a_lens_can_be_focused_on_infinity() {
     assert_eq!(field_of_view_rad(1.0, 2.0, f64::INFINITY), Some(std::f64::consts::FRAC_PI_2));
 }
 
-/// Places in the cloud were rounded in world coordinates before the eye was taken from them.
+/// Positions in the cloud were rounded in world coordinates before the eye was subtracted.
 #[test]
 fn a_scene_far_from_the_origin_gives_the_same_frame() {
     let near = OwnedPoints::sphere(DVec3::ZERO, 0.5, 200).moved(|p| (p * 1_048_576.0).round() / 1_048_576.0);
@@ -82,7 +82,7 @@ fn a_scene_far_from_the_origin_gives_the_same_frame() {
     frames_are_identical(&a, &b).unwrap();
 }
 
-/// Points with neither extent nor blur on the picture were thinned by 0/0, and then counted by it.
+/// Points with neither extent nor blur on the picture were thinned by a factor of 0/0, and then weighted by it.
 #[test]
 fn points_without_extent_on_the_picture_are_drawn() {
     let camera = Projection::Orthographic { height: 1e300 };

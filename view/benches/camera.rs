@@ -1,6 +1,6 @@
-//! How long a camera takes to be made and asked: `look_at`, `project`, `unproject` and `ray`, for both projections. The last three are
-//! timed over 1024 points or pixel positions; the number in each name is the largest error of `unproject` after `project`, in ulps
-//! of the largest coordinate.
+//! How long a camera takes to be made and asked: `look_at`, `project`, `unproject` and `ray`, for both projections. The
+//! last three are timed over 1024 points or pixel positions; the number in each name is the largest error of
+//! `unproject` after `project`, in ulps of the largest coordinate.
 //!
 //! `cargo bench -p pointillist-view --bench camera`
 
@@ -23,7 +23,8 @@ fn points() -> Vec<DVec3> {
     (0..POINTS).map(|i| dvec3(coordinate(i), coordinate(i / 16), coordinate(i / 64))).collect()
 }
 
-/// Largest distance between a point and what `unproject` makes of its place in the picture, ulps of the eye's largest coordinate.
+/// Largest distance between a point and what `unproject` makes of its place in the picture, ulps of the eye's largest
+/// coordinate.
 fn error_ulps(view: &View, points: &[DVec3], seen: &[Projected]) -> f64 {
     let error = |(p, s): (&DVec3, &Projected)| (view.unproject(s.pixel, s.depth) - *p).abs().max_element();
     points.iter().zip(seen).map(error).fold(0.0, f64::max) / (f64::EPSILON * EYE.max_element())

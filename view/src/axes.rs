@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-/// Sine of the angle between `up` and the view direction below which the roll of the picture would be rounding: an ulp of
-/// either direction turns it by more than a hundredth of a radian.
+/// Sine of the angle between `up` and the view direction below which the roll of the picture would be rounding: an ulp
+/// of either direction turns it by more than a hundredth of a radian.
 const SMALLEST_UP_SINE: f64 = 64.0 * f64::EPSILON;
 
 /// A cross product of unit vectors this short is off orthogonal by 16 times the rounding of its terms: it gets a second
@@ -16,8 +16,8 @@ const HUGE: f64 = f64::from_bits((1023 + 340) << 52);
 /// 2⁶⁰⁰: takes any such length, subnormal ones included, into the range where its square is a normal number.
 const UNDO: f64 = f64::from_bits((1023 + 600) << 52);
 
-/// The unit vector along `v`, also for vectors whose squared length is no number of `f64`; `None` for zero and for what is
-/// not finite. Multiplying by a power of two rounds nothing.
+/// The unit vector along `v`, also for vectors whose squared length is no number of `f64`; `None` for zero and for what
+/// is not finite. Multiplying by a power of two rounds nothing.
 pub(crate) fn unit_vector(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     if largest < TINY {
@@ -29,7 +29,8 @@ pub(crate) fn unit_vector(v: DVec3) -> Option<DVec3> {
     }
 }
 
-/// Right and up of a camera that looks along the unit vector `forward`; `None` if `up` is zero, not finite or parallel to it.
+/// Right and up of a camera that looks along the unit vector `forward`; `None` if `up` is zero, not finite or parallel
+/// to it.
 pub(crate) fn right_and_up(forward: DVec3, up: DVec3) -> Option<(DVec3, DVec3)> {
     let across = forward.cross(unit_vector(up)?);
     let sine = across.length();

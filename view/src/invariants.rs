@@ -1,8 +1,8 @@
 //! Facts that hold for every view, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
 //!
-//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a crate
-//! that builds on it, with the feature `invariants`. Any finite arguments are allowed: where a result is
-//! beyond the range of `f64`, or rounding has swallowed the depth, a function has nothing to check.
+//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a
+//! crate that builds on it, with the feature `invariants`. Any finite arguments are allowed: where a result is beyond
+//! the range of `f64`, or rounding has swallowed the depth, a function has nothing to check.
 //!
 //! ```
 //! use pointillist_view::{Projection, View, invariants::unprojecting_gives_the_point};
@@ -32,8 +32,8 @@ fn is_within(v: DVec3, bound: f64) -> bool {
     v.abs().cmple(DVec3::splat(bound)).all()
 }
 
-/// World units by which a point seen at this place may be off: ulps of the coordinates of eye and point, of their distance, and of
-/// the width of the picture there.
+/// World units by which a point seen at this place may be off: ulps of the coordinates of eye and point, of their
+/// distance, and of the width of the picture there.
 #[must_use]
 pub fn world_bound(view: &View, point: DVec3, at: &Projected) -> f64 {
     let per_pixel = match view.projection() {
@@ -44,7 +44,8 @@ pub fn world_bound(view: &View, point: DVec3, at: &Projected) -> f64 {
     ULPS * (size(view.eye()) + size(point) + size(point - view.eye()) + picture) + 16.0 * LEAST
 }
 
-/// Pixels by which the position of a point may be off: [`world_bound`] at its depth, and what an error of the depth does to it.
+/// Pixels by which the position of a point may be off: [`world_bound`] at its depth, and what an error of the depth
+/// does to it.
 fn pixel_bound(view: &View, at: &Projected, world: f64) -> f64 {
     let off_axis = (at.pixel - view.centre_px()).abs().max_element();
     let (scale, by_depth) = match view.projection() {
@@ -150,8 +151,8 @@ pub fn the_matrix_gives_the_view(view: &View) -> Result<(), String> {
     if same { Ok(()) } else { Err(format!("{view:?} came back as {again:?}")) }
 }
 
-/// The tiles of a rectangle hold each of its pixels once and no other, are at most `size` on a side, and lie in the raster of the
-/// picture. Takes time in proportion to the pixels.
+/// The tiles of a rectangle hold each of its pixels once and no other, are at most `size` on a side, and lie in the
+/// raster of the picture. Takes time in proportion to the pixels.
 ///
 /// # Errors
 /// The tile or pixel.

@@ -27,37 +27,42 @@
 //!
 //! # Conventions
 //! * The world is right-handed. The camera looks along its −Z with +Y up, as in OpenGL and glTF.
-//! * Pixel positions are continuous: (0, 0) is the top left corner of the picture, x grows to the right and y down, and the
-//!   middle of the first pixel is (0.5, 0.5). Pixels are square.
+//! * Pixel positions are continuous: (0, 0) is the top left corner of the picture, x grows to the right and y down, and
+//!   the middle of the first pixel is (0.5, 0.5). Pixels are square.
 //! * *Depth* is the distance from the eye along the view direction (not along the ray), in world units. It is negative
 //!   behind the eye.
 //! * A matrix is `view_from_world`: it takes world coordinates into the frame of the camera.
 //!
 //! # Accuracy and cost
-//! All of it is `f64`. Axes are orthonormal within [`View::AXIS_ERROR`] for every accepted input: directions of any length, from
-//! the smallest subnormal number to 1e300, and an `up` close to the view direction. Vectors are scaled by powers of two before they
-//! are normalised, which rounds nothing, so a scene scaled by a power of two has the same axes bit for bit.
-//! [`View::project`] and [`View::unproject`] invert each other within a few ulps of the numbers involved (coordinates of the eye and
-//! the point, width of the picture there); the functions of the module `invariants` (feature) state the bounds. They take 4 to
-//! 30 nanoseconds each (`benches/camera.rs`) and do not allocate.
+//! All of it is `f64`. Axes are orthonormal within [`View::AXIS_ERROR`] for every accepted input: directions of any
+//! length, from the smallest subnormal number to 1e300, and an `up` close to the view direction. Vectors are scaled by
+//! powers of two before they are normalised, which rounds nothing, so a scene scaled by a power of two has the same
+//! axes bit for bit. [`View::project`] and [`View::unproject`] invert each other within a few ulps of the numbers
+//! involved (coordinates of the eye and the point, width of the picture there); the functions of the module
+//! `invariants` (feature) state the bounds. They take 4 to 30 nanoseconds each (`benches/camera.rs`) and do not
+//! allocate.
 //!
 //! # Features
 //! `invariants`: the module of that name, facts for property tests and fuzzing, also of crates that build on this one.
 //!
-//! Builds for `wasm32-unknown-unknown`. Everything but the tangent of the field of view is additions, products, quotients and square
-//! roots, which are the same to the bit there; [`View::focal_px`] of a perspective view may differ in its last bit. Times are with thin
-//! LTO and `codegen-units = 1` in the profile of the dependent program.
+//! Builds for `wasm32-unknown-unknown`. Everything but the tangent of the field of view is additions, products,
+//! quotients and square roots, which are the same to the bit there; [`View::focal_px`] of a perspective view may differ
+//! in its last bit. Times are with thin LTO and `codegen-units = 1` in the profile of the dependent program.
 #![forbid(unsafe_code)]
 
 mod axes;
 mod error;
 #[cfg(feature = "invariants")]
 pub mod invariants;
+mod light;
+mod morton;
 mod pixel_rect;
 mod projection;
 mod view;
 
 pub use error::ViewError;
+pub use light::Light;
+pub use morton::{MORTON_BITS, morton_code};
 pub use pixel_rect::PixelRect;
 pub use projection::Projection;
 pub use view::{Projected, Ray, View};

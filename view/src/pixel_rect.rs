@@ -51,9 +51,9 @@ impl PixelRect {
         Self { x0, y0, x1: self.x1.min(other.x1).max(x0), y1: self.y1.min(other.y1).max(y0) }
     }
 
-    /// Tiles of up to `size` × `size` pixels that together are this rectangle, row by row. Their borders are at multiples of `size`
-    /// pixels of the whole picture, so that the tiles of a crop are parts of the tiles of the picture. None is empty. A
-    /// size of 0 counts as 1.
+    /// Tiles of up to `size` × `size` pixels that together are this rectangle, row by row. Their borders are at
+    /// multiples of `size` pixels of the whole picture, so that the tiles of a crop are parts of the tiles of the
+    /// picture. None is empty. A size of 0 counts as 1.
     pub fn tiles(&self, size: u32) -> impl Iterator<Item = PixelRect> + use<> {
         let rect = *self;
         let size = size.max(1);

@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 
 /// How the camera maps depth.
 ///
-/// Renderers match on it: another kind of projection would be a breaking change, on purpose, since each has to say what it does.
+/// Renderers match on it: another kind of projection would be a breaking change, on purpose, since each has to say what
+/// it does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// Rays meet in the eye.

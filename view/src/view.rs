@@ -6,13 +6,14 @@ use crate::pixel_rect::PixelRect;
 use crate::projection::Projection;
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
-/// A matrix counts as rigid if no entry of MᵀM is farther from the identity's: what rounding a rotation to `f32` leaves.
+/// A matrix counts as rigid if no entry of MᵀM is farther from the identity's: what rounding a rotation to `f32`
+/// leaves.
 const RIGID: f64 = 1e-6;
 
 /// A camera and its picture.
 ///
-/// The camera looks along its −Z with +Y up. Pixel positions are continuous, (0, 0) is the top left corner of the picture. Depth is
-/// measured along the view direction, in world units.
+/// The camera looks along its −Z with +Y up. Pixel positions are continuous, (0, 0) is the top left corner of the
+/// picture. Depth is measured along the view direction, in world units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     eye: DVec3,
@@ -69,9 +70,9 @@ impl View {
     ///
     /// # Errors
     /// [`ViewError::BadEye`], [`ViewError::BadTarget`] for coordinates that are not finite or beyond
-    /// [`View::LARGEST_COORDINATE`]; [`ViewError::EyeIsTarget`]; [`ViewError::BadUp`] if `up` is zero, not finite, or parallel to the
-    /// view direction within 1.4e-14 rad; [`ViewError::BadFieldOfView`] or [`ViewError::BadHeight`] if the projection is outside its
-    /// range; [`ViewError::BadSize`] if a side is 0 or above [`View::LARGEST_SIDE`].
+    /// [`View::LARGEST_COORDINATE`]; [`ViewError::EyeIsTarget`]; [`ViewError::BadUp`] if `up` is zero, not finite, or
+    /// parallel to the view direction within 1.4e-14 rad; [`ViewError::BadFieldOfView`] or [`ViewError::BadHeight`] if
+    /// the projection is outside its range; [`ViewError::BadSize`] if a side is 0 or above [`View::LARGEST_SIDE`].
     pub fn look_at(
         eye: DVec3,
         target: DVec3,
@@ -93,12 +94,12 @@ impl View {
     /// A camera from the rigid motion that takes the world into its frame, as
     /// `glam::dcamera::rh::view::look_at_affine3` makes it.
     ///
-    /// The 3×3 part M may be off a rotation by 1e-6 (|MᵀM − 1|, each entry), so that matrices that were `f32` pass; its axes are made
-    /// orthonormal, the view direction first. The eye is the point that the matrix takes to the origin.
+    /// The 3×3 part M may be off a rotation by 1e-6 (|MᵀM − 1|, each entry), so that matrices that were `f32` pass; its
+    /// axes are made orthonormal, the view direction first. The eye is the point that the matrix takes to the origin.
     ///
     /// # Errors
-    /// [`ViewError::NotRigid`] if the matrix scales, shears or is not finite; [`ViewError::Mirrored`] if its determinant is negative;
-    /// [`ViewError::BadEye`]; and for projection and size as [`View::look_at`].
+    /// [`ViewError::NotRigid`] if the matrix scales, shears or is not finite; [`ViewError::Mirrored`] if its
+    /// determinant is negative; [`ViewError::BadEye`]; and for projection and size as [`View::look_at`].
     pub fn from_matrix(
         view_from_world: DAffine3,
         projection: Projection,
@@ -148,7 +149,8 @@ impl View {
         Ok(Self { width, height, focal_px: focal_px(self.projection, height), ..self })
     }
 
-    /// Position of the camera, world units. For an orthographic view: a point of the plane of depth 0, seen in the middle.
+    /// Position of the camera, world units. For an orthographic view: a point of the plane of depth 0, seen in the
+    /// middle.
     #[must_use]
     pub const fn eye(&self) -> DVec3 {
         self.eye
@@ -202,14 +204,15 @@ impl View {
         0.5 * DVec2::new(f64::from(self.width), f64::from(self.height))
     }
 
-    /// Pixels per world unit at depth 1 (perspective; at depth d it is this over d) or at any depth (orthographic). Pixels are
-    /// square: the same in both directions.
+    /// Pixels per world unit at depth 1 (perspective; at depth d it is this over d) or at any depth (orthographic).
+    /// Pixels are square: the same in both directions.
     #[must_use]
     pub const fn focal_px(&self) -> f64 {
         self.focal_px
     }
 
-    /// The rigid motion that takes the world into the frame of the camera, for [`View::from_matrix`] and for others' renderers.
+    /// The rigid motion that takes the world into the frame of the camera, for [`View::from_matrix`] and for others'
+    /// renderers.
     ///
     /// Its translation is the eye turned into the frame, and so rounded to a few ulps of the eye's largest coordinate.
     #[must_use]
@@ -221,8 +224,9 @@ impl View {
 
     /// Where a point of the world is in the picture.
     ///
-    /// `None` if there is no such place: in a perspective view for depths up to 0, in any for a result beyond the range of `f64`. An
-    /// orthographic view also has points behind the eye, with negative depths. Positions outside the picture are given, too.
+    /// `None` if there is no such place: in a perspective view for depths up to 0, in any for a result beyond the range
+    /// of `f64`. An orthographic view also has points behind the eye, with negative depths. Positions outside the
+    /// picture are given, too.
     #[must_use]
     pub fn project(&self, point: DVec3) -> Option<Projected> {
         let from_eye = point - self.eye;
@@ -237,15 +241,15 @@ impl View {
         (pixel.is_finite() && depth.is_finite()).then_some(Projected { pixel, depth })
     }
 
-    /// The point of the world at a pixel position (pixels from the top left corner) and a depth (world units along the view
-    /// direction). Finite for finite arguments, unless the point is beyond the range of `f64`.
+    /// The point of the world at a pixel position (pixels from the top left corner) and a depth (world units along the
+    /// view direction). Finite for finite arguments, unless the point is beyond the range of `f64`.
     #[must_use]
     pub fn unproject(&self, pixel: DVec2, depth: f64) -> DVec3 {
         self.ray(pixel).at(depth)
     }
 
-    /// The line of all points that are seen at a pixel position: pixels from the top left corner, (0.5, 0.5) in the middle of the
-    /// first pixel.
+    /// The line of all points that are seen at a pixel position: pixels from the top left corner, (0.5, 0.5) in the
+    /// middle of the first pixel.
     #[must_use]
     pub fn ray(&self, pixel: DVec2) -> Ray {
         let offset = (pixel - self.centre_px()) / self.focal_px();

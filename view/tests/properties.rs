@@ -1,5 +1,5 @@
-//! Facts of `invariants` over arbitrary views and places, in scenes of every size and far from the origin, and what must be
-//! refused for every view.
+//! Facts of `invariants` over arbitrary views and places, in scenes of every size and far from the origin, and what
+//! must be refused for every view.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, dvec2, dvec3};
 use pointillist_view::{PixelRect, Projection, View, ViewError, invariants};

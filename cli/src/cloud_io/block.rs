@@ -1,4 +1,4 @@
-//! Points on their way out: blocks, the check that they are finite, and the summary.
+//! Delivers points in blocks: leaves out those that are not finite, and counts for the summary.
 
 use super::format::CloudFormat;
 use crate::coordinate::{LARGEST, is_usable};

@@ -1,4 +1,4 @@
-//! Which format a file is written in.
+//! Recognises the format of a cloud by its first bytes or its extension.
 
 use crate::input::STANDARD_INPUT;
 use crate::input_error::InputError;

@@ -1,4 +1,4 @@
-//! Gzip: one stream after the other, and nothing else behind them.
+//! Reads gzip: any number of members one after the other; other bytes after them are an error.
 
 use flate2::bufread::GzDecoder;
 use std::io::{self, BufRead, Read};

@@ -1,4 +1,4 @@
-//! What the libraries for LAS and LAZ would believe of a header, checked against the size of the file first.
+//! Checks headers of LAS and LAZ against the size of the file, before a library allocates memory for what they say.
 //!
 //! Positions are those of the LAS 1.4 specification, table 3, and of the LASzip chunk table.
 

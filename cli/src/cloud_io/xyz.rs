@@ -1,4 +1,4 @@
-//! Text with a point a line.
+//! Reads XYZ text, one point a line.
 //!
 //! Numbers are separated by blanks, commas or semicolons. The first line with numbers says how many there are in all:
 //!

@@ -1,4 +1,4 @@
-//! What every command does around its work: threads, notes, statistics, text results.
+//! What every command needs beside its work: threads, notes, statistics, text results.
 
 use crate::error::CliError;
 use crate::image_io::{check_writable, write_atomically};
@@ -57,7 +57,7 @@ impl<'a> Report<'a> {
         Ok(self)
     }
 
-    /// Shows how far the command is, as the user wants it shown.
+    /// Shows progress in the form that was asked for.
     pub(super) fn progress(&self) -> Progress {
         Progress::new(self.common.progress_mode(self.on_stdout))
     }
@@ -75,7 +75,7 @@ impl<'a> Report<'a> {
         self.note(&format!("warning: {text}"));
     }
 
-    /// Tells a user who wants details.
+    /// A message that is printed with `-v`.
     pub(super) fn detail(&self, text: &str) {
         if self.common.verbose {
             self.note(text);

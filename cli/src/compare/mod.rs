@@ -1,4 +1,4 @@
-//! How far apart two pictures are.
+//! Metrics of the difference of two pictures.
 
 mod flip;
 mod lab;

@@ -1,4 +1,4 @@
-//! Outputs that are either there as a whole or not at all.
+//! Atomic writing: an output is written under a temporary name and renamed when it is complete.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -86,11 +86,11 @@ fn temporary_for(path: &Path) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
-        // As for any new file: the umask takes from it what the user wants taken.
+        // As for any new file: the umask limits the permissions.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder).map_err(|error| {
-        // The system's message is about a temporary name that nobody asked for.
+        // The system's message would name the temporary file.
         let folder = folder.display();
         let reason = match error.kind() {
             io::ErrorKind::NotFound => format!("the folder `{folder}` is not there"),

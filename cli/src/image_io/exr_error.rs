@@ -1,4 +1,4 @@
-//! Why an EXR cannot be used.
+//! Errors of reading EXR files.
 
 use crate::memory::MemoryError;
 

@@ -1,4 +1,4 @@
-//! 8-bit sRGB with straight alpha.
+//! Writes PNG: 8-bit sRGB with straight alpha.
 
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent};
 use pointillist_render::srgb_from_linear;

@@ -1,4 +1,4 @@
-//! What an EXR says about where it comes from.
+//! The provenance in an EXR's header: version, fingerprint of scene and options, region and background.
 
 use super::PixelRect;
 

@@ -54,7 +54,7 @@ impl Cli {
     }
 }
 
-/// Has `--fov -3` complained about as a value of `--fov`, and not as an option `-3` that nobody knows.
+/// Makes the message about `--fov -3` one about the value of `--fov`, not about an unknown option `-3`.
 fn with_negative_numbers(command: clap::Command) -> clap::Command {
     let takes_values = |arg: &clap::Arg| !arg.is_positional() && arg.get_action().takes_values();
     let command =

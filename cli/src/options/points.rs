@@ -1,4 +1,4 @@
-//! What `scan` and `surfel` share.
+//! Options that `scan` and `surfel` share.
 
 use crate::points::PointLayer;
 use std::str::FromStr;

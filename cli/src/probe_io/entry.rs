@@ -1,4 +1,4 @@
-//! One probe of a file.
+//! A probe as it stands in a file.
 
 use glam::DVec3;
 use pointillist_sh::Sh;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct ProbeEntry {
     /// World position.
     pub position: [f64; 3],
-    /// What people call it.
+    /// A name for messages and tools; not used otherwise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// Radiance: (order + 1)² RGB coefficients.
@@ -20,6 +20,9 @@ pub struct ProbeEntry {
     /// The share of sky, in the same basis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sky: Option<Vec<f64>>,
+    /// The share of all directions in which it sees the back of a surface.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub back: Option<f64>,
     /// Whether it lies inside of a wall, and lights nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buried: Option<bool>,

@@ -1,4 +1,4 @@
-//! A whole file of probes.
+//! A file of probes: its header and its probes.
 
 use super::ProbeEntry;
 use crate::coordinate::{LARGEST, is_usable};
@@ -7,6 +7,7 @@ use crate::input_error::InputError;
 use crate::json_kind::JsonKind;
 use crate::json_words;
 use glam::DVec3;
+use pointillist_render::buried;
 use pointillist_sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, ProbeError};
 use serde::{Deserialize, Serialize};
@@ -29,6 +30,9 @@ pub struct ProbeFile {
     /// How often light was sent on from surface to surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bounces: Option<u32>,
+    /// Whether probes inside of walls light like others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep: Option<bool>,
     /// How many more places the probes' light is fitted to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fit: Option<u32>,
@@ -48,7 +52,7 @@ pub struct ProbeFile {
     pub probes: Vec<ProbeEntry>,
 }
 
-/// What begins a binary file. Not text, so that nobody takes it for JSON.
+/// First bytes of a binary file; the first is not ASCII, so that the file cannot be mistaken for JSON.
 const MAGIC: &[u8; 8] = b"\x93PROBES1";
 
 impl ProbeFile {
@@ -60,6 +64,16 @@ impl ProbeFile {
     /// Where the probes are.
     pub fn positions(&self) -> Vec<DVec3> {
         self.probes.iter().map(|p| DVec3::from_array(p.position)).collect()
+    }
+
+    /// Decides which probes lie inside of walls, by what all of them see; none if they are kept. The number of those that do comes back.
+    pub fn mark_buried(&mut self) -> usize {
+        let shares: Vec<f64> = self.probes.iter().map(|p| p.back.unwrap_or(0.0)).collect();
+        let buried = if self.keep == Some(true) { vec![] } else { buried(&shares) };
+        for (i, probe) in self.probes.iter_mut().enumerate() {
+            probe.buried = buried.get(i).filter(|&&b| b).copied();
+        }
+        buried.into_iter().filter(|&b| b).count()
     }
 
     /// The numbers of the probes that light something: those of a field are counted among these.
@@ -197,6 +211,7 @@ impl ProbeFile {
             what: self.what.clone(),
             bounces: self.bounces,
             fit: self.fit,
+            keep: self.keep,
             fingerprint: self.fingerprint.clone(),
             part: self.part.clone(),
             first: self.first,

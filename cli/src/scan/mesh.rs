@@ -1,4 +1,4 @@
-//! Meshes among scans.
+//! Meshes given to `scan`: sampled as points and joined to the scans.
 
 use super::mesh_points::Needed;
 use super::{LoadedScan, POINT_BYTES};

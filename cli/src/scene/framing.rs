@@ -1,4 +1,4 @@
-//! A camera that has everything in view.
+//! Frames a scene: the camera from which everything is in view.
 
 use super::description::{CameraDescription, DEFAULT_FOV_DEG, Description, view_fault};
 use super::{Camera, Mesh, Projection};

@@ -1,4 +1,4 @@
-//! What a glTF material comes to.
+//! From a glTF material to a material of the renderer.
 
 use super::textures::{Purpose, TextureTable};
 use super::{Channel, Details, Map, Material};

@@ -90,7 +90,7 @@ fn read_document(path: &Path) -> Result<(Document, Kind, PathBuf), InputError> {
             Ok((document, Kind::Text(format), folder))
         }
         Kind::Mesh => {
-            // Opened here, so that a missing file is an error about the file and not about a text nobody wrote.
+            // Opened here, so that the message about a missing file names the file.
             if !input::is_standard(path) {
                 std::fs::File::open(path).map_err(|error| input::cannot_read(&name, &error))?;
             }

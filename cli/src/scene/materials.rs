@@ -1,4 +1,4 @@
-//! Which material each name in a mesh stands for.
+//! Resolves the names of materials in a mesh.
 
 use super::description::{
     Description, FileReference, MaterialDescription, ObjectDescription, SurroundingsDescription,

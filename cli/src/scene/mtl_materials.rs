@@ -1,4 +1,4 @@
-//! What the keys of an MTL come to.
+//! From the keys of an MTL material to a material of the renderer.
 //!
 //! `illum` decides which of them count: 0 and 1 are matt, 2 (or none) has the highlight of `Ks` and `Ns`, 3 and above
 //! mirror their surroundings by `Ks`, too, and 4, 6, 7 and 9 let light through by `Tf` and `Ni` if `Tf` is given. `Pr` or `Pm` make

@@ -1,4 +1,4 @@
-//! A description to a [`Scene`]: opens what it names and puts everything together.
+//! From a parsed description to a [`Scene`]: opens the files that it names and puts everything together.
 
 use super::description::{
     AmbientDescription, Description, FileReference, ObjectDescription, RenderDescription, TextureReference,
@@ -134,7 +134,7 @@ fn ambient(
                 let error = description.document.error(file.span, message).with_help(help);
                 return Err(InputError { mismatched: true, ..error });
             }
-            let sources = fingerprint::of_sources(&scene.materials, &scene.textures, &scene.lights);
+            let sources = fingerprint::of_sources(scene);
             if baked.light != format!("{sources:016x}") {
                 warnings.push(format!(
                     "`{name}` was baked with other lights or materials; bake again to see them"

@@ -69,8 +69,8 @@ impl Points {
 
     /// Whether a point lies strictly inside the sphere through the corners of a positive tetrahedron.
     ///
-    /// With the first corner as origin, the determinant of the other three and the point, each with its squared length in front, is
-    /// six times the volume times how far the point is lifted below the plane of the lifted corners.
+    /// With the first corner as origin, the determinant of the other three and the point, each with its squared length
+    /// in front, is six times the volume times how far the point is lifted below the plane of the lifted corners.
     pub(super) fn is_inside(&self, [a, b, c, d]: [u32; 4], p: u32) -> bool {
         let row = |v: u32| {
             let [x, y, z] = self.difference(v, a);

@@ -1,8 +1,9 @@
-//! Facts that hold for every set of points, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
+//! Facts that hold for every set of points, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found
+//! instead.
 //!
-//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a crate
-//! that builds on it, with the feature `invariants`. Each takes any input at all; what is refused satisfies
-//! every fact.
+//! For property testers and fuzzers: the tests of this crate and its fuzz targets call them, and so can those of a
+//! crate that builds on it, with the feature `invariants`. Each takes any input at all; what is refused satisfies every
+//! fact.
 //!
 //! ```
 //! use pointillist_delaunay::invariants::triangulation::partition_is_delaunay;

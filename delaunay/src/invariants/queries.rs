@@ -1,4 +1,4 @@
-//! What is asked of a triangulation, against slow and obvious answers.
+//! Queries to a triangulation, compared with slow and obvious answers.
 
 use super::check;
 use super::exact::{Points, dot, zero};
@@ -40,7 +40,8 @@ pub fn neighbours_are_mutual(points: &[DVec3]) -> Result<(), String> {
     Ok(())
 }
 
-/// Edges are the pairs of corners of all cells, each once, and vertices around a vertex are the other ends of its edges.
+/// Edges are the pairs of corners of all cells, each once, and vertices around a vertex are the other ends of its
+/// edges.
 ///
 /// # Errors
 /// What differs.
@@ -170,7 +171,8 @@ pub fn nearest_is_that_of_a_search(points: &[DVec3], queries: &[DVec3]) -> Resul
     Ok(())
 }
 
-/// What is built is found valid; with two corners of one cell swapped, a cell that shows it is named: that one or a neighbour.
+/// What is built is found valid; with two corners of one cell swapped, a cell that shows it is named: that one or a
+/// neighbour.
 ///
 /// # Errors
 /// What [`Partition::verify`](crate::Partition::verify) answered instead.
@@ -178,7 +180,7 @@ pub fn damage_is_found(points: &[DVec3], which: usize) -> Result<(), String> {
     let Some((delaunay, partition)) = divided(points) else { return Ok(()) };
     partition.verify(delaunay.points()).map_err(|e| e.to_string())?;
     let mut damaged = partition.clone();
-    // The first triangle says how the others have to turn, so it is not the one that is damaged.
+    // The first triangle defines the orientation of the others, so another one is damaged.
     let fixed = usize::from(partition.dimension() == 2);
     let cell = fixed + which % (partition.cell_count() - fixed).max(1);
     match &mut damaged {

@@ -13,8 +13,9 @@ fn mixed(points: &[DVec3], blend: &Blend) -> DVec3 {
     blend.parts().map(|(point, weight)| points[point as usize] * weight).sum()
 }
 
-/// Weights are in [0, 1] and sum to 1, and mixing the positions of the points by them gives the position asked for, or the nearest
-/// point of the hull where that is outside: what is linear is reproduced. `tolerance` is relative to the size of the whole.
+/// Weights are in [0, 1] and sum to 1, and mixing the positions of the points by them gives the position asked for, or
+/// the nearest point of the hull where that is outside: what is linear is reproduced. `tolerance` is relative to the
+/// size of the whole.
 ///
 /// # Errors
 /// The first query at which it does not hold.

@@ -8,7 +8,8 @@ use glam::DVec3;
 /// Spheres of flatter cells than this (six times the volume over the longest side cubed) are taken to reach everywhere.
 const FLAT: f64 = 1e-6;
 
-/// Radii are taken this much larger. Rounding moves what a sphere that is not [`FLAT`] reaches by about 1e-8 of its radius.
+/// Radii are taken this much larger. Rounding moves what a sphere that is not [`FLAT`] reaches by about 1e-8 of its
+/// radius.
 const SLACK: f64 = 1e-6;
 
 /// All cells whose sphere may hold a point of a box that lies outside the hull.
@@ -50,7 +51,8 @@ fn reaches(mesh: &Mesh, sites: &Sites, id: CellId, lo: DVec3, hi: DVec3) -> bool
         return sphere_reaches(corners.map(|v| sites.position(v)), lo, hi);
     }
     let (beyond, error) = sites.reach_beyond([a, b, c], lo, hi);
-    // Of integers without error, a box that touches the plane is told from one that does not: there the tetrahedron behind decides.
+    // With exact integers a box that touches the plane is told from one that does not; then the tetrahedron behind
+    // decides.
     if beyond == 0.0 && error == 0.0 {
         return reaches(mesh, sites, links[3].cell(), lo, hi);
     }

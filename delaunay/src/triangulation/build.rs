@@ -1,4 +1,4 @@
-//! From points to what they span.
+//! Builds the triangulation of the dimension that points span.
 
 use super::cell::Vertex;
 use super::divide;
@@ -9,18 +9,18 @@ use super::solid::Solid;
 use crate::DelaunayError;
 use glam::DVec3;
 
-/// What points span.
+/// A triangulation, by the dimension that points span.
 #[derive(Clone, Debug)]
 pub(super) enum Shape {
-    /// All coincide with this one.
+    /// All points coincide with this one.
     Point(u32),
-    /// From one end to the other.
+    /// Points on a line, from one end to the other.
     Line(Vec<u32>),
-    /// Space, or a plane.
+    /// The points span space, or a plane.
     Solid(Box<Solid>),
 }
 
-/// Of those points that are indexed, at least one. Writes which point stands for each.
+/// The triangulation of the points with these indices, at least one. Writes for each the point that represents it.
 pub(super) fn shape(
     points: &[DVec3],
     indices: &[u32],

@@ -1,9 +1,9 @@
 //! The cells in an order that depends on the points alone.
 //!
-//! Vertices are ranked along a Hilbert curve, so that what is near in space is near in memory. A cell's corners start with the one of least
-//! rank, then that of least rank that an even permutation can put second; cells are sorted by the ranks of their corners. The
-//! triangles of a plane are sorted as they are reported, counterclockwise: on which side of the plane the apex lies depends on what was there
-//! before.
+//! Vertices are ranked along a Hilbert curve, so that vertices near in space are near in memory. A cell's corners start
+//! with the one of least rank, then that of least rank that an even permutation can put second; cells are sorted by the
+//! ranks of their corners. The triangles of a plane are sorted as they are reported, counterclockwise: on which side of
+//! the plane the apex lies depends on what was there before.
 
 use super::cell::{CellId, Vertex};
 use super::hilbert::Curve;

@@ -5,7 +5,7 @@ use super::cell::{Cell, CellId, FACE, Link, Vertex, replaced};
 /// The table of edges has at most 2 to this power rows and columns, 4 MiB; edges of larger rims are sorted.
 const MAX_SHIFT: u32 = 10;
 
-/// A cell has so many faces: room for them is made before it is looked at.
+/// Faces of a cell: memory for them is reserved before the cell is visited.
 const FACES: usize = 4;
 
 /// A face of the rim, and the cell to be that joins it to the new vertex.
@@ -48,8 +48,8 @@ pub(super) struct Cavity {
     vertex_count: usize,
     /// The number of a vertex, if that number is its own.
     number: Vec<u32>,
-    /// By numbers of the ends of an edge, as it runs around a face: the face of a new cell that has it. No larger than the rim needs,
-    /// which is a kilobyte mostly, to stay in the nearest cache.
+    /// By numbers of the ends of an edge, as it runs around a face: the face of a new cell that has it. No larger than
+    /// the rim needs, which is a kilobyte mostly, to stay in the nearest cache.
     table: Vec<Link>,
     /// Two to this power is the length of its rows.
     shift: u32,
@@ -92,7 +92,7 @@ impl Cavity {
         self.add_dug(start, true);
     }
 
-    /// The cell of this number in the cavity, if it has so many. Makes room for what is found around it.
+    /// The cell of this number in the cavity; `None` if there are fewer. Reserves memory for the faces around it.
     #[inline]
     pub(super) fn dug_cell(&mut self, at: usize) -> Option<CellId> {
         if at == self.dug_count {
@@ -150,8 +150,9 @@ impl Cavity {
 
     /// Numbers the vertices of the rim and notes where its edges are.
     ///
-    /// The rim is a closed surface whose faces are turned alike: each edge runs one way around one face and the other way around
-    /// another. So all that is looked up in the table has been written for this rim, and it is never cleared.
+    /// The rim is a closed surface whose faces are turned alike: each edge runs one way around one face and the other
+    /// way around another. So all that is looked up in the table has been written for this rim, and it is never
+    /// cleared.
     pub(super) fn pair_edges(&mut self, cells: &[Cell], v: Vertex) {
         self.vertex_count = 0;
         self.faces.clear();
@@ -188,7 +189,7 @@ impl Cavity {
     /// The number of a vertex in the rim: a new one if it has none. Cut to what the largest table needs.
     #[inline]
     fn number_of(&mut self, v: Vertex) -> u16 {
-        // What an older rim has left in `number` is not trusted: only a vertex that stands where it says has that number.
+        // `number` may hold entries of an older rim: one is valid only if the vertex at that number is this one.
         let claimed = self.number[v.slot()] as usize;
         self.vertices[self.vertex_count] = v;
         let is_new = claimed >= self.vertex_count || self.vertices[claimed] != v;

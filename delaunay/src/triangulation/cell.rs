@@ -1,7 +1,7 @@
 //! What a mesh is made of: cells of four corners that know their neighbours, and the vertex at infinity.
 //!
-//! Beyond each face of the hull lies a *ghost*: a cell whose fourth corner is [`Vertex::INFINITE`]. With them every cell has
-//! four neighbours, and a point outside the hull is inserted as one inside is.
+//! Beyond each face of the hull lies a *ghost*: a cell whose fourth corner is [`Vertex::INFINITE`]. With them every
+//! cell has four neighbours, and a point outside the hull is inserted as one inside is.
 
 /// A vertex, by its place in [`Sites`](super::sites::Sites).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,7 +60,7 @@ impl Link {
     }
 }
 
-/// As many cells as links can tell apart.
+/// Most cells: the number of different links.
 pub(super) const MAX_CELLS: usize = 1 << 30;
 
 /// The corners of each face, turned so that a positive cell lies on the side from which they run clockwise: `orient` of
@@ -69,8 +69,8 @@ pub(super) const FACE: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1
 
 /// A tetrahedron or a ghost.
 ///
-/// Tetrahedra are positive. So is a ghost whose corner at infinity is replaced by a point beyond its face; that corner is
-/// always the fourth. Half a cache line, and never parts of two.
+/// Tetrahedra are positive. So is a ghost whose corner at infinity is replaced by a point beyond its face; that corner
+/// is always the fourth. Half a cache line, and never parts of two.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(32))]
 pub(super) struct Cell {
@@ -80,7 +80,7 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    /// In the place of a cell that is no more. A live one never has its first corner at infinity.
+    /// Marks a freed cell. A live one never has its first corner at infinity.
     pub(super) const DEAD: Self = Self { corners: [Vertex::INFINITE; 4], links: [Link(0); 4] };
 
     /// Whether it lies beyond the hull.
@@ -89,7 +89,7 @@ impl Cell {
         self.corners[3].0 == Vertex::INFINITE.0
     }
 
-    /// Whether it is one, ghost or not.
+    /// Whether it is live: a tetrahedron or a ghost.
     #[inline]
     pub(super) const fn is_live(&self) -> bool {
         self.corners[0].0 != Vertex::INFINITE.0

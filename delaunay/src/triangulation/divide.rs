@@ -1,11 +1,14 @@
-//! Meshes built in halves at once, then joined (after Funke and Sanders).
+//! Meshes built in halves on several threads, then joined (after Funke and Sanders).
 //!
-//! The vertices are divided by a plane. A cell of either half whose sphere holds no vertex of the other is a cell of the whole.
-//! The vertices of the rest, the *border*, are triangulated once more, together. What is Delaunay among those and has corners in both
-//! halves is so among all: had it not been empty, inserting one half into the other would not have touched all of its corners. What has
-//! its corners in one half is, if it was a cell of the border. That all this fits together rests on there being one
-//! triangulation only, also of points on a common sphere. The border takes an eighth more work at a million points and a third more
-//! at a hundred thousand.
+//! 1. The vertices are divided by a plane, and both halves are triangulated at the same time. A cell of either half
+//!    whose sphere holds no vertex of the other half is a cell of the whole.
+//! 2. The other cells are the *border*. Their vertices are triangulated once more, together.
+//! 3. A cell of that triangulation with corners in both halves is a cell of the whole: if its sphere were not empty,
+//!    inserting one half into the other would not have touched all of its corners. One with all corners in one half is
+//!    a cell of the whole if it was a cell of the border before.
+//!
+//! The parts fit together because there is one triangulation only, also of points on a common sphere. Triangulating the
+//! border takes an eighth of the whole work more at a million points, and a third more at a hundred thousand.
 
 use super::border;
 use super::cell::{CellId, Vertex};
@@ -21,7 +24,7 @@ use std::cmp::Ordering;
 /// Parts of fewer vertices are not divided: too many of them would be border.
 const MIN_VERTICES: usize = 20_000;
 
-/// How often it pays to divide so many vertices: no more often than makes a part for each thread.
+/// How often this number of vertices is divided: at most until there is a part for each thread.
 pub(super) fn depth(vertices: usize) -> u32 {
     let parts = parallel::threads().next_power_of_two().min((vertices / MIN_VERTICES).max(1));
     parts.ilog2()
@@ -76,8 +79,8 @@ fn bounds(sites: &Sites, vertices: &[Vertex]) -> (DVec3, DVec3) {
     positions.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
 }
 
-/// Lexicographic order from this axis on: that along a line which is hardly tilted from the axis, so that a plane divides
-/// what comes before a point from what does not.
+/// Lexicographic order from this axis on: that along a line which is hardly tilted from the axis, so that a plane
+/// divides what comes before a point from what does not.
 fn compare_from(axis: usize, a: DVec3, b: DVec3) -> Ordering {
     let turned = |p: DVec3| [p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]];
     turned(a).partial_cmp(&turned(b)).expect("positions are finite")
@@ -175,7 +178,7 @@ mod tests {
                 (3, _) => random() * 1e-3,
                 _ => (random() * 3.0).floor() + random() * 1e-15,
             };
-            // Each point once: which of several stands for all depends on the order of insertion.
+            // Each position once: which of several coincident points is the vertex depends on the order of insertion.
             let mut points: Vec<DVec3> =
                 (0..count).map(|_| dvec3(coordinate(0), coordinate(1), coordinate(2))).collect();
             points.sort_unstable_by(|a, b| compare_from(0, *a, *b));

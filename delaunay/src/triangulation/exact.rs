@@ -3,7 +3,7 @@
 use glam::DVec3;
 use robust::{Coord, Coord3D};
 
-/// Which arithmetic decides where `f64` cannot.
+/// The arithmetic that decides where `f64` cannot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Exact {
     /// None is needed: coordinates are integers so small that `f64` does not round.

@@ -1,8 +1,9 @@
 //! Places along Hilbert's curve through a cube, and the order in which vertices are inserted.
 //!
-//! Points near each other on the curve are near in space, so that each is found in a few steps from the one before. A curve
-//! alone would meet bad cases; so vertices go in rounds, each a random choice about as large as all before it several times
-//! over (Amenta, Choi and Rote's biased randomised insertion order), and along the curve within a round.
+//! Points near each other on the curve are near in space, so that each is found in a few steps from the one before. The
+//! order along a curve alone has bad worst cases, so vertices are inserted in rounds, each a random choice about as
+//! large as all before it several times over (Amenta, Choi and Rote's biased randomised insertion order), and along the
+//! curve within a round.
 
 use super::scale::Scale;
 use crate::parallel;
@@ -16,7 +17,7 @@ const ROUND_SHIFT: u32 = 3 * LEVELS;
 const ROUND_BITS: u32 = 3;
 const LAST_ROUND: u32 = 6;
 
-/// So many points in one cell of the curve need no order.
+/// Up to this many points in one cell of the curve are not sorted further.
 const CROWD: usize = 16;
 
 const fn rotate_left(w: usize, by: usize) -> usize {
@@ -115,8 +116,8 @@ pub(super) fn insertion_order(points: &[DVec3], indices: &[u32]) -> Vec<u32> {
     keyed.into_iter().map(|(_, i)| i).collect()
 }
 
-/// Sorts points that share a place along a curve through the cube of their own, and so on: clusters may be far smaller than a cell of
-/// the curve through all.
+/// Sorts points that share a place along a curve through the cube of their own, and so on: clusters may be far smaller
+/// than a cell of the curve through all.
 fn sort_crowded(points: &[DVec3], keyed: &mut [(u64, u32)]) {
     let mut unsorted = vec![(0, keyed.len())];
     while let Some((mut start, end)) = unsorted.pop() {

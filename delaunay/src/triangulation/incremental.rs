@@ -7,10 +7,11 @@ use super::mesh::Mesh;
 use super::sites::Sites;
 use crate::DelaunayError;
 
-/// Vertices in one place: one that is not in the mesh, and the one that is.
+/// Vertices that coincide: one that is not in the mesh, and the one that is.
 pub(super) type Same = Vec<(Vertex, Vertex)>;
 
-/// The mesh of these vertices, built from the first, and those that are not in it, each with the one in its place that is.
+/// The mesh of these vertices, built from the first, and those that are not in it, each with the one in its place that
+/// is.
 pub(super) fn mesh(
     sites: &Sites,
     vertices: &[Vertex],

@@ -1,8 +1,10 @@
-//! Signs of determinants of differences cut to integers of 61 bits: with 64-bit products, an order of magnitude faster than expansions.
+//! Signs of determinants of differences cut to integers of 61 bits: with 64-bit products, an order of magnitude faster
+//! than expansions.
 //!
-//! Differences of coordinates that are not too unlike are such integers, in a unit of their own, and then the sign is exact. If not,
-//! it is right where the determinant is larger than what the cuts can change, about 2⁻⁵⁰ of the largest there can be: that is less
-//! than the rounding of coordinates is worth to points that would lie on a common sphere without it.
+//! Differences of coordinates of similar magnitude are such integers, in a common unit, and the sign is exact.
+//! Otherwise the sign is right where the determinant exceeds what the cuts can change, about 2⁻⁵⁰ of the largest
+//! possible determinant. Points that would lie on a common sphere without the rounding of their coordinates have larger
+//! determinants than that.
 
 use glam::DVec3;
 
@@ -75,7 +77,7 @@ impl Triple {
     }
 }
 
-/// A sum of products, in six digits of 64 bits whose carries are not yet carried.
+/// A sum of products, in six digits of 64 bits whose carries are not yet propagated.
 #[derive(Clone, Copy, Default)]
 struct Sum([i128; 6]);
 
@@ -101,7 +103,7 @@ impl Sum {
         }
     }
 
-    /// Carries. Returns how often 2²⁵⁶ goes into it, rounded down, and whether it is 0.
+    /// Propagates carries. Returns the quotient by 2²⁵⁶, rounded down, and whether the sum is 0.
     fn carried(mut self) -> (i128, bool) {
         let mut is_zero = true;
         for place in 0..5 {
@@ -125,7 +127,7 @@ fn sign(high: i128, is_zero: bool) -> f64 {
     }
 }
 
-/// The sign of (b−a)×(c−a)·(d−a), if it can be told.
+/// The sign of (b−a)×(c−a)·(d−a); `None` if it is not certain.
 pub(super) fn orient([a, b, c, d]: [DVec3; 4]) -> Option<f64> {
     let cut = Cut::new([b, c, d], a)?;
     let terms = [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| Triple::product(cut.z[k], cut.area(i, j)));
@@ -135,7 +137,7 @@ pub(super) fn orient([a, b, c, d]: [DVec3; 4]) -> Option<f64> {
     is_sure.then(|| sign(high, high == 0 && low == 0))
 }
 
-/// Positive inside the sphere through the corners of a positive tetrahedron, if it can be told.
+/// Positive inside the sphere through the corners of a positive tetrahedron; `None` if the sign is not certain.
 pub(super) fn sphere(corners: [DVec3; 4], p: DVec3) -> Option<f64> {
     let cut = Cut::new(corners, p)?;
     let near = [0, 1, 2, 3].map(|i| cut.area(i, (i + 1) & 3));

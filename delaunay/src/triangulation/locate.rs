@@ -7,8 +7,9 @@ use super::sites::Sites;
 impl Mesh {
     /// The tetrahedron that holds a vertex, on its surface or inside, or a ghost from whose face it is strictly seen.
     ///
-    /// Steps from the last cell through faces that separate it from the vertex. That ends: along such a walk the power of
-    /// the vertex to the cells' spheres falls, in every Delaunay triangulation, and with ties broken by lifting still (Edelsbrunner 1990).
+    /// Walks from the last cell through faces that separate the cell from the vertex. The walk terminates: the power of
+    /// the vertex with respect to the cells' spheres decreases along it in every Delaunay triangulation, also with ties
+    /// broken by lifting (Edelsbrunner 1990).
     #[inline(never)]
     pub(super) fn locate(&self, sites: &Sites, v: Vertex) -> CellId {
         let mut at = self.last;
@@ -27,7 +28,7 @@ impl Mesh {
         }
     }
 
-    /// The corner of a cell that lies where v does.
+    /// The corner of a cell that coincides with v.
     pub(super) fn corner_at(&self, sites: &Sites, id: CellId, v: Vertex) -> Option<Vertex> {
         let cell = self.cell(id);
         let corners = &cell.corners[..if cell.is_ghost() { 3 } else { 4 }];

@@ -1,4 +1,4 @@
-//! Cells, those that are free again, and marks on them.
+//! The cells, the list of freed ones, and marks on cells.
 
 use super::cell::{Cell, CellId, Link, MAX_CELLS, Vertex, replaced};
 use super::sites::Sites;
@@ -17,11 +17,11 @@ pub(super) struct Mesh {
     pub(super) last: CellId,
 }
 
-/// Cells that random points have for each vertex, ghosts and all, with some to spare.
+/// Cells per vertex of random points, ghosts included, with a margin.
 const CELLS_PER_VERTEX: usize = 7;
 
 impl Mesh {
-    /// An empty one, with memory for random points: what is not needed is never touched.
+    /// An empty mesh with memory reserved for random points; memory that is not needed is never touched.
     pub(super) fn with_capacity(vertices: usize) -> Self {
         let cells = CELLS_PER_VERTEX * vertices;
         Self { cells: Vec::with_capacity(cells), marks: Vec::with_capacity(cells), ..Self::default() }
@@ -70,7 +70,7 @@ impl Mesh {
         &self.cells[id.slot()]
     }
 
-    /// Marks for a new search that no cell bears yet.
+    /// Marks for a new search, which no cell has yet.
     pub(super) fn next_mark(&mut self) -> u32 {
         if self.mark > u32::MAX - 4 {
             self.marks.fill(0);

@@ -1,19 +1,23 @@
-//! The triangulation itself: exact, incremental, of any finite points. References are those of the crate's documentation.
+//! The triangulation itself: exact, incremental, of any finite points. References are those of the crate's
+//! documentation.
 //!
-//! 1. Coordinates are multiplied by a power of two and, where all are multiples of one, counted from the least (`scale.rs`): without
-//!    rounding, unless their magnitudes span more than `f64` holds.
-//! 2. Points are ordered in random rounds, each along a Hilbert curve (\[4\], `hilbert.rs`), and inserted one by one (\[1\], \[2\]).
-//! 3. A point is found by a walk from the one before (`locate.rs`). The cells whose spheres hold it are removed, and it is joined to the
-//!    faces of the hole (`insert.rs`, `cavity.rs`). Cells beyond the hull, *ghosts* that share a vertex at infinity (`cell.rs`), make the
-//!    outside like the inside; there is no enclosing tetrahedron.
-//! 4. Whether a point lies on a side of a plane or in a sphere is decided in `sites.rs`: by a determinant in `f64` where it exceeds its
-//!    error, and exactly elsewhere (`exact.rs`, `limbs.rs`, `wide.rs`). Ties are broken by a symbolic perturbation (\[3\]).
-//! 5. With several threads, parts divided by planes are built at once and joined (\[6\], `divide.rs`, `border.rs`, `seam.rs`).
-//! 6. A point is taken out by triangulating the vertices around it alone (\[3\], `remove.rs`).
+//! 1. Coordinates are multiplied by a power of two and, where all are multiples of one, counted from the least
+//!    (`scale.rs`): without rounding, unless their magnitudes span more than `f64` holds.
+//! 2. Points are ordered in random rounds, each along a Hilbert curve (\[4\], `hilbert.rs`), and inserted one by one
+//!    (\[1\], \[2\]).
+//! 3. A point is found by a walk from the one before (`locate.rs`). The cells whose spheres hold it are removed, and it
+//!    is joined to the faces of the hole (`insert.rs`, `cavity.rs`). Cells beyond the hull, *ghosts* that share a
+//!    vertex at infinity (`cell.rs`), make the outside like the inside; there is no enclosing tetrahedron.
+//! 4. Whether a point lies on a side of a plane or in a sphere is decided in `sites.rs`: by a determinant in `f64`
+//!    where it exceeds its error, and exactly elsewhere (`exact.rs`, `limbs.rs`, `wide.rs`). Ties are broken by a
+//!    symbolic perturbation (\[3\]).
+//! 5. With several threads, parts divided by planes are built at once and joined (\[6\], `divide.rs`, `border.rs`,
+//!    `seam.rs`).
+//! 6. A point is removed by triangulating the vertices around it alone (\[3\], `remove.rs`).
 //! 7. Cells are reported in an order that depends on the points alone (`canonical.rs`).
 //!
-//! Points in a plane get one vertex more, off the plane: the bases of the tetrahedra are their Delaunay triangles, also where the plane
-//! is tilted (`solid.rs`). Points on a line are ordered along it (`build.rs`).
+//! Points in a plane get one vertex more, off the plane: the bases of the tetrahedra are their Delaunay triangles, also
+//! where the plane is tilted (`solid.rs`). Points on a line are ordered along it (`build.rs`).
 
 mod border;
 mod build;
@@ -47,18 +51,19 @@ use solid::Added;
 /// A Delaunay triangulation that grows and shrinks: of space, or of the plane or line in which all points lie.
 #[derive(Clone, Debug)]
 pub struct Delaunay {
-    /// All ever given.
+    /// All points that were ever given.
     points: Vec<DVec3>,
     /// [`OUTSIDE`] for those removed.
     representative: Vec<u32>,
     live: usize,
-    /// Points that another one stands for.
+    /// Points that another one, which coincides with them, represents.
     duplicates: usize,
     shape: Shape,
 }
 
 impl Delaunay {
-    /// Of these points: `DVec3`, `[f64; 3]` or `(f64, f64, f64)`. Points that lie in one plane, such as z = 0, give its triangles.
+    /// Of these points: `DVec3`, `[f64; 3]` or `(f64, f64, f64)`. Points that lie in one plane, such as z = 0, give its
+    /// triangles.
     ///
     /// # Errors
     /// [`DelaunayError::NoPoints`], [`DelaunayError::TooManyPoints`], [`DelaunayError::TooManyCells`], and
@@ -132,8 +137,8 @@ impl Delaunay {
         self.live
     }
 
-    /// Adds a point and returns its index: one more than the largest so far, those removed included. Indices are not used again;
-    /// [`Delaunay::compact`] gives back their memory.
+    /// Adds a point and returns its index: one more than the largest so far, those removed included. Indices are not
+    /// used again; [`Delaunay::compact`] gives back their memory.
     ///
     /// # Errors
     /// The point is not finite, or one too many. Then nothing has changed.
@@ -164,7 +169,7 @@ impl Delaunay {
         Ok(index)
     }
 
-    /// Takes a point out. Indices of the others stay.
+    /// Removes a point. Indices of the others stay.
     ///
     /// # Errors
     /// There is no such point, or no other one. Then nothing has changed.
@@ -192,10 +197,10 @@ impl Delaunay {
         Ok(())
     }
 
-    /// Forgets the points that were removed and numbers the rest anew, in the same order. Returns the new index of each old one, and
-    /// [`OUTSIDE`] for those removed.
+    /// Forgets the points that were removed and numbers the rest anew, in the same order. Returns the new index of each
+    /// old one, and [`OUTSIDE`] for those removed.
     ///
-    /// Whoever inserts and removes for long calls it now and then, for example when `points().len()` is twice
+    /// Call it now and then if you insert and remove for long, for example when `points().len()` is twice
     /// [`Delaunay::live_count`]: it costs what building costs, so it adds a constant amount to each insertion.
     ///
     /// # Errors
@@ -225,14 +230,14 @@ impl Delaunay {
         Ok(renumbered)
     }
 
-    /// The next point in the place of this one.
+    /// The next point that coincides with this one.
     fn next_duplicate(&self, index: u32) -> Option<u32> {
         let after = index as usize + 1;
         let at = self.representative[after..].iter().position(|&r| r == index);
         at.filter(|_| self.duplicates > 0).map(|at| (after + at) as u32)
     }
 
-    /// Lets another point in the same place stand for all that this one stands for.
+    /// Makes another coincident point the representative of all points that this one represents.
     fn hand_over(&mut self, from: u32, to: u32) {
         self.representative.iter_mut().filter(|r| **r == from).for_each(|r| *r = to);
         self.duplicates -= 1;

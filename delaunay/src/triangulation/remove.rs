@@ -1,4 +1,4 @@
-//! A vertex less: the hole that it leaves is filled with cells of the triangulation of the vertices around it.
+//! Removes a vertex: the hole that it leaves is filled with cells of the triangulation of the vertices around it.
 //!
 //! What is Delaunay among all vertices but one, and fills its star, has corners only on the star's surface, so it is
 //! Delaunay among those, and ties are broken alike (Devillers and Teillaud).
@@ -52,7 +52,8 @@ fn face_of(cell: &Cell, k: usize) -> [Vertex; 3] {
 }
 
 impl Mesh {
-    /// Takes a vertex out. False, and nothing done, if those around it lie in one plane: the dimension may be less without it.
+    /// Removes a vertex. Returns false and changes nothing if the vertices around it lie in one plane: the dimension
+    /// may be lower without it.
     pub(super) fn remove(
         &mut self,
         sites: &Sites,

@@ -1,8 +1,8 @@
 //! Coordinates in which the predicates neither overflow nor round more than they must.
 //!
-//! Where all coordinates are multiples of one power of two, at most 2⁵³ of them apart, they become integers, counted from the
-//! least of their axis. Otherwise they are multiplied by a power of two, so that the largest is about 1. Neither rounds, but for
-//! inputs whose magnitudes span more than `f64` holds once the largest is 1.
+//! Where all coordinates are multiples of one power of two, at most 2⁵³ of them apart, they become integers, counted
+//! from the least of their axis. Otherwise they are multiplied by a power of two, so that the largest is about 1.
+//! Neither rounds, but for inputs whose magnitudes span more than `f64` holds once the largest is 1.
 
 use glam::DVec3;
 
@@ -23,7 +23,7 @@ impl PowerOfTwo {
     }
 }
 
-/// From what was given to what is computed with.
+/// The map from given coordinates to those that are computed with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
     origin: DVec3,
@@ -36,7 +36,7 @@ pub(super) struct Scale {
     pub(super) unit: i32,
 }
 
-/// Exponent of the lowest bit set, and nothing for 0.
+/// Exponent of the lowest bit set; `None` for 0.
 fn lowest_bit(x: f64) -> Option<i32> {
     let bits = x.to_bits();
     let (field, fraction) = ((bits >> 52 & 0x7ff) as i32, bits & ((1 << 52) - 1));
@@ -64,7 +64,7 @@ impl Scale {
             (lo, hi) = (lo.min(p), hi.max(p));
             unit = unit.min(lowest_unit(p));
         }
-        // Only zeros, or nothing at all.
+        // Only zeros, or no points.
         let unit = if unit == i32::MAX { 0 } else { unit };
         let counting = PowerOfTwo::new(-unit);
         if counting.times(hi - lo).max_element() < MAX_INTEGER {

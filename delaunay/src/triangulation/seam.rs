@@ -1,4 +1,4 @@
-//! Where the border is cut out of the two halves, and what is sewn in.
+//! Cuts the border out of the two halves and inserts the new cells between them.
 
 use super::cell::{Cell, CellId, Link, MAX_CELLS, Vertex};
 use super::mesh::Mesh;
@@ -12,8 +12,8 @@ fn sorted<const N: usize>(corners: [Vertex; N]) -> [u32; N] {
     sorted
 }
 
-/// Corners of a cell in an order that depends on nothing but the cell. A ghost's tell from which side its face is seen: with the rest of
-/// one half missing, a patch can have the same face as its hull from the other side.
+/// Corners of a cell in an order that depends on the cell alone. Those of a ghost keep the orientation of its face:
+/// with the rest of one half missing, a patch can have the same face on its hull with the opposite orientation.
 fn cell_key(cell: &Cell) -> [u32; 4] {
     if cell.is_finite() {
         return sorted(cell.corners);
@@ -29,7 +29,7 @@ fn face_key(cell: &Cell, k: usize) -> [u32; 3] {
     sorted([1, 2, 3].map(|j| cell.corners[(k + j) % 4]))
 }
 
-/// What has been cut out.
+/// The cells that were cut out, and what they leave open.
 pub(super) struct Seam {
     /// Faces of cells left that are open now, by corners.
     open: HashMap<[u32; 3], Link>,

@@ -6,7 +6,7 @@ use super::sites::Sites;
 /// What a set of points spans, by points that do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Simplex {
-    /// All coincide, or there are none.
+    /// All points coincide, or there are no points.
     Point,
     /// All lie on a line, not all in one place.
     Line,
@@ -17,7 +17,7 @@ pub(super) enum Simplex {
 }
 
 impl Simplex {
-    /// One pass: however many lie in a plane, each is looked at once.
+    /// One pass: each point is visited once, however many lie in a plane.
     pub(super) fn new(sites: &Sites, vertices: &[Vertex]) -> Self {
         let mut rest = vertices.iter().copied();
         let Some(a) = rest.next() else { return Self::Point };

@@ -1,8 +1,8 @@
-//! Where the vertices are, and the two questions asked of them: on which side of a plane, in or out of a sphere.
+//! Positions of the vertices and the two predicates on them: the side of a plane, and inside or outside of a sphere.
 //!
 //! Both are answered exactly. A determinant in `f64` decides whenever it is larger than its error can be, for which one
-//! bound serves all points: it follows from the longest side of their box. On small integers there is no error, so the bound is 0. What
-//! is left goes to [`Exact`].
+//! bound serves all points: it follows from the longest side of their box. On small integers there is no error, so the
+//! bound is 0. [`Exact`] decides the rest.
 
 use super::cell::{Vertex, replaced};
 use super::exact::{self, Exact};
@@ -22,7 +22,7 @@ struct Site {
 /// The positions of all vertices, and how exact signs are had of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Sites {
-    /// Scaled. The first stands for the vertex at infinity and is never used in a product that matters.
+    /// Scaled. The first is a placeholder for the vertex at infinity; results computed from it are never used.
     at: Vec<Site>,
     /// As given, and only where scaling rounds or products of scaled coordinates may underflow.
     given: Vec<DVec3>,
@@ -36,8 +36,8 @@ pub(crate) struct Sites {
     sphere_bound: f64,
 }
 
-/// Bounds the error of [`orient_det`] for differences of at most 1: the sum of the absolute values of its products, 6, times
-/// Shewchuk's factor (7 + 56ε)ε, rounded up.
+/// Bounds the error of [`orient_det`] for differences of at most 1: the sum of the absolute values of its products, 6,
+/// times Shewchuk's factor (7 + 56ε)ε, rounded up.
 const ORIENT_ERROR: f64 = 6.0 * 8.0 * (f64::EPSILON / 2.0);
 
 /// As [`ORIENT_ERROR`] for [`sphere_det`]: 4 · 3 · 6 times (16 + 224ε)ε, rounded up.
@@ -46,10 +46,11 @@ const SPHERE_ERROR: f64 = LARGEST_SPHERE_DET * 17.0 * (f64::EPSILON / 2.0);
 /// Differences shorter than this are too near to underflow for a bound that follows from them.
 const LEAST_LENGTH: f64 = 1e-50;
 
-/// No bound is less, but 0: products that underflow add less error than this.
+/// Smallest error bound other than 0: products that underflow add less error than this.
 const LEAST_BOUND: f64 = 1e-200;
 
-/// The sum of the absolute values of the products in [`sphere_det`], for differences of at most 1: no partial sum is larger.
+/// The sum of the absolute values of the products in [`sphere_det`], for differences of at most 1: no partial sum is
+/// larger.
 const LARGEST_SPHERE_DET: f64 = 72.0;
 
 /// 2⁵³: determinants of integers that cannot reach it are exact in `f64`.
@@ -73,11 +74,11 @@ fn lanes(f: impl Fn(usize) -> f64) -> Lanes {
     [f(0), f(1), f(2), f(3)]
 }
 
-/// How far each corner is lifted above p's, and six times the signed volume of p and the other three corners: positive where p
-/// lies on the corner's side of them.
+/// How far each corner is lifted above p's, and six times the signed volume of p and the other three corners: positive
+/// where p lies on the corner's side of them.
 ///
-/// The terms are those of Shewchuk's `insphere`, so that his bound holds; the four of a kind stand side by side, for the compiler to
-/// compute them at once.
+/// The terms are those of Shewchuk's `insphere`, so that his bound holds; the four of a kind stand side by side, for
+/// the compiler to compute them at once.
 #[inline(always)]
 fn lifts_and_volumes(corners: [DVec3; 4], p: DVec3) -> (Lanes, Lanes) {
     let x = lanes(|i| corners[i].x - p.x);
@@ -102,11 +103,11 @@ fn sphere_det(corners: [DVec3; 4], p: DVec3) -> f64 {
     (term[0] + term[1]) + (term[2] + term[3])
 }
 
-/// As [`Sites::breaks_tie`], of integers for which none of this rounds: their differences are below 1024, so that one number tells
-/// their lexicographic order.
+/// As [`Sites::breaks_tie`], of integers for which none of this rounds: their differences are below 1024, so that one
+/// number tells their lexicographic order.
 fn breaks_small_tie(corners: [DVec3; 4], p: DVec3) -> bool {
     let (_, volume) = lifts_and_volumes(corners, p);
-    // Corners in the plane of the others and p have no say; p itself has 0.
+    // Corners in the plane of the others and p do not decide; p itself has 0.
     let lateness = lanes(|i| {
         let d = corners[i] - p;
         if volume[i] == 0.0 { -1.0 } else { (d.x * 1024.0 + d.y) * 1024.0 + d.z }
@@ -161,7 +162,7 @@ impl Sites {
         self.sphere_bound = bound(SPHERE_ERROR * side.powi(5));
     }
 
-    /// One more vertex, or nothing if the scale does not fit it: then all have to be scaled anew.
+    /// Adds a vertex; `None` if the scale does not fit it, so that all have to be scaled anew.
     pub(super) fn push(&mut self, p: DVec3) -> Option<Vertex> {
         let (scale, lo, hi, exact) = (self.scale, self.lo, self.hi, self.exact);
         let scaled = self.scale.apply_new(p)?;
@@ -180,8 +181,8 @@ impl Sites {
         Some(Vertex(self.at.len() as u32 - 1))
     }
 
-    /// One more vertex in the box, off the plane in which all others lie: they and it span tetrahedra whose bases are the
-    /// Delaunay triangles of that plane.
+    /// One more vertex in the box, off the plane in which all others lie: they and it span tetrahedra whose bases are
+    /// the Delaunay triangles of that plane.
     pub(crate) fn push_apex(&mut self, plane: [Vertex; 3]) -> Vertex {
         let from = plane[0];
         let apex = Vertex(self.at.len() as u32);
@@ -330,7 +331,8 @@ impl Sites {
         }
     }
 
-    /// Positive where p lies inside the sphere through the corners of a positive tetrahedron, 0 on it, negative outside.
+    /// Positive where p lies inside the sphere through the corners of a positive tetrahedron, 0 on it, negative
+    /// outside.
     pub(crate) fn sphere_sign(&self, corners: [Vertex; 4], p: Vertex) -> f64 {
         let det = sphere_det(corners.map(|v| self.at[v.slot()].p), self.at[p.slot()].p);
         if det.abs() > self.sphere_bound || self.exact == Exact::Small {
@@ -342,11 +344,11 @@ impl Sites {
 
     /// Whether p, on the sphere through the corners, counts as inside.
     ///
-    /// Delaunay triangulations are the lower hulls of points lifted to the paraboloid. Each point counts as lifted higher by an
-    /// infinitesimal amount of its own, the larger the later it comes in lexicographic order, and by incomparably more
-    /// than all before it: so the answer is that of the last point whose lifting changes it. That of p takes it out of the
-    /// sphere. That of a corner takes p in if p lies on the corner's side of the other three, and out on the other side; in their
-    /// plane it does nothing.
+    /// Delaunay triangulations are the lower hulls of points lifted to the paraboloid. Each point counts as lifted
+    /// higher by an infinitesimal amount of its own, the larger the later it comes in lexicographic order, and by
+    /// incomparably more than all before it: so the answer is that of the last point whose lifting changes it. That of
+    /// p takes it out of the sphere. That of a corner takes p in if p lies on the corner's side of the other three, and
+    /// out on the other side; in their plane it does nothing.
     fn breaks_tie(&self, corners: [Vertex; 4], p: Vertex) -> bool {
         let mut order = [0, 1, 2, 3, 4];
         let of = |k: usize| if k == 4 { p } else { corners[k] };

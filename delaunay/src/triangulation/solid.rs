@@ -11,13 +11,13 @@ use glam::DVec3;
 
 /// A mesh of tetrahedra, or of the triangles that are their bases.
 ///
-/// Points of a plane get one vertex more, the apex, off the plane. A sphere through three of them and the apex meets the
-/// plane in their circle, so the tetrahedra stand on the Delaunay triangles: exactly, however the plane is tilted.
+/// Points of a plane get one vertex more, the apex, off the plane. A sphere through three of them and the apex meets
+/// the plane in their circle, so the tetrahedra stand on the Delaunay triangles: exactly, however the plane is tilted.
 #[derive(Clone, Debug)]
 pub(super) struct Solid {
     pub(super) sites: Sites,
     pub(super) mesh: Mesh,
-    /// The point that a vertex is, and [`OUTSIDE`] for those that are none.
+    /// The point of each vertex; [`OUTSIDE`] for vertices without a point.
     pub(super) index: Vec<u32>,
     /// The vertex that a point is.
     vertex: Vec<Vertex>,
@@ -27,7 +27,7 @@ pub(super) struct Solid {
     hole: Hole,
 }
 
-/// What happened to a point that was to be inserted.
+/// The result of inserting a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Added {
     /// It is a vertex of the mesh.
@@ -53,8 +53,8 @@ impl Solid {
         Self { sites, mesh, index, vertex, apex, cavity, hole: Hole::default() }
     }
 
-    /// Of points that coincide, lets the first stand for all: `same` has a vertex and the one in the mesh that lies there.
-    /// Writes who stands for whom.
+    /// Of points that coincide, lets the first stand for all: `same` has a vertex and the one in the mesh that lies
+    /// there. Writes the representative of each point.
     pub(super) fn merge(&mut self, same: &[(Vertex, Vertex)], representative: &mut [u32]) {
         for &(v, kept) in same {
             if self.index[v.slot()] < self.index[kept.slot()] {
@@ -105,7 +105,8 @@ impl Solid {
         self.sites.orient(base.expect("a mesh has tetrahedra")) == 0.0
     }
 
-    /// Takes out the point of this index, the only one in its place. False, and nothing done, if the rest may span less.
+    /// Removes the point of this index, the only one at its position. Returns false and changes nothing if the rest may
+    /// span fewer dimensions.
     pub(super) fn remove(&mut self, index: u32) -> Result<bool, DelaunayError> {
         let v = self.vertex[index as usize];
         let removed = self.mesh.remove(&self.sites, &mut self.cavity, &mut self.hole, v)?;
@@ -122,8 +123,8 @@ impl Solid {
         self.index[v.slot()] = to;
     }
 
-    /// Whether a triangle of these points turns counterclockwise as seen along the first axis, of z, y and x, from which it is
-    /// not seen edge on.
+    /// Whether a triangle of these points turns counterclockwise as seen along the first axis, of z, y and x, from
+    /// which it is not seen edge on.
     pub(super) fn is_counterclockwise(&self, triangle: [u32; 3]) -> bool {
         self.sites
             .normal_signs(triangle.map(|i| self.vertex[i as usize]))

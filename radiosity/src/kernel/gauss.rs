@@ -1,4 +1,6 @@
 //! Points and weights of Gauss–Legendre quadrature on [0, 1].
+//!
+//! `sh/src/gauss_legendre.rs` says why `pointillist-sh` has rules of its own.
 
 use std::sync::OnceLock;
 

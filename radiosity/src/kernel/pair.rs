@@ -122,19 +122,19 @@ fn order(rate: f64, tolerance: f64) -> usize {
 #[derive(Clone, Debug)]
 struct Samples {
     len: usize,
-    x: [f64; LANES],
-    y: [f64; LANES],
-    z: [f64; LANES],
+    x: [f64; MAX_AREA_POINTS],
+    y: [f64; MAX_AREA_POINTS],
+    z: [f64; MAX_AREA_POINTS],
     /// Weight of the point times its height over the other polygon's plane.
-    weight: [f64; LANES],
+    weight: [f64; MAX_AREA_POINTS],
 }
 
 /// Most points of one quadrangle.
-const LANES: usize = MAX_AREA_ORDER * MAX_AREA_ORDER;
+const MAX_AREA_POINTS: usize = MAX_AREA_ORDER * MAX_AREA_ORDER;
 
 impl Samples {
     fn of(quad: &[DVec3; 4], order: usize, other: &Polygon) -> Self {
-        let none = [0.0; LANES];
+        let none = [0.0; MAX_AREA_POINTS];
         let mut list = Self { len: 0, x: none, y: none, z: none, weight: none };
         let rule = gauss::rule(order);
         for (u, weight_u) in rule.iter() {
@@ -175,7 +175,7 @@ fn over_areas(a: &Polygon, b: &Polygon, (n, m): (usize, usize), missed: f64) -> 
 #[inline]
 fn inner_sum(b: &Samples, from: DVec3) -> f64 {
     let mut sums = [0.0; 4];
-    let padded = b.len.next_multiple_of(4).min(LANES);
+    let padded = b.len.next_multiple_of(4).min(MAX_AREA_POINTS);
     for start in (0..padded).step_by(4) {
         for (k, sum) in sums.iter_mut().enumerate() {
             let i = start + k;

@@ -1,7 +1,10 @@
 //! Whether the lists of a scene fit one another.
 
 use super::error::SceneError;
-use super::{Details, Map, Material, Mesh, NONE, Scene, Surroundings, Texels};
+use super::{
+    AmbientLight, Bump, BumpHeight, Details, Map, Material, Mesh, NONE, Scene, Surroundings, Texels,
+    Transmission,
+};
 use glam::Vec3;
 use pointillist_shade::Light;
 
@@ -27,6 +30,13 @@ impl Scene {
         check_textures("image.environment", environment, textures)?;
         let background = self.image.background.is_finite();
         finite(background, || "image.background".to_owned())?;
+        let ambient = match &self.ambient {
+            AmbientLight::Color(color) => color.is_finite(),
+            AmbientLight::Sky(light) => [light.sky, light.ground, light.up].iter().all(|v| v.is_finite()),
+            // These were checked when they were made.
+            AmbientLight::Probes { .. } | AmbientLight::Environment | AmbientLight::Radiosity { .. } => true,
+        };
+        finite(ambient, || "ambient".to_owned())?;
         self.lights.iter().try_for_each(|l| finite(is_finite(&l.light), || format!("light `{}`", l.name)))
     }
 }
@@ -77,7 +87,15 @@ impl Material {
         ] {
             finite(value.is_finite(), || format!("{user}: {name}"))?;
         }
-        Ok(())
+        self.details
+            .numbers()
+            .try_for_each(|(name, value)| finite(value.is_finite(), || format!("{user}: {name}")))?;
+        match self.details.transmission {
+            Some(Transmission { index, .. }) if index <= 0.0 => {
+                Err(SceneError::RefractionIndex { material: self.name.clone(), value: index })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// All textures that it refers to.
@@ -100,6 +118,27 @@ impl Material {
         };
         let texture = |map: Map| map.texture;
         maps.into_iter().flatten().map(texture).chain(own).chain(self.diffuse_map).chain(self.opacity_map)
+    }
+}
+
+impl Details {
+    /// Its numbers with their names; numbers that stand alone as three equal ones.
+    fn numbers(&self) -> impl Iterator<Item = (&'static str, Vec3)> {
+        let one = |name, value: Option<f32>| value.map(|v| (name, Vec3::splat(v)));
+        let height = |bump: Bump| match bump.height {
+            BumpHeight::World(height) | BumpHeight::OfTexture(height) => height,
+        };
+        [
+            one("occlusion", self.occlusion.map(|(_, strength)| strength)),
+            one("bump", self.bump.map(height)),
+            one("normal", self.normal.map(|(_, scale)| scale)),
+            one("metallic", self.metallic),
+            self.reflection.map(|color| ("reflection", color)),
+            self.transmission.map(|t| ("transmission", t.color)),
+            one("refraction index", self.transmission.map(|t| t.index)),
+        ]
+        .into_iter()
+        .flatten()
     }
 }
 

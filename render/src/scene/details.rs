@@ -1,6 +1,6 @@
 //! What a material has beyond its constants: further maps, mirrored surroundings, measured reflection.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use pointillist_shade::{AutoUv, MerlTable, Wrap};
 use std::fmt;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ pub struct Details {
     pub shininess_map: Option<Map>,
     /// Multiplies the roughness.
     pub roughness_map: Option<Map>,
-    /// Multiplies `metallic`.
+    /// Multiplies `metallic`; ignored without it.
     pub metallic_map: Option<Map>,
     /// Multiplies the emission.
     pub emission_map: Option<Map>,
@@ -64,6 +64,19 @@ pub enum Channel {
     Green,
     /// Blue.
     Blue,
+}
+
+impl Channel {
+    /// The number that a texel stands for.
+    #[must_use]
+    pub fn of(self, texel: Vec4) -> f32 {
+        match self {
+            Self::Mean => (texel.x + texel.y + texel.z) / 3.0,
+            Self::Red => texel.x,
+            Self::Green => texel.y,
+            Self::Blue => texel.z,
+        }
+    }
 }
 
 /// A height map.

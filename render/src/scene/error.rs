@@ -67,6 +67,14 @@ pub enum SceneError {
         /// The albedo of one of its colours.
         value: f32,
     },
+    /// A refraction index is not above 0.
+    #[error("material `{material}`: a refraction index of {value} is not above 0")]
+    RefractionIndex {
+        /// The material's name.
+        material: String,
+        /// The index.
+        value: f32,
+    },
     /// A number is infinite or NaN.
     #[error("{what} is not finite")]
     NotFinite {

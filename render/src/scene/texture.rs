@@ -81,6 +81,8 @@ impl Texture {
     /// Outside the picture.
     #[must_use]
     pub fn texel(&self, x: u32, y: u32) -> Vec4 {
+        // A column beyond the last would be one of the next row.
+        assert!(x < self.width, "column {x} of a picture that is {} wide", self.width);
         let i = y as usize * self.width as usize + x as usize;
         let unit = |byte: u8| f32::from(byte) / 255.0;
         match &self.texels {

@@ -11,13 +11,14 @@ use std::collections::BTreeMap;
 pub struct AdaptiveOptions {
     /// Most probes. Default: 96.
     pub max_count: usize,
-    /// The relative RMS error of irradiance that may be reached. Default: 0, that is, as many probes as allowed.
+    /// Relative RMS error of irradiance at which placement stops. Default: 0: as many probes as allowed are used.
     pub max_error: f64,
-    /// From 0, all errors count the same, to 1, errors count relative to the light where they are. Default: 0.5.
+    /// How errors are weighted: with 0 they count in absolute terms, with 1 relative to the light at their position.
+    /// Default: 0.5.
     pub balance: f64,
     /// Candidates tried in each exchange: the worst lit of the cells with the largest errors. Default: 48.
     pub trials: usize,
-    /// Most exchanges of a probe that matters little for one that matters more, at the end. Default: 16.
+    /// Most exchanges at the end, each of a probe that matters little for one that matters more. Default: 16.
     pub exchanges: usize,
 }
 
@@ -79,18 +80,21 @@ pub struct Adaptive {
     pub error: f64,
 }
 
-/// Chooses probes among candidates so that interpolation between them errs little, over all candidates and all directions.
+/// Chooses probes among candidates so that interpolation between them errs little, over all candidates and all
+/// directions.
 ///
-/// 1. All candidates are probes. Take out, round by round, those that are missed least, never two neighbours at once, until the
-///    count is reached; with an error to be reached, on until the next would go beyond it.
-/// 2. Exchange: take out the probe that is missed least and insert what helps most, while that lowers the error.
+/// 1. All candidates are probes. Take out, round by round, those that are missed least, never two neighbours at once,
+///    until the count is reached; with an error to be reached, on until the next would go beyond it.
+/// 2. Exchange: remove the probe whose loss costs least and insert the one that lowers the error most, while the error
+///    falls.
 ///
-/// Taking out works where inserting fails: a small bright place needs several probes around it before the first of them helps.
-/// Interpolation is that of [`Field`](crate::Field), with what probes see. Does not depend on threads.
+/// Removing probes works where inserting them fails: a small bright region needs several probes around it before the
+/// first of them lowers the error. Interpolation is that of [`Field`](crate::Field), with visibility where distances
+/// are given. The result does not depend on threads.
 ///
 /// # Errors
-/// [`ProbeError::NoProbes`], [`ProbeError::CountMismatch`], [`ProbeError::PositionNotFinite`], [`ProbeError::MixedOrders`],
-/// [`ProbeError::BadRadiance`], [`ProbeError::BadWeight`], [`ProbeError::BadOption`].
+/// [`ProbeError::NoProbes`], [`ProbeError::CountMismatch`], [`ProbeError::PositionNotFinite`],
+/// [`ProbeError::MixedOrders`], [`ProbeError::BadRadiance`], [`ProbeError::BadWeight`], [`ProbeError::BadOption`].
 pub fn adaptive(candidates: Candidates<'_>, options: &AdaptiveOptions) -> Result<Adaptive, ProbeError> {
     let bench = Bench::new(candidates, options.balance)?;
     check_amount("max_error", options.max_error)?;
@@ -151,7 +155,7 @@ fn best(bench: &Bench<'_>, sets: Vec<Vec<u32>>) -> Result<Option<State>, ProbeEr
     Ok(best)
 }
 
-/// Candidates worth trying: of each cell the worst lit, from the cells that are wrong most.
+/// Candidates to try: of each cell the one with the largest error, from the cells with the largest errors.
 fn shortlist(bench: &Bench<'_>, state: &State, trials: usize) -> Vec<u32> {
     let Some(outcome) = &state.outcome else { return vec![] };
     let mut cells: BTreeMap<[u32; 4], (f64, u32)> = BTreeMap::new();
@@ -167,7 +171,7 @@ fn shortlist(bench: &Bench<'_>, state: &State, trials: usize) -> Vec<u32> {
     let mut worst: Vec<(f64, u32)> = cells.into_values().collect();
     worst.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     worst.truncate(trials);
-    // Few cells hold many candidates at first: those most wrong anywhere fill the list up.
+    // At first few cells hold many candidates: then the list is filled up with the candidates of largest error.
     let mut tries: Vec<u32> = worst.into_iter().map(|(_, i)| i).collect();
     let mut rest: Vec<u32> =
         (0..bench.count() as u32).filter(|i| !tries.contains(i) && !state.chosen.contains(i)).collect();

@@ -6,15 +6,15 @@ use crate::sight::Shares;
 use crate::{ProbeError, parallel};
 use glam::DVec3;
 
-/// How [`fit`] weighs what it is given.
+/// Weights of [`fit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FitOptions {
     /// As [`AdaptiveOptions::balance`](super::AdaptiveOptions::balance). Default: 0.5.
     pub balance: f64,
-    /// How strongly a probe is held to what it saw itself, against what is seen by the candidates that it lights; 0 holds it by nothing.
-    /// Default: 0.1, found by experiment: with less there is hardly anything to be gained where candidates are dense, and where they are
-    /// not, probes follow what the few happen to see.
+    /// Weight of what a probe saw itself against what the candidates that it lights saw; 0 ignores the former. Default:
+    /// 0.1, found by experiment: with a smaller weight the error hardly falls where candidates are dense, and where
+    /// they are sparse the probes overfit the few candidates.
     pub hold: f64,
 }
 
@@ -47,13 +47,13 @@ impl Default for FitOptions {
 const ENOUGH: f64 = 1e-8;
 const MOST_STEPS: usize = 500;
 
-/// What each of the `chosen` candidates should hold as a probe so that interpolation between them comes closest, in the sense of
-/// least squares, to what all candidates saw.
+/// What each of the `chosen` candidates should hold as a probe so that interpolation between them comes closest, in the
+/// sense of least squares, to what all candidates saw.
 ///
-/// A probe that holds what it saw is right where it is, and on one side of the truth all around if light has a peak or a hollow
-/// there; one that is fitted is a little wrong everywhere and much less so on the whole. The same idea for vertices of meshes is
-/// \[6\]. The normal equations Σ wₛ aₛaₛᵀ X = Σ wₛ aₛ Tₛ, with a row aₛ of shares for each candidate, are solved by conjugate gradients
-/// from what the probes saw.
+/// A probe that holds what it saw is exact at its own position, but biased all around it where light has a peak or a
+/// minimum there. A fitted probe has a small error everywhere and a much smaller one on the whole. \[6\] does the same
+/// for vertices of meshes. The normal equations Σ wₛ aₛaₛᵀ X = Σ wₛ aₛ Tₛ, with a row aₛ of shares for each candidate,
+/// are solved by conjugate gradients from what the probes saw.
 ///
 /// # Errors
 /// As [`adaptive`](super::adaptive), and [`ProbeError::NoSuchProbe`] for a number that is no candidate.
@@ -67,7 +67,7 @@ pub fn fit(candidates: Candidates<'_>, chosen: &[u32], options: &FitOptions) -> 
     let count = candidates.radiance[0].coefficients().len();
     let saw = |i: usize| candidates.radiance[i].coefficients();
     let start: Vec<Vec<DVec3>> = chosen.iter().map(|&i| saw(i as usize).to_vec()).collect();
-    // What is missing at the candidates is what there is to be gained.
+    // Solves for the correction of what the probes saw: the right side is the error at the candidates.
     let missing: Vec<Vec<DVec3>> = parallel::map(bench.count(), |s| {
         let mut rest = saw(s).to_vec();
         for (p, share) in equations.rows[s].iter() {
@@ -82,11 +82,11 @@ pub fn fit(candidates: Candidates<'_>, chosen: &[u32], options: &FitOptions) -> 
     start.into_iter().zip(gain).map(sum).collect()
 }
 
-/// The normal equations, never written out.
+/// The normal equations as an operator: the matrix is never stored.
 struct Equations {
     rows: Vec<Shares>,
     weights: Vec<f64>,
-    /// What holds each probe.
+    /// Weight of each probe's own observation.
     held: Vec<f64>,
 }
 
@@ -98,12 +98,12 @@ impl Equations {
         for (row, w) in rows.iter().zip(&weights) {
             row.iter().for_each(|(p, share)| lit[p as usize] += w * share);
         }
-        // A probe that lights no candidate keeps what it saw, whatever that weighs.
+        // A probe that lights no candidate keeps what it saw, whatever the weight.
         let held = lit.into_iter().map(|lit| if lit > 0.0 { hold * lit } else { 1.0 }).collect();
         Ok(Self { rows, weights, held })
     }
 
-    /// Σ wₛ aₛ rₛ: what candidates ask of probes.
+    /// Σ wₛ aₛ rₛ: residuals of candidates, gathered at their probes.
     fn gathered(&self, rest: &[Vec<DVec3>], count: usize) -> Vec<Vec<DVec3>> {
         let mut sums = vec![vec![DVec3::ZERO; count]; self.held.len()];
         for ((row, w), rest) in self.rows.iter().zip(&self.weights).zip(rest) {

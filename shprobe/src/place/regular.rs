@@ -2,10 +2,12 @@
 
 use glam::{DVec3, dvec3};
 
-/// Distance of a grid's outer probes from the box, over the spacing of a grid that fills it: probes should not lie in walls.
+/// Distance of a grid's outer probes from the box, over the spacing of a grid that fills it: probes should not lie in
+/// walls.
 const INSET: f64 = 0.1;
 
-/// `nx · ny · nz` probes evenly in a box, x fastest; the outer ones a tenth of a cell inside of it. One along an axis lies in the middle.
+/// `nx · ny · nz` probes evenly in a box, x fastest; the outer ones a tenth of a cell inside of it. One along an axis
+/// lies in the middle.
 ///
 /// # Panics
 /// If there are more than `usize` can count, or than memory holds.
@@ -29,12 +31,12 @@ pub fn grid(low: DVec3, high: DVec3, [nx, ny, nz]: [usize; 3]) -> Vec<DVec3> {
     probes
 }
 
-/// `count` probes anywhere in a box, each place as likely as any other.
+/// `count` positions at random, uniformly distributed in a box.
 #[must_use]
 pub fn random(low: DVec3, high: DVec3, count: usize, seed: u64) -> Vec<DVec3> {
     let mut state = seed;
     let mut unit = || {
-        // SplitMix64 (Steele et al. 2014): every seed is a good one.
+        // SplitMix64 (Steele et al. 2014): any seed gives a good sequence.
         state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = state;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -45,8 +47,8 @@ pub fn random(low: DVec3, high: DVec3, count: usize, seed: u64) -> Vec<DVec3> {
     (0..count).map(|_| place()).collect()
 }
 
-/// Up to `count` of the candidates, each as far as possible from those before it (Gonzalez 1985); the first is the one nearest to the
-/// middle. Equal candidates are taken once, and those that are not finite never.
+/// Up to `count` of the candidates, each as far as possible from those before it (Gonzalez 1985); the first is the one
+/// nearest to the middle. Of equal candidates one is taken, and candidates that are not finite are never taken.
 #[must_use]
 pub fn spread(candidates: &[DVec3], count: usize) -> Vec<usize> {
     let finite = || candidates.iter().copied().filter(|p| p.is_finite());

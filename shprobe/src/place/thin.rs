@@ -1,16 +1,17 @@
-//! Takes out probes that are missed least.
+//! Removes the probes whose loss costs least.
 
 use super::trial::{Bench, Outcome};
 use crate::{ProbeError, parallel};
 
-/// What is left, and how the error grew.
+/// The probes that are left, and the error after each round.
 pub(super) struct Thinned {
     pub(super) chosen: Vec<u32>,
     pub(super) outcome: Outcome,
     pub(super) errors: Vec<(usize, f64)>,
 }
 
-/// Part of the probes that a round may take out, as long as they are not neighbours: small, since costs are found one by one.
+/// Part of the probes that a round may take out, as long as they are not neighbours: small, since costs are found one
+/// by one.
 const SHARE: usize = 20;
 
 /// Takes out probes until `limit` are left, and on as long as the squared error stays within `enough`.
@@ -18,7 +19,7 @@ pub(super) fn thin(bench: &Bench<'_>, limit: usize, enough: f64) -> Result<Thinn
     let mut chosen: Vec<u32> = (0..bench.count() as u32).collect();
     let mut outcome = bench.outcome(&chosen)?;
     let mut errors = vec![(chosen.len(), outcome.error2.sqrt())];
-    // Rounds get smaller where a large one went too far.
+    // Rounds become smaller after one that went beyond the error allowed.
     let mut most = usize::MAX;
     while chosen.len() > 1 {
         let wanted = chosen.len().saturating_sub(limit);
@@ -45,8 +46,8 @@ pub(super) fn thin(bench: &Bench<'_>, limit: usize, enough: f64) -> Result<Thinn
     Ok(Thinned { chosen, outcome, errors })
 }
 
-/// Up to `count` probes, as indices into those chosen, none a neighbour of another, whose loss costs least; one at least, and further
-/// ones as long as they cost `budget` together.
+/// Up to `count` probes, as indices into those chosen, none a neighbour of another, whose loss costs least; one at
+/// least, and further ones as long as they cost `budget` together.
 fn cheapest(
     bench: &Bench<'_>,
     chosen: &[u32],
@@ -63,11 +64,12 @@ fn cheapest(
             }
         }
     }
-    // Where a probe was, cells between its neighbours are new, and they are Delaunay cells of the neighbours alone, too.
+    // The cells that appear where a probe was lie between its neighbours, and are Delaunay cells of the neighbours
+    // alone.
     let cost = |probe: usize| -> Result<f64, ProbeError> {
         let around: Vec<u32> = graph.around(probe as u32).iter().map(|&n| chosen[n as usize]).collect();
         if around.is_empty() {
-            // It shares its place with another, which lights what it did.
+            // It coincides with another probe, which takes over its positions at no cost.
             return Ok(0.0);
         }
         let before: f64 = lit_by[probe].iter().map(|&i| outcome.parts[i as usize]).sum();

@@ -15,9 +15,9 @@ pub struct Candidates<'a> {
     pub positions: &'a [DVec3],
     /// What arrives there; all of one order.
     pub radiance: &'a [Sh],
-    /// How far they see; without, light passes through walls.
+    /// What they see, as distances; without these, light passes through walls.
     pub distances: Option<&'a [DistanceMap]>,
-    /// What the error at each counts, for example the volume it stands for; 1 without.
+    /// Weight of the error at each, for example the volume that it stands for; 1 without.
     pub weights: Option<&'a [f64]>,
 }
 
@@ -28,7 +28,7 @@ impl<'a> Candidates<'a> {
         Self { positions, radiance, distances: None, weights: None }
     }
 
-    /// Sets how far each sees: one map per position.
+    /// Sets the distances that each sees: one map per position.
     #[must_use]
     pub const fn with_distances(mut self, distances: &'a [DistanceMap]) -> Self {
         self.distances = Some(distances);
@@ -48,11 +48,12 @@ pub(super) struct Bench<'a> {
     candidates: Candidates<'a>,
     /// Coefficients of irradiance over √(4π): sums of squares are means over all normals.
     irradiance: Vec<Vec<DVec3>>,
-    /// What a squared error at each candidate counts.
+    /// Weight of a squared error at each candidate.
     weights: Vec<f64>,
 }
 
-/// Light weaker than this share of the RMS counts as this much, so that errors where it is dark do not count without end.
+/// Lower bound, as a share of the RMS, of the light that errors are divided by: relative errors in the dark stay
+/// bounded.
 const DARK: f64 = 0.02;
 
 /// The error of a set of probes.
@@ -66,7 +67,7 @@ pub(super) struct Outcome {
     pub(super) partition: Partition,
 }
 
-/// Weights are finite and not negative, and something counts.
+/// Weights are finite and not negative, and one is above 0.
 fn check_weights(weights: Option<&[f64]>) -> Result<(), ProbeError> {
     let Some(weights) = weights else { return Ok(()) };
     let is_bad = |w: &f64| !(*w >= 0.0 && w.is_finite());
@@ -77,13 +78,13 @@ fn check_weights(weights: Option<&[f64]>) -> Result<(), ProbeError> {
     }
 }
 
-/// Refuses what is not from 0 to 1.
+/// Refuses an option that is not from 0 to 1.
 fn check_share(name: &'static str, value: f64) -> Result<(), ProbeError> {
     let is_share = (0.0..=1.0).contains(&value);
     if is_share { Ok(()) } else { Err(ProbeError::BadOption { name, value, range: "it must be 0 to 1" }) }
 }
 
-/// Refuses what is negative or not finite.
+/// Refuses an option that is negative or not finite.
 pub(super) fn check_amount(name: &'static str, value: f64) -> Result<(), ProbeError> {
     let range = "it must be finite and at least 0";
     if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(ProbeError::BadOption { name, value, range }) }
@@ -120,7 +121,7 @@ impl<'a> Bench<'a> {
         let weight = |i: usize| given(i) * (squares[i] + DARK * DARK * mean).powf(-balance);
         let weights: Vec<f64> = (0..count).map(weight).collect();
         let power: f64 = weights.iter().zip(&squares).map(|(w, s)| w * s).sum();
-        // Where all is dark nothing can be wrong.
+        // Without light there is no error.
         let scale = if power > 0.0 { 1.0 / power } else { 0.0 };
         let weights = weights.into_iter().map(|w| if scale > 0.0 { w * scale } else { 0.0 }).collect();
         Ok(Self { candidates, irradiance, weights })

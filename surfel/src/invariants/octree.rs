@@ -11,8 +11,8 @@ use std::ops::Range;
 /// Rounding of sums of areas, relative.
 const AREA_ROUNDING: f64 = 1e-3;
 
-/// Bytes per point that octree, links and areas of a surface take at most, for clouds of 10,000 points and more: 4 for the
-/// area, and for nodes and links 3 (a sphere) to 10 (a thin sheet with two sides and colors).
+/// Bytes per point that octree, links and areas of a surface take at most, for clouds of 10,000 points and more: 4 for
+/// the area, and for nodes and links 3 (a sphere) to 10 (a thin sheet with two sides and colors).
 pub const MOST_OVERHEAD: f64 = 16.0;
 
 /// Any points become a sound octree, or are refused.
@@ -25,8 +25,8 @@ pub fn octrees_are_sound(points: &OwnedPoints) -> Result<(), String> {
     octree_is_sound(&cloud)
 }
 
-/// Every point is in exactly one leaf; boxes hold their points, cones their normals; links lead to points below their node, and stand
-/// for all of the area there.
+/// Every point is in exactly one leaf; boxes hold their points, cones their normals; links lead to points below their
+/// node, and stand for all of the area there.
 ///
 /// # Errors
 /// The first node for which that does not hold.

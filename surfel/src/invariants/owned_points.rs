@@ -32,8 +32,8 @@ impl OwnedPoints {
         Self { positions, ..Self::default() }
     }
 
-    /// `columns` × `rows` points about `centre`, `right` and `up` apart, that face the side from which `up` is to the left of
-    /// `right`. Discs leave no gap.
+    /// `columns` × `rows` points about `centre`, `right` and `up` apart, that face the side from which `up` is to the
+    /// left of `right`. Discs leave no gap.
     #[must_use]
     pub fn plane(centre: DVec3, right: DVec3, up: DVec3, columns: u32, rows: u32) -> Self {
         let middle = |n: u32| 0.5 * f64::from(n.saturating_sub(1));

@@ -8,8 +8,9 @@ use glam::DVec3;
 /// Rounding of a position, relative to its size and the mesh's.
 pub const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Points of blue noise are at least this far apart, of the spacing of a lattice of as many: held for squares, cubes and
-/// spheres of 100 to 1500 points. (Of ten, two may be nearer: there are only fifty to choose from.) (\[2\] gives 0.65 as what its weights aim at.)
+/// Points of blue noise are at least this far apart, of the spacing of a lattice of as many: held for squares, cubes
+/// and spheres of 100 to 1500 points. (Of ten, two may be nearer: there are only fifty to choose from.) (\[2\] gives
+/// 0.65 as what its weights aim at.)
 pub const LEAST_DISTANCE: f64 = 0.45;
 
 /// Every point lies on its triangle, and says so consistently.
@@ -117,8 +118,8 @@ pub fn points_keep_apart(points: &[SurfacePoint], least: f64) -> Result<(), Stri
     Ok(())
 }
 
-/// Seen along its normal, every place of every triangle is covered by a disc about a point of a surface that faces the same way, to
-/// within `slack` of the radius. `probes` is how many places are tried along an edge.
+/// Seen along its normal, every place of every triangle is covered by a disc about a point of a surface that faces the
+/// same way, to within `slack` of the radius. `probes` is how many places are tried along an edge.
 ///
 /// # Errors
 /// How much of the places is bare, and one of them.

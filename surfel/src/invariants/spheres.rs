@@ -70,8 +70,8 @@ pub fn difference(a: &Frame, b: &Frame) -> f64 {
     (sum / values().count() as f64).sqrt()
 }
 
-/// Frames of coarser levels differ from that of all points by at most `most` for each of `levels`, and by less for finer
-/// ones.
+/// Frames of coarser levels differ from that of all points by at most `most` for each of `levels`, and by less for
+/// finer ones.
 ///
 /// # Errors
 /// The differences.

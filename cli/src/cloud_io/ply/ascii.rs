@@ -1,4 +1,4 @@
-//! Payload in ascii: an element a line.
+//! Reads the ascii payload of a PLY, one element a line.
 
 use super::super::block::{At, Gather, Stop};
 use super::super::number::{Words, parse_f32, parse_f64};

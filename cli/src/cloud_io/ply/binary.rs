@@ -1,4 +1,4 @@
-//! Payload in binary: numbers one after the other.
+//! Reads the binary payload of a PLY.
 
 use super::super::block::{At, Gather, Stop};
 use super::super::source::Source;

@@ -31,14 +31,14 @@ pub(super) struct Header {
 /// A kind of things and how many there are of it.
 pub(super) struct Element {
     pub(super) name: String,
-    /// As the header says; nothing is allocated on its word.
+    /// As the header says; never used as the size of an allocation.
     pub(super) count: u64,
     pub(super) properties: Vec<PropertyDef>,
     /// Its line in the header.
     line: (u64, Vec<u8>),
 }
 
-/// For the library's parser, which wants to know a type of elements and makes none for a header.
+/// The type of elements that the library's parser asks for; it creates none while it reads a header.
 struct Unread;
 
 impl PropertyAccess for Unread {

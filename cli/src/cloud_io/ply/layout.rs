@@ -1,4 +1,4 @@
-//! Which property of a vertex is which number of a point.
+//! Maps the properties of a PLY vertex to the coordinates, normal and colour of a point.
 
 use super::super::block::Point;
 use super::super::colour::ColourCode;
@@ -103,7 +103,7 @@ fn is_scalar(property: &PropertyDef) -> bool {
     matches!(property.data_type, PropertyType::Scalar(_))
 }
 
-/// Integers of 32 bits are bytes that a careless program gave more room: nobody has colours of 32 bits.
+/// Colours stored as 32-bit integers hold values of 8 bits: some programs write bytes that way.
 fn colour_code(property: &PropertyDef) -> ColourCode {
     match property.data_type {
         PropertyType::Scalar(ScalarType::Float | ScalarType::Double) => ColourCode::Unit,

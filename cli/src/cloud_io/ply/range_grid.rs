@@ -1,4 +1,4 @@
-//! The grid of a Stanford range scan: how far its neighbours are from each other.
+//! The `range_grid` of a Stanford range scan, from which the spacing of its points is taken.
 
 use super::super::block::RangeGrid;
 use super::header::Header;

@@ -12,6 +12,7 @@ use crate::probe_io::{Distances, ProbeEntry, ProbeFile, read_probes};
 use crate::scene::{self, Scene};
 use glam::DVec3;
 use pointillist_render::{BakedProbe, Prepared, ProbeBake, Solids, bake_probes, fingerprint, fingerprints};
+use std::collections::HashMap;
 use std::hash::Hasher as _;
 use std::ops::Range;
 use std::path::Path;
@@ -68,6 +69,12 @@ fn check_memory(probes: usize, options: &BakeOptions) -> Result<(), CliError> {
 /// What earlier runs left in the output.
 struct Old {
     file: ProbeFile,
+    /// The baked probes by their positions' bits.
+    by_position: HashMap<[u64; 3], usize>,
+}
+
+fn bits(position: [f64; 3]) -> [u64; 3] {
+    position.map(f64::to_bits)
 }
 
 impl Old {
@@ -79,12 +86,15 @@ impl Old {
             && file.bounces == Some(options.bounces)
             && file.fit.unwrap_or(0) == options.fit
             && file.what.as_deref() == Some(options.what.name());
-        same.then_some(Self { file })
+        let baked = |(i, p): (usize, &ProbeEntry)| p.sh.is_some().then(|| (bits(p.position), i));
+        // Of equal positions the first counts.
+        let by_position = file.probes.iter().enumerate().rev().filter_map(baked).collect();
+        same.then_some(Self { file, by_position })
     }
 
     /// The baked probe at a position.
     fn at(&self, position: DVec3) -> Option<&ProbeEntry> {
-        self.file.probes.iter().find(|p| p.position == position.to_array() && p.sh.is_some())
+        self.by_position.get(&bits(position.to_array())).map(|&i| &self.file.probes[i])
     }
 }
 
@@ -103,6 +113,7 @@ fn settled(
         what: Some(options.what.name().to_owned()),
         bounces: Some(options.bounces),
         fit: (options.fit > 0).then_some(options.fit),
+        keep: (options.inside == Inside::Keep).then_some(true),
         fingerprint: Some(format!("{:016x}", fingerprint(scene, options))),
         part: options.part.map(|part| part.to_string()),
         first: options.part.map(|_| range.start),
@@ -153,7 +164,8 @@ fn fingerprint(scene: &Scene, options: &BakeOptions) -> u64 {
         [options.resolution, options.bounces, options.fit, options.distances, u32::from(options.order)];
     numbers.iter().for_each(|n| hash.write(&n.to_le_bytes()));
     hash.write(&options.until.to_le_bytes());
-    hash.write(&[u8::from(options.thorough), u8::from(options.dering)]);
+    let keep = options.inside == Inside::Keep;
+    hash.write(&[options.thorough, options.dering, keep].map(u8::from));
     hash.write(options.what.name().as_bytes());
     hash.write(env!("CARGO_PKG_VERSION").as_bytes());
     hash.finish()
@@ -161,18 +173,17 @@ fn fingerprint(scene: &Scene, options: &BakeOptions) -> u64 {
 
 /// What the renderer is asked for.
 fn look_options(options: &BakeOptions) -> pointillist_render::BakeOptions {
-    let mut look = pointillist_render::BakeOptions::DEFAULT;
-    look.resolution = options.resolution;
-    look.order = options.order.into();
-    look.distances = options.distances as usize;
-    look.bounces = options.bounces;
-    look.until = options.until;
-    look.fit = options.fit as usize;
-    look.emission = options.what == What::Total;
-    look.thorough = options.thorough;
-    look.dering = options.dering;
-    look.keep_buried = options.inside == Inside::Keep;
-    look
+    pointillist_render::BakeOptions::DEFAULT
+        .with_resolution(options.resolution)
+        .with_order(options.order.into())
+        .with_distances(options.distances as usize)
+        .with_bounces(options.bounces)
+        .with_until(options.until)
+        .with_fit(options.fit as usize)
+        .with_emission(options.what == What::Total)
+        .with_thorough(options.thorough)
+        .with_dering(options.dering)
+        .with_keep_buried(options.inside == Inside::Keep)
 }
 
 /// One run.
@@ -265,16 +276,16 @@ impl Bake<'_> {
             }
             probe.fingerprint = Some(marks[i].clone());
         }
-        let count = lit.iter().filter(|l| l.buried).count();
-        if count > 0 {
-            self.report.warn(&format!("{count} probes lie inside of walls, and light nothing"));
-        }
-        for (i, BakedProbe { seen, buried }) in todo.into_iter().zip(lit) {
+        for (i, BakedProbe { seen, .. }) in todo.into_iter().zip(lit) {
             let probe = &mut file.probes[i];
-            probe.buried = buried.then_some(true);
+            probe.back = Some(seen.back_share);
             probe.sh = Some(seen.radiance.coefficients().iter().map(DVec3::to_array).collect());
             probe.sky = Some(seen.sky.coefficients().to_vec());
             probe.distances = seen.distances.as_ref().map(Distances::of);
+        }
+        let count = file.mark_buried();
+        if count > 0 {
+            self.report.warn(&format!("{count} probes lie inside of walls, and light nothing"));
         }
         Ok(())
     }

@@ -12,7 +12,7 @@ pub(super) enum Outcome {
     Free,
     /// It was, and this is the nearest free place that was found.
     Moved(DVec3),
-    /// It is, and stays or goes as the user wants.
+    /// It is, and is kept as it is.
     Kept,
     /// It is left out.
     Dropped,

@@ -42,6 +42,7 @@ pub(in crate::commands) fn merge_probes(options: &MergeOptions, report: &Report<
     if Some(next) != first.total {
         return Err(CliError::Parts(format!("there is a gap after probe {next}")));
     }
+    whole.mark_buried();
     report.stats.count("parts", parts.len() as u64);
     report.stats.stage("write", || write(&options.output, &whole))?;
     report.note(&format!("{} parts joined in {}", parts.len(), name_of_output(&options.output)));
@@ -51,5 +52,5 @@ pub(in crate::commands) fn merge_probes(options: &MergeOptions, report: &Report<
 /// Where a part ends among all probes, before any were left out.
 fn end_of(file: &ProbeFile) -> Option<usize> {
     let part: crate::options::Tile = file.part.as_deref()?.parse().ok()?;
-    Some(file.total? * (part.last as usize + 1) / part.count as usize)
+    Some(file.total?.checked_mul(part.last as usize + 1)? / part.count as usize)
 }

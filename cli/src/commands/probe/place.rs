@@ -13,12 +13,9 @@ use crate::options::{Inside, PlaceOptions, Strategy};
 use crate::probe_io::ProbeFile;
 use crate::scene::{self, NONE, Scene};
 use glam::DVec3;
-use pointillist_render::{
-    Ambient, CaptureOptions, LookOptions, Prepared, Seen, Solids, buried, look_again, look_all,
-};
-use pointillist_sh::Sh;
+use pointillist_render::{ChooseOptions, Prepared, Solids, choose_places};
 use pointillist_shade::face_normal;
-use pointillist_shprobe::{DistanceMap, Field, ProbeError, place};
+use pointillist_shprobe::place;
 
 /// Height above their surface of probes at vertices, over the scene's diagonal.
 const LIFT: f64 = 0.02;
@@ -47,13 +44,13 @@ pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
         ));
     }
     let positions = settle(&positions, &prepared, options, &report)?;
+    if positions.is_empty() {
+        return Err(CliError::Failed("no place is left for a probe: all are inside of solids".to_owned()));
+    }
     let positions = match options.strategy {
         Strategy::Cluster => cluster(&prepared, &positions, options, &report)?,
         _ => positions,
     };
-    if positions.is_empty() {
-        return Err(CliError::Failed("no place is left for a probe: all are inside of solids".to_owned()));
-    }
     report.stats.count("probes", positions.len() as u64);
     report.stats.stage("write", || write(&options.output, &ProbeFile::of_positions(&positions)))?;
     let seconds = report.stats.elapsed().as_secs_f64();
@@ -164,51 +161,30 @@ fn settle(
     Ok(free)
 }
 
-/// The candidates between which light is interpolated best, by what they see with light sent on once.
+/// The candidates between which light is interpolated best, by what they see with light reflected once.
 fn cluster(
     prepared: &Prepared<'_>,
     candidates: &[DVec3],
     options: &PlaceOptions,
     report: &Report<'_>,
 ) -> Result<Vec<DVec3>, CliError> {
-    let broken = |error: ProbeError| CliError::Failed(error.to_string());
-    let capture =
-        CaptureOptions { resolution: options.resolution, emission: false, lights: true, thorough: false };
-    let look = LookOptions { capture, order: 2, distances: pointillist_shprobe::DEFAULT_DISTANCE_SIZE };
-    let progress = report.progress();
-    progress.begin("look", 2 * candidates.len() as u64);
-    let stats = &report.stats;
+    let choose = ChooseOptions::DEFAULT
+        .with_resolution(options.resolution)
+        .with_max_count(options.count as usize)
+        .with_max_error(options.error)
+        .with_keep_buried(options.inside == Inside::Keep);
+    let (progress, stats) = (report.progress(), &report.stats);
     let watch = Watch { task: "look", progress: &progress, stats };
-    let first = || look_all(prepared, candidates, look, prepared.ambient(), &watch);
-    let seen = stats.stage("look", first).map_err(failed)?;
-    let out = match options.inside {
-        Inside::Keep => vec![false; candidates.len()],
-        _ => buried(&seen),
-    };
-    let candidates: Vec<DVec3> =
-        candidates.iter().zip(&out).filter(|(_, out)| !**out).map(|(p, _)| *p).collect();
-    stats.skip("candidates_in_walls", out.iter().filter(|&&b| b).count() as u64);
-    let seen: Vec<Seen> = seen.into_iter().zip(out).filter(|(_, out)| !out).map(|(seen, _)| seen).collect();
-    let (direct, distances) = split(seen.iter().cloned());
-    let field = Field::new(&candidates, &direct).and_then(|f| f.with_distances(distances)).map_err(broken)?;
-    let again = || look_again(prepared, &candidates, look, Ambient::Probes(&field), &seen, &watch);
-    let (radiance, distances) = split(stats.stage("look", again).map_err(failed)?);
+    let chosen = choose_places(prepared, candidates, &choose, &watch).map_err(failed)?;
     progress.finish();
-    let known = place::Candidates::new(&candidates, &radiance).with_distances(&distances);
-    let limits =
-        place::AdaptiveOptions::DEFAULT.with_max_count(options.count as usize).with_max_error(options.error);
-    let chosen = stats.stage("choose", || place::adaptive(known, &limits)).map_err(broken)?;
-    stats.count("candidates", candidates.len() as u64);
+    let free = candidates.len() - chosen.buried;
+    stats.skip("candidates_in_walls", chosen.buried as u64);
+    stats.count("candidates", free as u64);
     stats.figure("error", chosen.error);
     report.note(&format!(
-        "{} of {} candidates; irradiance between them is off by {:.2} % (RMS)",
-        chosen.chosen.len(),
-        candidates.len(),
+        "{} of {free} candidates; irradiance between them is off by {:.2} % (RMS)",
+        chosen.positions.len(),
         chosen.error * 100.0
     ));
-    Ok(chosen.chosen.iter().map(|&i| candidates[i as usize]).collect())
-}
-
-fn split(seen: impl IntoIterator<Item = Seen>) -> (Vec<Sh>, Vec<DistanceMap>) {
-    seen.into_iter().filter_map(|s| s.distances.map(|d| (s.radiance, d))).unzip()
+    Ok(chosen.positions)
 }

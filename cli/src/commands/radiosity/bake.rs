@@ -179,7 +179,7 @@ impl Bake<'_> {
         if longest > 0.0 { longest } else { 1.0 }
     }
 
-    /// Names what the user knows: triangles and materials.
+    /// The error with the triangle, the object and the material that it is about.
     fn refused(&self, error: &RadiosityError) -> CliError {
         use RadiosityError::{Emission, EmitterWithoutArea, Outline, Reflectance, ReflectanceAboveOne};
         let surface = match error {
@@ -270,8 +270,7 @@ impl Bake<'_> {
         }
         let mut file = BakedFile::new(baked, &self.surfaces.faces);
         file.geometry = format!("{:016x}", fingerprint::of_geometry(&self.scene.mesh));
-        let Scene { materials, textures, lights, .. } = self.scene;
-        file.light = format!("{:016x}", fingerprint::of_sources(materials, textures, lights));
+        file.light = format!("{:016x}", fingerprint::of_sources(self.scene));
         file.patches = transport.patch_count();
         file.bound = solution.bound;
         let path = &options.output;

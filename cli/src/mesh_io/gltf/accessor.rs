@@ -1,4 +1,4 @@
-//! Numbers in buffers.
+//! Reads accessors: numbers in buffers.
 
 use super::bytes::Buffers;
 use ::gltf::accessor::{Accessor, DataType, Dimensions};

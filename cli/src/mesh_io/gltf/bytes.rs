@@ -1,4 +1,4 @@
-//! Where a glTF keeps its bytes: the file itself, files beside it, and text.
+//! Loads the bytes of a glTF: from the file itself, from files beside it, and from data URIs.
 
 use ::gltf::{Gltf, buffer, image};
 

@@ -1,4 +1,4 @@
-//! What the `gltf` crate takes for granted of a document, and panics without.
+//! Checks a glTF document for what the `gltf` crate assumes and would panic without.
 
 use ::gltf::json::Root;
 use ::gltf::json::camera::Type as View;

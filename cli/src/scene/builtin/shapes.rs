@@ -134,7 +134,7 @@ impl Shape {
                 let turned = DVec2::from_angle(angle).rotate(across);
                 dvec3(turned.y, y, turned.x)
             };
-            // The normal from differences: the surface is smooth, and nobody wants to see the formula.
+            // The normal by central differences of the heights; its closed form is long and no more accurate than the picture shows.
             let point = |u: f64, v: f64| {
                 const STEP: f64 = 1e-5;
                 let along_u = position(u + STEP, v) - position(u - STEP, v);

@@ -1,4 +1,4 @@
-//! What a scene file says, checked as far as that goes without opening another file.
+//! A scene file, parsed and checked without opening any file that it names.
 
 mod camera;
 mod lights;

@@ -43,7 +43,7 @@ impl RenderDescription {
                 return Err(table.error(key, message).with_help("remove it, or set `shading` to \"phong\""));
             }
             if given {
-                // Whoever says how normals are made wants them made.
+                // A file that sets how normals are made asks for them to be made.
                 shading = shading.or(Some(Interpolation::Phong));
             }
         }

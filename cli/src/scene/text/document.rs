@@ -1,4 +1,4 @@
-//! The tree.
+//! The tree that scene text is parsed into: keys and values, each with its place in the text.
 
 use crate::input_error::InputError;
 

@@ -1,4 +1,4 @@
-//! TOML and JSON to the tree.
+//! Parses TOML and JSON into the tree.
 
 use super::document::{Document, Key, Node, Origin, Span, Value};
 use crate::input_error::InputError;

@@ -263,7 +263,7 @@ impl<'a> Table<'a> {
         entries.iter().map(read).collect()
     }
 
-    /// Reports the first key that nobody asked for.
+    /// Reports the first unknown key.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! A partition is Delaunay and fills the hull of its points: checked exactly, with nothing of what computed it.
+//! A partition is Delaunay and fills the hull of its points: checked exactly, without any code that computed it.
 
 mod planar;
 mod spatial;
@@ -9,7 +9,8 @@ use crate::{Delaunay, OUTSIDE, Partition};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// The partition divides the convex hull of these points as a Delaunay triangulation does, with each distinct point a corner.
+/// The partition divides the convex hull of these points as a Delaunay triangulation does, with each distinct point a
+/// corner.
 ///
 /// # Errors
 /// The first cell, facet or point that breaks it.

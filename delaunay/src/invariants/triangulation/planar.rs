@@ -18,14 +18,15 @@ impl Shadow<'_> {
         self.points.normal(triangle)[self.axis].clone()
     }
 
-    /// (b−a)·(c−a): over twice the area of the triangle, the cotangent of its angle at a. Areas of shadows do for areas: in one plane
-    /// all are shortened alike.
+    /// (b−a)·(c−a): over twice the area of the triangle, the cotangent of its angle at a. Areas of shadows do for
+    /// areas: in one plane all are shortened alike.
     fn cosine(&self, [a, b, c]: [u32; 3]) -> BigInt {
         dot(&self.points.difference(b, a), &self.points.difference(c, a))
     }
 }
 
-/// All turn alike, none is flat, angles opposite an inner edge add up to π at most, and the outline is convex and filled once.
+/// All turn alike, none is flat, angles opposite an inner edge add up to π at most, and the outline is convex and
+/// filled once.
 pub(super) fn check_triangles(points: &Points, t: &Triangles, distinct: &[u32]) -> Result<(), String> {
     check_links(&t.corners, &t.neighbours, distinct)?;
     let normal = points.normal(t.corners[0]);

@@ -9,7 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The corners of the face opposite each corner, counterclockwise as seen from outside.
 const OUTWARD: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// None is flat, neighbours do not hold each other's corners in their spheres, the hull is convex, and all of it is filled.
+/// None is flat, neighbours do not hold each other's corners in their spheres, the hull is convex, and all of it is
+/// filled.
 ///
 /// That inner faces are locally Delaunay makes all spheres empty (Delaunay's lemma).
 pub(super) fn check_tetrahedra(points: &Points, t: &Tetrahedra, distinct: &[u32]) -> Result<(), String> {

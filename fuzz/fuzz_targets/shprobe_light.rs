@@ -1,0 +1,65 @@
+//! Probes anywhere, with any light and distances: what is not refused has shares that sum to 1, keeps constant light
+//! constant, comes back after changes, and sees less farther away.
+#![no_main]
+
+use arbitrary::Arbitrary;
+use glam::{DVec3, dvec3};
+use libfuzzer_sys::fuzz_target;
+use pointillist_shprobe::sh::Sh;
+use pointillist_shprobe::{DistanceMap, Field, invariants as facts};
+
+#[derive(Arbitrary, Debug)]
+struct Probe {
+    /// Sixteenths of it are lattice points: grids, planes, lines and repeats come often.
+    position: [i8; 3],
+    radiance: [i16; 3],
+    /// Moments of a map of two by two texels.
+    moments: [[f32; 2]; 4],
+}
+
+#[derive(Arbitrary, Debug)]
+struct Input {
+    probes: Vec<Probe>,
+    /// Exponent of two that positions are multiplied by.
+    power: i8,
+    sees: bool,
+    level: f32,
+    queries: Vec<[f32; 3]>,
+    taken_out: Vec<u8>,
+}
+
+fuzz_target!(|input: Input| {
+    let probes = &input.probes[..input.probes.len().min(24)];
+    let scale = 2.0_f64.powi(input.power.into());
+    let at = |p: &Probe| {
+        let [x, y, z] = p.position.map(|c| f64::from(c / 16));
+        dvec3(x, y, z) * scale
+    };
+    let positions: Vec<DVec3> = probes.iter().map(at).collect();
+    let constant =
+        |p: &Probe| Sh::constant(DVec3::from_array(p.radiance.map(f64::from)), 1).expect("order 1");
+    let radiance: Vec<Sh> = probes.iter().map(constant).collect();
+    let maps: Vec<DistanceMap> = match input.sees {
+        true => probes.iter().filter_map(|p| DistanceMap::new(2, p.moments.to_vec()).ok()).collect(),
+        false => vec![],
+    };
+    let queries: Vec<DVec3> =
+        input.queries.iter().take(8).map(|q| DVec3::from_array(q.map(f64::from))).collect();
+    for map in &maps {
+        facts::visibility_falls_with_distance(map, &queries).unwrap();
+    }
+    facts::spread_positions_are_far_apart(&positions, input.taken_out.len()).unwrap();
+    let seen = (!maps.is_empty()).then_some(&maps[..]);
+    facts::constant_light_stays_constant(&positions, seen, input.level.into(), &queries).unwrap();
+    let gone: Vec<u32> = input.taken_out.iter().map(|&i| i.into()).collect();
+    facts::changes_give_the_field_of_the_result(&positions, &radiance, &maps, &gone, &queries).unwrap();
+    let Ok(field) = Field::new(&positions, &radiance) else { return };
+    let field = match seen {
+        Some(maps) => field.clone().with_distances(maps.to_vec()).unwrap_or(field),
+        None => field,
+    };
+    facts::shares_sum_to_one(&field, &queries).unwrap();
+    let new = (queries.len()).min(radiance.len());
+    let maps = &maps[..if field.distances().is_some() { new } else { 0 }];
+    facts::insert_then_remove_restores(&field, &queries[..new], &radiance[..new], maps, &positions).unwrap();
+});

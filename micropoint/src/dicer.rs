@@ -1,0 +1,582 @@
+//! The bucket of cells that one thread finishes: faces diced into parts, nearest first.
+
+use crate::bounds::Bounds;
+use crate::face::{Face, GridRect, ProjectedVertex, Setup, TexturedOpacity};
+use crate::geometry::{Geometry, HiddenSides, Surface};
+use crate::interval::Interval;
+use crate::lens::{Lens, LensKind};
+use crate::visit::{FaceVisitor, VisitMemory};
+use glam::{DVec2, IVec2, Vec2};
+use pointillist_dice::{CellWindow, ConvexPolygon, Cut, convex, cut};
+use std::cmp::Ordering;
+
+/// End of a list of parts.
+const NONE: u32 = u32::MAX;
+
+/// Cells on a side of the blocks in which closing depths are summed up.
+const BLOCK: usize = 4;
+
+/// The part of a face in one cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    /// The next part of the same cell.
+    next: u32,
+    /// Index into [`Dicer::faces`].
+    pub(crate) face: u32,
+    first_vertex: u32,
+    /// 0: the whole cell.
+    vertex_count: u32,
+    /// Area in cells.
+    pub(crate) area: f64,
+    /// Centroid relative to the cell.
+    pub(crate) centroid: DVec2,
+    pub(crate) bounds: Extent,
+    /// Smallest and largest nearness.
+    pub(crate) nearness: Interval,
+    pub(crate) opacity: f32,
+}
+
+/// Bounds of a part within its cell, in f32 and rounded outward.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extent {
+    low: Vec2,
+    high: Vec2,
+}
+
+impl Extent {
+    const CELL: Self = Self { low: Vec2::ZERO, high: Vec2::ONE };
+
+    fn of(outline: &[DVec2]) -> Self {
+        let (low, high) = convex::bounds(outline);
+        // A cell is 1 wide: this is half a unit in the last place of its far corner.
+        let slack = Vec2::splat(f32::EPSILON);
+        Self { low: low.as_vec2() - slack, high: high.as_vec2() + slack }
+    }
+
+    /// Whether two parts may have a common interior.
+    #[inline]
+    pub(crate) fn overlap(&self, other: &Self) -> bool {
+        self.low.cmplt(other.high).all() && other.low.cmplt(self.high).all()
+    }
+}
+
+/// Whether an edge of a triangle separates it from a window by more than a cell, which is far more than the edge's crossings with grid
+/// lines are rounded by.
+fn misses(corners: [DVec2; 3], start: DVec2, end: DVec2) -> bool {
+    const MARGIN: f64 = 1.0;
+    const SLACK: f64 = 8.0 * f64::EPSILON;
+    let (middle, half) = (0.5 * (start + end), 0.5 * (end - start) + MARGIN);
+    let [a, b, c] = corners;
+    let turn = (b - a).perp_dot(c - a);
+    [(a, b), (b, c), (c, a)].into_iter().any(|(from, to)| {
+        let outward = (from - to).perp() * turn.signum();
+        let away = middle - from;
+        outward.dot(away) > outward.abs().dot(half) + SLACK * outward.abs().dot(away.abs())
+    })
+}
+
+/// Outline of a whole cell.
+const CELL: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+
+/// State of one cell of the tile.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    head: u32,
+    count: u32,
+    /// Parts whose nearness is at most this are hidden.
+    closed: f64,
+    /// Area of the opaque parts, overlaps counted twice.
+    opaque_area: f64,
+    /// Area at which to try next whether the parts close the cell.
+    next_try: f64,
+    /// If the nearest parts were found to tile the cell: how many they are, and how many parts
+    /// the cell had then.
+    tiling: u32,
+    tiling_count: u32,
+}
+
+impl Cell {
+    const OPEN: Self = Self {
+        head: NONE,
+        count: 0,
+        closed: f64::NEG_INFINITY,
+        opaque_area: 0.0,
+        next_try: 1.0 - COVERED,
+        tiling: 0,
+        tiling_count: 0,
+    };
+}
+
+/// A cell whose disjoint parts leave less than this uncovered is covered; the parts' own rounding
+/// is a thousand times smaller.
+const COVERED: f64 = 1e-9;
+
+/// Counts of work done and of work skipped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct TileCounts {
+    /// Clusters that were looked into.
+    pub clusters: u64,
+    /// Clusters refused: outside the tile or behind its closed cells.
+    pub clusters_skipped: u64,
+    /// Triangles set up.
+    pub triangles: u64,
+    /// Triangles that were culled: back faces of solids, outside the tile.
+    pub triangles_culled: u64,
+    /// Triangles that lay behind closed cells and were never diced.
+    pub triangles_hidden: u64,
+    /// Parts made by cutting.
+    pub pieces: u64,
+    /// Whole cells inside spans: not cut.
+    pub span_cells: u64,
+    /// Parts refused by a closed cell.
+    pub parts_hidden: u64,
+    /// Cells by how they were resolved: empty, one part, parts that tile the cell.
+    pub cells_empty: u64,
+    /// See `cells_empty`.
+    pub cells_single: u64,
+    /// See `cells_empty`.
+    pub cells_tiled: u64,
+    /// Cells whose parts lie side by side, or in which the nearest hides the others.
+    pub cells_apart: u64,
+    /// Cells in which parts had to be cut by others.
+    pub cells_compared: u64,
+    /// Visible micropoints.
+    pub micropoints: u64,
+}
+
+impl std::ops::AddAssign for TileCounts {
+    fn add_assign(&mut self, o: Self) {
+        self.clusters += o.clusters;
+        self.clusters_skipped += o.clusters_skipped;
+        self.triangles += o.triangles;
+        self.triangles_culled += o.triangles_culled;
+        self.triangles_hidden += o.triangles_hidden;
+        self.pieces += o.pieces;
+        self.span_cells += o.span_cells;
+        self.parts_hidden += o.parts_hidden;
+        self.cells_empty += o.cells_empty;
+        self.cells_single += o.cells_single;
+        self.cells_tiled += o.cells_tiled;
+        self.cells_apart += o.cells_apart;
+        self.cells_compared += o.cells_compared;
+        self.micropoints += o.micropoints;
+    }
+}
+
+/// Dices the faces of one tile. Memory is reused from tile to tile.
+#[derive(Debug, Default)]
+pub(crate) struct Dicer {
+    window: Option<CellWindow>,
+    cells: Vec<Cell>,
+    /// Smallest `closed` of each block of cells.
+    blocks: Vec<f64>,
+    block_columns: usize,
+    /// Smallest `closed` of the tile.
+    tile_closed: f64,
+    parts: Vec<Part>,
+    vertices: Vec<DVec2>,
+    pub(crate) faces: Vec<Face>,
+    memory: VisitMemory,
+    order: Vec<u32>,
+    pub(crate) counts: TileCounts,
+}
+
+/// What all tiles of a picture share.
+#[derive(Clone, Copy)]
+pub(crate) struct DiceJob<'a> {
+    pub(crate) geometry: &'a Geometry,
+    pub(crate) lens: &'a Lens,
+    pub(crate) rect: &'a GridRect,
+    pub(crate) hidden: &'a HiddenSides,
+    pub(crate) opacity: &'a dyn TexturedOpacity,
+}
+
+/// Dices the faces that it is handed.
+struct DicedFaces<'a> {
+    dicer: &'a mut Dicer,
+    job: &'a DiceJob<'a>,
+}
+
+impl FaceVisitor for DicedFaces<'_> {
+    fn wants(&self, _: &Bounds) -> bool {
+        true
+    }
+
+    #[inline]
+    fn skips(&self, corners: [&ProjectedVertex; 3], _: &Surface) -> bool {
+        self.dicer.outside_window(corners)
+    }
+
+    #[inline]
+    fn visit(&mut self, face: Face, outline: &[DVec2], opacity: Option<f32>) {
+        self.dicer.dice_face(self.job, face, outline, opacity);
+    }
+
+    fn farthest(&self) -> f64 {
+        self.dicer.farthest_visible(self.job.lens)
+    }
+}
+
+impl Dicer {
+    /// Dices everything that may be visible in the window.
+    pub(crate) fn dice(&mut self, job: &DiceJob<'_>, window: CellWindow) {
+        self.reset(window);
+        if self.cells.is_empty() {
+            return;
+        }
+        let low = DVec2::new(f64::from(window.x0), f64::from(window.y0));
+        let high = DVec2::new(f64::from(window.x1), f64::from(window.y1));
+        let (lens, rect, hidden) = (job.lens, job.rect, job.hidden);
+        let setup = Setup { lens, rect, hidden, keeps_backs: false };
+        let mut memory = std::mem::take(&mut self.memory);
+        let mut faces = DicedFaces { dicer: self, job };
+        let seen =
+            job.geometry.visit_faces(&setup, &GridRect { low, high }, f64::INFINITY, &mut memory, &mut faces);
+        self.memory = memory;
+        self.counts.clusters += seen.clusters;
+        self.counts.clusters_skipped += seen.clusters_skipped;
+        self.counts.triangles_culled += seen.triangles_culled;
+    }
+
+    fn reset(&mut self, window: CellWindow) {
+        let (columns, rows) = ((window.x1 - window.x0) as usize, (window.y1 - window.y0) as usize);
+        self.window = Some(window);
+        self.block_columns = columns.div_ceil(BLOCK);
+        self.cells.clear();
+        self.cells.resize(columns * rows, Cell::OPEN);
+        self.blocks.clear();
+        self.blocks.resize(self.block_columns * rows.div_ceil(BLOCK), f64::NEG_INFINITY);
+        self.tile_closed = f64::NEG_INFINITY;
+        self.parts.clear();
+        self.vertices.clear();
+        self.faces.clear();
+        self.counts = TileCounts::default();
+    }
+
+    pub(crate) fn window(&self) -> CellWindow {
+        self.window.unwrap_or(CellWindow { x0: 0, y0: 0, x1: 0, y1: 0 })
+    }
+
+    /// Depth beyond which nothing in this tile can be seen.
+    fn farthest_visible(&self, lens: &Lens) -> f64 {
+        let q = self.tile_closed - lens.tie(self.tile_closed, DVec2::ZERO);
+        let unlimited = match lens.kind {
+            LensKind::Perspective => q.is_nan() || q <= 0.0,
+            LensKind::Orthographic => q.is_nan() || q == f64::NEG_INFINITY,
+        };
+        if unlimited { f64::INFINITY } else { lens.depth(q) }
+    }
+
+    /// Whether a triangle that needs no clipping misses the window: the cheapest and commonest test.
+    #[inline]
+    fn outside_window(&self, v: [&ProjectedVertex; 3]) -> bool {
+        if !(v[0].in_front && v[1].in_front && v[2].in_front) {
+            return false;
+        }
+        let w = self.window();
+        let low = v[0].grid.min(v[1].grid).min(v[2].grid);
+        let high = v[0].grid.max(v[1].grid).max(v[2].grid);
+        let [start, end] = [DVec2::new(w.x0.into(), w.y0.into()), DVec2::new(w.x1.into(), w.y1.into())];
+        if low.cmpge(end).any() || high.cmple(start).any() {
+            return true;
+        }
+        // Small triangles whose boxes meet the window's mostly meet it, too.
+        (high - low).max_element() > (end - start).max_element() && misses(v.map(|v| v.grid), start, end)
+    }
+
+    fn dice_face(&mut self, job: &DiceJob<'_>, face: Face, outline: &[DVec2], opacity: Option<f32>) {
+        self.counts.triangles += 1;
+        if opacity == Some(0.0) {
+            return;
+        }
+        if self.is_hidden(job.lens, &face, outline) {
+            self.counts.triangles_hidden += 1;
+            return;
+        }
+        let parts_before = self.parts.len();
+        let index = self.faces.len() as u32;
+        cut(outline, self.window(), |c| match c {
+            Cut::Span { row, first, end } => {
+                for column in first..end {
+                    self.add_whole_cell(job, &face, index, IVec2::new(column, row), opacity);
+                }
+            }
+            Cut::Piece { cell, polygon } => self.add_piece(job, &face, index, cell, polygon, opacity),
+        });
+        if self.parts.len() > parts_before {
+            self.faces.push(face);
+        }
+    }
+
+    /// Whether every block that the outline touches is closed in front of the face.
+    fn is_hidden(&self, lens: &Lens, face: &Face, outline: &[DVec2]) -> bool {
+        let q = face.nearness.most + lens.tie(face.nearness.most, face.plane.slope);
+        if q < self.tile_closed {
+            return true;
+        }
+        let w = self.window();
+        let (low, high) = convex::bounds(outline);
+        let block = |v: f64, first: i32, end: i32| {
+            (v.clamp(f64::from(first), f64::from(end - 1)) as i32 - first) as usize / BLOCK
+        };
+        let columns = block(low.x, w.x0, w.x1)..=block(high.x, w.x0, w.x1);
+        (block(low.y, w.y0, w.y1)..=block(high.y, w.y0, w.y1))
+            .all(|y| columns.clone().all(|x| q < self.blocks[y * self.block_columns + x]))
+    }
+
+    fn cell_index(&self, cell: IVec2) -> usize {
+        let w = self.window();
+        (cell.y - w.y0) as usize * (w.x1 - w.x0) as usize + (cell.x - w.x0) as usize
+    }
+
+    fn add_whole_cell(
+        &mut self,
+        job: &DiceJob<'_>,
+        face: &Face,
+        index: u32,
+        cell: IVec2,
+        opacity: Option<f32>,
+    ) {
+        self.counts.span_cells += 1;
+        let corner = cell.as_dvec2();
+        let middle = face.plane.at(corner + 0.5);
+        let reach = 0.5 * (face.plane.slope.x.abs() + face.plane.slope.y.abs());
+        let nearness = Interval {
+            least: face.nearness.clamp(middle - reach),
+            most: face.nearness.clamp(middle + reach),
+        };
+        let i = self.cell_index(cell);
+        if self.refuses(job.lens, i, face, nearness.most) {
+            return;
+        }
+        let opacity = opacity.unwrap_or_else(|| mean_opacity(job, face, corner, &CELL));
+        let part = Part {
+            next: NONE,
+            face: index,
+            first_vertex: 0,
+            vertex_count: 0,
+            area: 1.0,
+            centroid: DVec2::splat(0.5),
+            bounds: Extent::CELL,
+            nearness,
+            opacity,
+        };
+        self.link(i, part);
+        if opacity >= 1.0 && nearness.least > self.cells[i].closed {
+            self.close(i, nearness.least);
+        }
+    }
+
+    fn add_piece(
+        &mut self,
+        job: &DiceJob<'_>,
+        face: &Face,
+        index: u32,
+        cell: IVec2,
+        polygon: &ConvexPolygon,
+        opacity: Option<f32>,
+    ) {
+        self.counts.pieces += 1;
+        let corner = cell.as_dvec2();
+        let mut local = [DVec2::ZERO; convex::MAX_VERTICES];
+        let mut nearness = Interval::EMPTY;
+        for (to, &v) in local.iter_mut().zip(polygon.vertices()) {
+            *to = v - corner;
+            let q = face.nearness_at(v);
+            nearness.include(q);
+        }
+        let local = &local[..polygon.vertices().len()];
+        let (area, centroid) = convex::area_and_centroid(local);
+        let i = self.cell_index(cell);
+        if area <= 0.0 || area.is_nan() || self.refuses(job.lens, i, face, nearness.most) {
+            return;
+        }
+        let opacity = opacity.unwrap_or_else(|| mean_opacity(job, face, corner, local));
+        let part = Part {
+            next: NONE,
+            face: index,
+            first_vertex: self.vertices.len() as u32,
+            vertex_count: local.len() as u32,
+            area,
+            centroid,
+            bounds: Extent::of(local),
+            nearness,
+            opacity,
+        };
+        self.vertices.extend_from_slice(local);
+        self.link(i, part);
+        if opacity >= 1.0 {
+            self.cells[i].opaque_area += area;
+            if self.cells[i].opaque_area >= self.cells[i].next_try {
+                // The face is needed to order the parts, but only stored once it is diced.
+                self.faces.push(*face);
+                self.try_to_close(i, job.lens);
+                self.faces.pop();
+            }
+        }
+    }
+
+    #[inline]
+    fn refuses(&mut self, lens: &Lens, cell: usize, face: &Face, nearest: f64) -> bool {
+        let closed = self.cells[cell].closed;
+        let refused = nearest + lens.tie(nearest, face.plane.slope) < closed;
+        self.counts.parts_hidden += u64::from(refused);
+        refused
+    }
+
+    #[inline]
+    fn link(&mut self, cell: usize, mut part: Part) {
+        if part.opacity <= 0.0 {
+            return;
+        }
+        part.next = self.cells[cell].head;
+        self.cells[cell].head = self.parts.len() as u32;
+        self.cells[cell].count += 1;
+        self.parts.push(part);
+    }
+
+    /// Finds out whether the nearest opaque parts of a cell tile it, and closes it if so.
+    ///
+    /// Only disjoint parts are considered: the common case of a mesh whose triangles are about as
+    /// large as cells. Whatever else there is gets sorted out when the tile is resolved.
+    fn try_to_close(&mut self, cell: usize, lens: &Lens) {
+        const MOST: usize = 128;
+        let summed = self.cells[cell].opaque_area;
+        if self.cells[cell].count as usize > MOST {
+            self.cells[cell].next_try = summed + 1.0;
+            return;
+        }
+        let order = self.sorted_parts(cell);
+        let mut area = 0.0;
+        let mut nearness = f64::INFINITY;
+        let mut tiling = 0;
+        for (i, &p) in order.iter().enumerate() {
+            let part = &self.parts[p as usize];
+            if part.opacity < 1.0 {
+                break;
+            }
+            let outline = self.outline(part);
+            let disjoint = |&o: &u32| {
+                let other = &self.parts[o as usize];
+                !part.bounds.overlap(&other.bounds) || convex::are_disjoint(outline, self.outline(other))
+            };
+            if !order[..i].iter().all(disjoint) {
+                break;
+            }
+            area += part.area;
+            nearness = nearness.min(part.nearness.least);
+            if area >= 1.0 - COVERED {
+                tiling = i + 1;
+                break;
+            }
+        }
+        let hidden = |&p: &u32| {
+            let part = &self.parts[p as usize];
+            let slope = self.faces[part.face as usize].plane.slope;
+            part.nearness.most + lens.tie(part.nearness.most, slope) < nearness
+        };
+        // Whatever broke the prefix off must come to lie behind it, so that only new parts can add to it.
+        self.cells[cell].next_try = if tiling > 0 { summed + 0.5 } else { summed + 1.0 - area - COVERED };
+        if tiling > 0 && order[tiling..].iter().all(hidden) {
+            self.cells[cell].tiling = tiling as u32;
+            self.cells[cell].tiling_count = self.cells[cell].count;
+            if nearness > self.cells[cell].closed {
+                self.close(cell, nearness);
+            }
+        }
+        self.order = order;
+    }
+
+    /// Closes a cell at a nearness and updates the pyramid above it.
+    fn close(&mut self, cell: usize, nearness: f64) {
+        let before = std::mem::replace(&mut self.cells[cell].closed, nearness);
+        let w = self.window();
+        let (columns, rows) = ((w.x1 - w.x0) as usize, (w.y1 - w.y0) as usize);
+        let (bx, by) = (cell % columns / BLOCK, cell / columns / BLOCK);
+        let block = by * self.block_columns + bx;
+        // Only the least closed cell of a block decides.
+        if before > self.blocks[block] {
+            return;
+        }
+        let mut least = f64::INFINITY;
+        for y in by * BLOCK..((by + 1) * BLOCK).min(rows) {
+            for x in bx * BLOCK..((bx + 1) * BLOCK).min(columns) {
+                least = least.min(self.cells[y * columns + x].closed);
+            }
+        }
+        let block_before = std::mem::replace(&mut self.blocks[block], least);
+        if block_before <= self.tile_closed {
+            self.tile_closed = self.blocks.iter().copied().fold(f64::INFINITY, f64::min);
+        }
+    }
+
+    /// The parts of a cell, nearest first, in an order that does not depend on the order of triangles.
+    pub(crate) fn sorted_parts(&mut self, cell: usize) -> Vec<u32> {
+        let mut order = std::mem::take(&mut self.order);
+        order.clear();
+        let mut next = self.cells[cell].head;
+        while next != NONE {
+            order.push(next);
+            next = self.parts[next as usize].next;
+        }
+        if order.len() > 1 {
+            order.sort_unstable_by(|&a, &b| self.compare(a, b));
+        }
+        order
+    }
+
+    /// Gives the list of [`Dicer::sorted_parts`] back for reuse.
+    pub(crate) fn recycle(&mut self, order: Vec<u32>) {
+        self.order = order;
+    }
+
+    /// Nearest first; then by position and surface; the triangle's number decides only between
+    /// parts that are equal in all else.
+    pub(crate) fn compare(&self, a: u32, b: u32) -> Ordering {
+        let (a, b) = (&self.parts[a as usize], &self.parts[b as usize]);
+        let key = |p: &Part| (-p.nearness.most, -p.nearness.least, p.centroid.x, p.centroid.y);
+        let (ka, kb) = (key(a), key(b));
+        ka.0.total_cmp(&kb.0)
+            .then(ka.1.total_cmp(&kb.1))
+            .then(ka.2.total_cmp(&kb.2))
+            .then(ka.3.total_cmp(&kb.3))
+            .then_with(|| self.faces[a.face as usize].precedence(&self.faces[b.face as usize]))
+    }
+
+    pub(crate) fn part(&self, index: u32) -> &Part {
+        &self.parts[index as usize]
+    }
+
+    /// Whether two parts of a cell are the same piece of two copies of one triangle.
+    pub(crate) fn is_copy(&self, a: u32, b: u32) -> bool {
+        let (a, b) = (self.part(a), self.part(b));
+        self.faces[a.face as usize].corners == self.faces[b.face as usize].corners
+            && self.outline(a) == self.outline(b)
+    }
+
+    /// A part's outline relative to its cell.
+    #[inline]
+    pub(crate) fn outline(&self, part: &Part) -> &[DVec2] {
+        if part.vertex_count == 0 {
+            return &CELL;
+        }
+        let first = part.first_vertex as usize;
+        &self.vertices[first..first + part.vertex_count as usize]
+    }
+
+    /// How many of a cell's parts, nearest first, are known to tile it and to hide the others.
+    pub(crate) fn tiling(&self, cell: usize) -> Option<usize> {
+        let c = &self.cells[cell];
+        (c.tiling > 0 && c.tiling_count == c.count).then_some(c.tiling as usize)
+    }
+
+    pub(crate) fn cell_count(&self) -> usize {
+        self.cells.len()
+    }
+}
+
+fn mean_opacity(job: &DiceJob<'_>, face: &Face, corner: DVec2, local: &[DVec2]) -> f32 {
+    let surface = &job.geometry.surfaces()[face.surface as usize];
+    face.mean_opacity(job.lens, surface, job.opacity, corner, local)
+}

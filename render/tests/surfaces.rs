@@ -1,0 +1,162 @@
+//! What materials come to: in pictures, and as surfaces of radiosity.
+
+use glam::{DVec3, Vec3, Vec4, dvec3, vec3};
+use pointillist_render::radiosity::{Baked, BakedTriangle};
+use pointillist_render::shade::{self, Light, MerlTable};
+use pointillist_render::{
+    AmbientLight, BakedLight, BakedSide, Camera, Channel, DrawOptions, LayerKind, LightSource, Lightmap,
+    LightmapError, Map, Material, MeasuredBrdf, Part, Scene, SceneError, Surroundings, Texels, Texture,
+    Transmission, fingerprint, render, scene_surfaces,
+};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+const CORNERS: [DVec3; 4] =
+    [dvec3(-1.0, -1.0, 0.0), dvec3(1.0, -1.0, 0.0), dvec3(1.0, 1.0, 0.0), dvec3(-1.0, 1.0, 0.0)];
+
+/// A square that fills the picture, of this material, in sunlight.
+fn square(material: Material) -> Scene {
+    let camera = Camera::perspective(DVec3::Z, DVec3::ZERO, std::f64::consts::FRAC_PI_2);
+    let mut scene = Scene::new(camera, [8, 8]);
+    scene.add_material(material);
+    scene.mesh.add(&Part::new("square", &CORNERS, &[[0, 1, 2], [0, 2, 3]])).unwrap();
+    for (name, level) in [("sun", 1.0), ("moon", 0.5)] {
+        let light = Light::Directional { direction: DVec3::NEG_Z, irradiance: Vec3::splat(level) };
+        scene.lights.push(LightSource::new(name, light));
+    }
+    scene
+}
+
+fn grey(albedo: f32) -> Material {
+    Material::new("grey", shade::Material::lambert(Vec3::splat(albedo)))
+}
+
+/// A map of this one colour.
+fn map(scene: &mut Scene, color: Vec4) -> Map {
+    let texture = scene.add_texture(Texture::new("even", [2, 2], Texels::Float(vec![color.to_array(); 4])));
+    Map { texture, wrap: shade::Wrap::Repeat, channel: Channel::Green }
+}
+
+#[test]
+fn a_layer_that_is_asked_for_twice_is_delivered_twice() {
+    let scene = square(grey(0.5));
+    let kinds =
+        [LayerKind::Lit(1), LayerKind::Direct, LayerKind::Lit(1), LayerKind::Lit(0), LayerKind::Direct];
+    let frame = render(&scene, &DrawOptions::DEFAULT.with_layers(kinds.to_vec()), &()).unwrap();
+    assert!(frame.layers[0].planes[0].iter().all(|&v| (v - 1.0).abs() < 1e-6));
+    assert_eq!(frame.layers[0], frame.layers[2]);
+    assert_eq!(frame.layers[0].planes, frame.layers[3].planes);
+    assert_eq!(frame.layers[1], frame.layers[4]);
+}
+
+#[test]
+fn measured_reflection_takes_the_place_of_black_constants() {
+    let table = MerlTable::tabulate(|_, _| vec3(0.1, 0.2, 0.3));
+    let mut material = grey(0.0);
+    material.details.measured = Some(MeasuredBrdf { table: Arc::new(table), fingerprint: 1 });
+    let frame = render(&square(material), &DrawOptions::DEFAULT, &()).unwrap();
+    let [r, g, b, _] = frame.color[8 * 4 + 4];
+    // Irradiance 1.5 at normal incidence.
+    assert!((vec3(r, g, b) - vec3(0.15, 0.3, 0.45)).abs().max_element() < 1e-5, "{r} {g} {b}");
+}
+
+#[test]
+fn surroundings_that_are_captured_are_mirrored_by_what_others_capture() {
+    // A sky of one colour, and two mirrors that face each other: each shows the other one showing the sky.
+    let mut mirror = grey(0.0);
+    mirror.details.reflection = Some(Vec3::ONE);
+    mirror.details.surroundings = Surroundings::Capture;
+    let mut scene = square(mirror);
+    let sky = map(&mut scene, vec3(0.2, 0.4, 0.6).extend(1.0));
+    scene.image.environment = Some(sky.texture);
+    let behind: Vec<DVec3> = CORNERS.iter().map(|&p| dvec3(-p.x, p.y, 3.0) * dvec3(4.0, 4.0, 1.0)).collect();
+    scene.mesh.add(&Part::new("other", &behind, &[[0, 1, 2], [0, 2, 3]])).unwrap();
+    let frame = render(&scene, &DrawOptions::DEFAULT, &()).unwrap();
+    let [r, g, b, _] = frame.color[8 * 4 + 4];
+    assert!((vec3(r, g, b) - vec3(0.2, 0.4, 0.6)).abs().max_element() < 1e-2, "{r} {g} {b}");
+}
+
+#[test]
+fn surfaces_of_radiosity_have_what_pictures_show() {
+    let mut scene = square(grey(0.8));
+    let (glow, metal) = (map(&mut scene, vec3(1.0, 0.5, 0.0).extend(1.0)), map(&mut scene, Vec4::splat(0.5)));
+    let material = &mut scene.materials[0];
+    material.surface.emission = Vec3::splat(2.0);
+    material.details.emission_map = Some(glow);
+    (material.details.metallic, material.details.metallic_map) = (Some(0.5), Some(metal));
+    material.details.one_sided = true;
+    scene.mesh.colors = vec![Vec3::ONE, Vec3::ONE, Vec3::ZERO, Vec3::ONE];
+    let found = scene_surfaces(&scene).unwrap();
+    assert_eq!((found.surfaces.len(), found.faces[0].len()), (1, 2));
+    let surface = &found.surfaces[0];
+    assert!(!surface.two_sided);
+    let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+    // Three quarters of 0.8 are not metal; one of three vertices of each triangle is black.
+    assert!(near(surface.reflectance, [0.8 * 0.75 * 2.0 / 3.0; 3]), "{:?}", surface.reflectance);
+    assert!(near(surface.emission, [2.0 * PI, PI, 0.0]), "{:?}", surface.emission);
+    scene.mesh.colors.fill(Vec3::splat(2.0));
+    assert!(matches!(scene_surfaces(&scene), Err(SceneError::Albedo { .. })));
+}
+
+#[test]
+fn baked_light_depends_on_which_material_is_where() {
+    let mut scene = square(grey(0.2));
+    scene.add_material(grey(0.8));
+    let before = fingerprint::of_sources(&scene);
+    scene.mesh.material_of[1] = 1;
+    assert_ne!(before, fingerprint::of_sources(&scene));
+}
+
+#[test]
+fn baked_light_without_area_or_numbers_lights_nothing_wrong() {
+    let normals = [[0.0, 0.0, 1.0]; 4];
+    let irradiance = [[1.0; 3], [1.0; 3], [1.0; 3], [100.0; 3]];
+    let sides = [BakedSide { faces: &[0], back: false, count: 2 }];
+    let light = |positions: &[[f64; 3]; 4]| {
+        // The first triangle has no area: a, b, b.
+        let triangles = [[3, 0, 0], [0, 1, 2]];
+        let light =
+            BakedLight { positions, normals: &normals, irradiance: &irradiance, triangles: &triangles };
+        Lightmap::new(&light, &sides, 1).unwrap().irradiance(0, true, dvec3(0.2, 0.2, 0.0))
+    };
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.2, 0.0]];
+    assert!((light(&corners) - Vec3::ONE).abs().max_element() < 1e-6);
+    // Sizes that overflow: no number comes out that is not one.
+    assert!(light(&corners.map(|p| p.map(|v| (v - 0.5) * f64::MAX))).is_finite());
+
+    let positions = [[0.0; 3]; 4];
+    let wrong = [[0.0, f32::NAN, 1.0]; 4];
+    let light =
+        BakedLight { positions: &positions, normals: &wrong, irradiance: &irradiance, triangles: &[] };
+    assert_eq!(light.check(&[], 1), Err(LightmapError::NotFinite { list: "normals", index: 0 }));
+}
+
+#[test]
+fn light_of_a_surface_without_faces_is_refused() {
+    let mut baked = Baked::default();
+    baked.triangles.push(BakedTriangle { surface: 3, back: false, vertices: [0; 3] });
+    let error = Lightmap::of_baked(&baked, &[vec![0]], 1).unwrap_err();
+    assert_eq!(error, LightmapError::Surface { surface: 3, count: 1 });
+}
+
+#[test]
+fn numbers_of_details_and_ambient_light_are_checked() {
+    let message = |change: fn(&mut Scene)| {
+        let mut scene = square(grey(0.5));
+        change(&mut scene);
+        scene.check().unwrap_err().to_string()
+    };
+    assert_eq!(
+        message(|s| s.materials[0].details.metallic = Some(f32::NAN)),
+        "material `grey`: metallic is not finite"
+    );
+    assert_eq!(
+        message(|s| s.materials[0].details.reflection = Some(Vec3::INFINITY)),
+        "material `grey`: reflection is not finite"
+    );
+    assert_eq!(
+        message(|s| s.materials[0].details.transmission = Some(Transmission { color: Vec3::ONE, index: 0.0 })),
+        "material `grey`: a refraction index of 0 is not above 0"
+    );
+    assert_eq!(message(|s| s.ambient = AmbientLight::Color(Vec3::NAN)), "ambient is not finite");
+}
