@@ -199,7 +199,7 @@ proptest! {
 fn runs_end_within_a_file_without_a_trace() {
     let mut text = "v 0.5 1 2\n".repeat(5_000);
     for face in 0..5_000 {
-        write!(text, "f {} -{} {}\n", face + 1, face + 1, 5_000 - face).unwrap();
+        writeln!(text, "f {} -{} {}", face + 1, face + 1, 5_000 - face).unwrap();
     }
     assert_eq!(agree(text.as_bytes()), Ok(()));
     let [runs, _] = both(text.as_bytes());
