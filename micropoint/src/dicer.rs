@@ -576,7 +576,8 @@ impl Dicer {
     }
 }
 
-fn mean_opacity(job: &DiceJob<'_>, face: &Face, corner: DVec2, local: &[DVec2]) -> f32 {
+/// Mean opacity, 0..=1, of a face over an outline relative to a cell's corner.
+pub(crate) fn mean_opacity(job: &DiceJob<'_>, face: &Face, corner: DVec2, local: &[DVec2]) -> f32 {
     let surface = &job.geometry.surfaces()[face.surface as usize];
     face.mean_opacity(job.lens, surface, job.opacity, corner, local)
 }

@@ -169,7 +169,8 @@ impl<'a> Renderer<'a> {
         let mut dicer = std::mem::take(&mut tile.dicer);
         let mut resolve = std::mem::take(&mut tile.resolve);
         let (geometry, lens, opacity) = (self.geometry, &self.lens, self.opacity);
-        dicer.dice(&DiceJob { geometry, lens, rect: &self.rect, hidden: &self.hidden, opacity }, window);
+        let job = DiceJob { geometry, lens, rect: &self.rect, hidden: &self.hidden, opacity };
+        dicer.dice(&job, window);
         let columns = (window.x1 - window.x0) as usize;
         let share = 1.0 / f64::from(cells * cells);
         for cell in 0..dicer.cell_count() {
@@ -180,7 +181,7 @@ impl<'a> Renderer<'a> {
             let emit = |dicer: &Dicer, seen: Visible<'_>| tile.push(dicer, &seen, corner, pixel, share);
             match self.options.occlusion {
                 Occlusion::Correlated => {
-                    resolve_exactly(&mut dicer, &mut resolve, &self.lens, cell, corner, emit);
+                    resolve_exactly(&mut dicer, &mut resolve, &job, cell, corner, emit);
                 }
                 Occlusion::Paper => resolve_by_layers(&mut dicer, cell, emit),
             }

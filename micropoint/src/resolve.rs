@@ -1,8 +1,7 @@
 //! From the parts in a cell to what is seen of them.
 
-use crate::dicer::Dicer;
+use crate::dicer::{DiceJob, Dicer, mean_opacity};
 use crate::front::{Front, Layer, in_front};
-use crate::lens::Lens;
 use crate::neighbours::{self, Neighbours};
 use glam::DVec2;
 use pointillist_dice::hide::{Blocker, Occluders, Region, Regions};
@@ -28,7 +27,8 @@ pub(crate) struct Visible<'a> {
     pub(crate) centroid: DVec2,
     /// The visible area in convex pieces with their own weights; `None`: the whole part.
     pub(crate) pieces: Option<&'a [Region]>,
-    /// What the pieces' weights are multiplied by: less than 1 only where more would be seen than the cell has room for.
+    /// A piece weighs its area times its transmittance times this: the part's opacity, unless the pieces have their own in their
+    /// transmittance; less where more would be seen than the cell has room for.
     pub(crate) scale: f64,
 }
 
@@ -37,7 +37,7 @@ impl Visible<'_> {
     /// rest by their mean (see [`Regions`]), and what is seen of all of them may add up to more than the cell.
     fn fit_into(mut self, room: f64) -> Self {
         if self.weight > room + FINISHED {
-            self.scale = room / self.weight;
+            self.scale *= room / self.weight;
             self.weight = room;
         }
         self
@@ -58,7 +58,7 @@ const TOUCH: f64 = 1e-7;
 pub(crate) fn resolve_exactly(
     dicer: &mut Dicer,
     scratch: &mut ResolveScratch,
-    lens: &Lens,
+    job: &DiceJob<'_>,
     cell: usize,
     corner: DVec2,
     mut emit: impl FnMut(&Dicer, Visible<'_>),
@@ -87,7 +87,7 @@ pub(crate) fn resolve_exactly(
                 Some(before) if dicer.is_copy(before, p) => {
                     behind_a_copy(sight, dicer, before, &mut scratch.cut.regions)
                 }
-                _ => scratch.hide(dicer, lens, corner, &order, i),
+                _ => scratch.hide(&Parts { dicer, job, corner }, &order, i),
             };
             compared |= sight != Sight::Whole;
             if sight == Sight::Hidden {
@@ -96,7 +96,7 @@ pub(crate) fn resolve_exactly(
             scratch.others.stand(i);
             let visible = match sight {
                 Sight::Whole => whole(dicer, p),
-                _ => in_pieces(dicer, p, scratch.cut.regions.list()),
+                _ => scratch.cut.in_pieces(&Parts { dicer, job, corner }, p),
             };
             let visible = visible.fit_into(1.0 - seen);
             if visible.weight <= 0.0 {
@@ -123,18 +123,6 @@ enum Sight {
     Pieces,
     /// Nothing.
     Hidden,
-}
-
-fn in_pieces<'a>(dicer: &Dicer, p: u32, regions: &'a [Region]) -> Visible<'a> {
-    let opacity = f64::from(dicer.part(p).opacity);
-    let (mut weight, mut moment) = (0.0, DVec2::ZERO);
-    for r in regions {
-        let (area, centroid) = r.polygon.area_and_centroid();
-        weight += area * r.transmittance * opacity;
-        moment += centroid * (area * r.transmittance * opacity);
-    }
-    let centroid = if weight > 0.0 { moment / weight } else { DVec2::ZERO };
-    Visible { part: p, weight, centroid, pieces: Some(regions), scale: 1.0 }
 }
 
 /// What is seen of a part behind a copy of itself: what is seen of the copy, through the copy. Comparing each of n copies with all
@@ -165,6 +153,8 @@ pub(crate) struct ResolveScratch {
 struct Cut {
     regions: Regions,
     blockers: Vec<Blocker>,
+    /// The regions of a masked part, with the opacity of each in its transmittance.
+    masked: Vec<Region>,
 }
 
 /// The parts that one part is compared with.
@@ -195,27 +185,48 @@ impl Others {
     }
 }
 
-/// The parts of a tile as occluders of each other.
-struct Parts<'a>(&'a Dicer);
+/// The parts of a cell as occluders of each other.
+struct Parts<'a> {
+    dicer: &'a Dicer,
+    job: &'a DiceJob<'a>,
+    corner: DVec2,
+}
+
+impl Parts<'_> {
+    /// Whether the opacity of a part varies over it.
+    fn is_masked(&self, number: u32) -> bool {
+        let part = self.dicer.part(number);
+        let face = &self.dicer.faces[part.face as usize];
+        (0.0..1.0).contains(&part.opacity)
+            && self.job.geometry.surfaces()[face.surface as usize].textured_opacity
+    }
+}
 
 impl Occluders for Parts<'_> {
     fn outline(&self, number: u32) -> &[DVec2] {
-        self.0.outline(self.0.part(number))
+        self.dicer.outline(self.dicer.part(number))
     }
 
     fn is_opaque(&self, number: u32) -> bool {
-        self.0.part(number).opacity >= 1.0
+        self.dicer.part(number).opacity >= 1.0
     }
 
-    fn opacity(&self, number: u32, _: &ConvexPolygon) -> f64 {
-        f64::from(self.0.part(number).opacity)
+    /// A mask's own mean over the polygon: holes of the part may lie elsewhere.
+    fn opacity(&self, number: u32, over: &ConvexPolygon) -> f64 {
+        let part = self.dicer.part(number);
+        if self.is_masked(number) {
+            let face = &self.dicer.faces[part.face as usize];
+            return f64::from(mean_opacity(self.job, face, self.corner, over.vertices()));
+        }
+        f64::from(part.opacity)
     }
 }
 
 impl ResolveScratch {
     /// What is seen of part `order[i]` behind the parts in front of it.
-    fn hide(&mut self, dicer: &Dicer, lens: &Lens, corner: DVec2, order: &[u32], i: usize) -> Sight {
+    fn hide(&mut self, parts: &Parts<'_>, order: &[u32], i: usize) -> Sight {
         let Self { cut, others } = self;
+        let (dicer, lens) = (parts.dicer, parts.job.lens);
         let least = dicer.part(order[i]).nearness.least;
         // What lies behind by less than rounding coincides, and may be in front by its number.
         let behind = least - lens.tie(least, DVec2::ZERO);
@@ -224,25 +235,43 @@ impl ResolveScratch {
         if others.stands.is_empty() {
             let following = (i + 1..order.len()).take_while(|&rank| is_near(rank)).map(|rank| order[rank]);
             let standing = others.standing.iter().map(|&rank| order[rank as usize]);
-            return cut.hide(dicer, lens, corner, order[i], standing.chain(following));
+            return cut.hide(parts, order[i], standing.chain(following));
         }
         let Others { stands, neighbours, .. } = others;
         let found = neighbours.of(i).iter().map(|&rank| rank as usize);
         let counts = |&rank: &usize| if rank < i { stands[rank] } else { rank > i && is_near(rank) };
-        cut.hide(dicer, lens, corner, order[i], found.filter(counts).map(|rank| order[rank]))
+        cut.hide(parts, order[i], found.filter(counts).map(|rank| order[rank]))
     }
 }
 
 impl Cut {
+    /// What is seen of part `p` in the regions that were found last.
+    fn in_pieces(&mut self, parts: &Parts<'_>, p: u32) -> Visible<'_> {
+        let Self { regions, masked, .. } = self;
+        let (list, scale) = if parts.is_masked(p) {
+            masked.clear();
+            masked.extend(regions.list().iter().map(|region| {
+                let opacity = parts.opacity(p, &region.polygon);
+                Region { transmittance: region.transmittance * opacity, ..*region }
+            }));
+            masked.retain(|region| region.transmittance > 0.0);
+            (&masked[..], 1.0)
+        } else {
+            (regions.list(), f64::from(parts.dicer.part(p).opacity))
+        };
+        let (mut weight, mut moment) = (0.0, DVec2::ZERO);
+        for r in list {
+            let (area, centroid) = r.polygon.area_and_centroid();
+            weight += area * r.transmittance * scale;
+            moment += centroid * (area * r.transmittance * scale);
+        }
+        let centroid = if weight > 0.0 { moment / weight } else { DVec2::ZERO };
+        Visible { part: p, weight, centroid, pieces: Some(list), scale }
+    }
+
     /// What is seen of part `p` behind those of `others` that are in front of it.
-    fn hide(
-        &mut self,
-        dicer: &Dicer,
-        lens: &Lens,
-        corner: DVec2,
-        p: u32,
-        others: impl Iterator<Item = u32>,
-    ) -> Sight {
+    fn hide(&mut self, parts: &Parts<'_>, p: u32, others: impl Iterator<Item = u32>) -> Sight {
+        let (dicer, lens, corner) = (parts.dicer, parts.job.lens, parts.corner);
         let part = dicer.part(p);
         let outline = dicer.outline(part);
         self.blockers.clear();
@@ -271,7 +300,7 @@ impl Cut {
             return Sight::Whole;
         }
         let polygon = ConvexPolygon::from_vertices(outline);
-        self.regions.hide(polygon, NEGLIGIBLE_AREA, &self.blockers, &Parts(dicer));
+        self.regions.hide(polygon, NEGLIGIBLE_AREA, &self.blockers, parts);
         if self.regions.is_hidden() { Sight::Hidden } else { Sight::Pieces }
     }
 }

@@ -136,12 +136,11 @@ impl Tile {
     ) {
         let part = dicer.part(seen.part);
         let first_fragment = self.fragments.len() as u32;
-        let opacity = f64::from(part.opacity) * seen.scale;
         match seen.pieces {
             None => self.push_fragment(dicer.outline(part), corner, seen.weight * share),
             Some(regions) => {
                 for r in regions {
-                    let weight = r.polygon.area() * r.transmittance * opacity * share;
+                    let weight = r.polygon.area() * r.transmittance * seen.scale * share;
                     self.push_fragment(r.polygon.vertices(), corner, weight);
                 }
             }

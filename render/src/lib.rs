@@ -59,9 +59,11 @@
 mod ambient;
 mod background;
 mod bake;
+mod bake_options;
 mod canvas;
 mod capture;
 mod choose;
+mod copies;
 mod detail;
 mod detail_maps;
 mod direct;
@@ -90,7 +92,8 @@ mod surfaces;
 mod uvs;
 
 pub use ambient::Ambient;
-pub use bake::{BakeOptions, BakedProbe, ProbeBake, bake_probes};
+pub use bake::{BakedProbe, ProbeBake, bake_probes};
+pub use bake_options::BakeOptions;
 pub use capture::{Capture, CaptureOptions};
 pub use choose::{ChooseOptions, Chosen, choose_places};
 pub use draw::DrawOptions;

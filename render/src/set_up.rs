@@ -2,7 +2,7 @@
 
 use crate::ambient::Spot;
 use crate::shader::{Point, Shader, Surface};
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::{Face, Fragment, LensKind, Micropoint, SurfacePoint, Tile};
 use pointillist_shade::{Interpolation, Material, face_normal, interpolate_color, interpolate_normal};
@@ -86,15 +86,15 @@ impl Shader<'_> {
         if !self.surfaces.has_color(face.id) {
             return material;
         }
-        let (mut sum, mut total) = (Vec4::ZERO, 0.0);
+        let (mut sum, mut total) = (Vec3::ZERO, 0.0);
         self.for_outlines(tile, m, face, polygon, &mut |polygon, weight| {
-            sum += self.surfaces.premultiplied_color(face.id, polygon) * weight;
+            sum += self.surfaces.color(face.id, polygon) * weight;
             total += weight;
         });
         if total <= 0.0 {
             return material;
         }
-        material.with_diffuse(material.diffuse * self.surfaces.straight_color(face.id, sum / total))
+        material.with_diffuse(material.diffuse * (sum / total))
     }
 
     /// What is seen of a micropoint, piece by piece, with the weight of each.

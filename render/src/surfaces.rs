@@ -1,5 +1,6 @@
 //! A scene's materials as the renderer sees them: opacity, and textures summed up for exact means.
 
+use crate::copies::masked_copies;
 use crate::detail_maps::{DetailMaps, DetailTable};
 use crate::scene::{Details, Material, Scene, Texture};
 use crate::uvs::{Uvs, texel_wrap};
@@ -9,8 +10,8 @@ use pointillist_micropoint::{
 };
 use pointillist_parallel as parallel;
 use pointillist_shade::Model;
+use std::borrow::Cow;
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 /// What a material looks up in textures. Colour is summed up as colour × opacity, so that the empty
@@ -64,7 +65,7 @@ impl MaskedColor {
     /// The colour of a region from its sum of colour × opacity and of opacity.
     fn straight(&self, sum: Vec4) -> Vec3 {
         if sum.w <= EMPTY {
-            // The region was weighted by the mean opacity of its whole part, but only holes of the mask lie in it.
+            // Under the paper's rule, regions have the mean opacity of their whole part: only holes may lie in one.
             return self.mean;
         }
         (sum.truncate() / sum.w).max(self.range.0).min(self.range.1)
@@ -96,17 +97,28 @@ impl Surfaces {
     }
 
     pub(crate) fn geometry(&self, scene: &Scene) -> Result<Geometry, MicropointError> {
-        Geometry::new(&scene.mesh.positions, &scene.mesh.triangles, &self.surface_of, &self.surfaces)
+        self.geometry_of(scene, |_| true)
     }
 
     /// Everything but one object. Triangles keep their numbers.
     pub(crate) fn geometry_without(&self, scene: &Scene, object: u32) -> Result<Geometry, MicropointError> {
+        self.geometry_of(scene, |t| scene.mesh.object_of[t] != object)
+    }
+
+    /// The triangles that are shown, less copies of masked ones ([`masked_copies`]).
+    fn geometry_of(&self, scene: &Scene, shown: impl Fn(usize) -> bool) -> Result<Geometry, MicropointError> {
         let mesh = &scene.mesh;
-        // A triangle without area is never seen.
-        let hidden = |(t, &[a, b, c]): (usize, &[u32; 3])| {
-            if mesh.object_of[t] == object { [a; 3] } else { [a, b, c] }
+        let masked = |t: usize| {
+            let surface = &self.surfaces[self.surface_of[t] as usize];
+            (surface.textured_opacity && surface.two_sided && shown(t)).then_some(self.surface_of[t])
         };
-        let triangles: Vec<[u32; 3]> = mesh.triangles.iter().enumerate().map(hidden).collect();
+        let mut triangles = Cow::Borrowed(&mesh.triangles);
+        let hidden = (0..triangles.len()).filter(|&t| !shown(t)).map(|t| t as u32);
+        for t in hidden.chain(masked_copies(mesh, &self.uvs, masked)) {
+            // A triangle without area is never seen, and the others keep their numbers.
+            let triangle = &mut triangles.to_mut()[t as usize];
+            *triangle = [triangle[0]; 3];
+        }
         Geometry::new(&mesh.positions, &triangles, &self.surface_of, &self.surfaces)
     }
 
@@ -129,26 +141,17 @@ impl Surfaces {
         matches!(self.textured(triangle), Textured::Color(_) | Textured::Masked(_))
     }
 
-    /// Mean of colour × opacity and of opacity over a polygon of a triangle, to be added up over polygons; see
-    /// [`Surfaces::straight_color`].
-    pub(crate) fn premultiplied_color(&self, triangle: u32, polygon: &[SurfacePoint]) -> Vec4 {
+    /// The factor on a triangle's diffuse albedo: the mean colour over a polygon of it, weighted by the mask's opacity if there is one.
+    pub(crate) fn color(&self, triangle: u32, polygon: &[SurfacePoint]) -> Vec3 {
         match self.textured(triangle) {
-            Textured::Nothing | Textured::Opacity(_) => Vec4::ONE,
+            Textured::Nothing | Textured::Opacity(_) => Vec3::ONE,
             Textured::Color(sums) => {
-                let [r, g, b] = self.uvs.mean(triangle, polygon, sums).map(|v| v as f32);
-                Vec4::new(r, g, b, 1.0)
+                Vec3::from_array(self.uvs.mean(triangle, polygon, sums).map(|v| v as f32))
             }
             Textured::Masked(masked) => {
-                Vec4::from_array(self.uvs.mean(triangle, polygon, &masked.premultiplied).map(|v| v as f32))
+                let mean = self.uvs.mean(triangle, polygon, &masked.premultiplied).map(|v| v as f32);
+                masked.straight(Vec4::from_array(mean))
             }
-        }
-    }
-
-    /// The factor on a triangle's diffuse albedo, from a mean of [`Surfaces::premultiplied_color`].
-    pub(crate) fn straight_color(&self, triangle: u32, mean: Vec4) -> Vec3 {
-        match self.textured(triangle) {
-            Textured::Masked(masked) => masked.straight(mean),
-            _ => mean.truncate(),
         }
     }
 }
@@ -183,17 +186,19 @@ fn surfaces_by_material(scene: &Scene, textures: &[Arc<Textured>]) -> (Vec<Surfa
 }
 
 fn textured_by_material(scene: &Scene) -> Result<Vec<Arc<Textured>>, MicropointError> {
-    let mut known = HashMap::new();
-    let mut textures = Vec::with_capacity(scene.materials.len());
+    let mut numbers = HashMap::new();
+    let mut different = vec![];
+    let mut number_of = Vec::with_capacity(scene.materials.len());
     for m in &scene.materials {
-        let key = (m.diffuse_map, m.opacity_map, m.wrap);
-        let texture: &Arc<Textured> = match known.entry(key) {
-            Entry::Occupied(e) => e.into_mut(),
-            Entry::Vacant(e) => e.insert(Arc::new(sum_up(m, &scene.textures)?)),
-        };
-        textures.push(texture.clone());
+        let number = *numbers.entry((m.diffuse_map, m.opacity_map, m.wrap)).or_insert_with(|| {
+            different.push(m);
+            different.len() - 1
+        });
+        number_of.push(number);
     }
-    Ok(textures)
+    let sums = parallel::map_heavy(different.len(), |i| sum_up(different[i], &scene.textures).map(Arc::new));
+    let sums: Vec<Arc<Textured>> = sums.into_iter().collect::<Result<_, _>>()?;
+    Ok(number_of.into_iter().map(|number| sums[number].clone()).collect())
 }
 
 fn details_by_material(scene: &Scene) -> Result<Vec<Option<DetailMaps>>, MicropointError> {

@@ -1,5 +1,7 @@
 //! `micropoint`: run time against error of pictures, beside plain point sampling.
 
+mod growth;
+
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -51,7 +53,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     }
     write_csv(out_dir, "micropoint", &[], &rows)?;
     chart(out_dir, "micropoint", &rows)?;
-    write(out_dir, "micropoint.md", &markdown(&rows))?;
+    write(out_dir, "micropoint.md", &(markdown(&rows) + &growth::section()))?;
     Ok(true)
 }
 
@@ -65,6 +67,7 @@ pub(crate) fn run_quick() -> Outcome {
             println!("| {scene} | {setting} | {rmse:.2e} | {largest:.2e} | {seconds:.4} |");
         }
     }
+    print!("{}", growth::section());
     Ok(true)
 }
 
@@ -82,7 +85,7 @@ fn cases(lines: u32) -> Vec<Case> {
         by_lines("quads", crate::common::scenes::quads(SIZE), false),
         by_lines("stacked spheres", crate::common::scenes::spheres(SIZE), true),
         by_lines("wires", crate::common::scenes::wires(SIZE), true),
-        by_lines("stripes to the horizon", crate::common::scenes::stripes(SIZE), false),
+        by_lines("stripes to the horizon", crate::common::scenes::stripes(SIZE, 800), false),
         by_lines("translucent layers", crate::common::scenes::layers(SIZE), false),
         Case {
             emissive: false,

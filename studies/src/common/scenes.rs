@@ -310,20 +310,17 @@ pub(crate) fn wires(size: u32) -> Scene {
     s.scene
 }
 
-/// A ground of thin stripes to the horizon.
-pub(crate) fn stripes(size: u32) -> Scene {
+/// A ground of `count` thin stripes to the horizon.
+pub(crate) fn stripes(size: u32, count: u32) -> Scene {
     let mut s = Sketch::new(dvec3(0.0, 1.0, 0.0), dvec3(0.3, 0.7, -5.0), 40.0, size);
     // Rolled, so that the lines of the reference cross the stripes rather than miss them.
     s.scene.camera.up = dvec3(0.5, 1.0, 0.0);
     let (light, dark) = (s.emissive(Vec3::splat(0.9), 1.0), s.emissive(Vec3::splat(0.1), 1.0));
-    for i in 0..800 {
+    let half = 0.5 * f64::from(count);
+    for i in 0..count {
         let (near, far) = (1.0 - 0.5 * f64::from(i), 0.5 - 0.5 * f64::from(i));
-        let ring = [
-            dvec3(-400.0, 0.0, near),
-            dvec3(400.0, 0.0, near),
-            dvec3(400.0, 0.0, far),
-            dvec3(-400.0, 0.0, far),
-        ];
+        let ring =
+            [dvec3(-half, 0.0, near), dvec3(half, 0.0, near), dvec3(half, 0.0, far), dvec3(-half, 0.0, far)];
         s.polygon(&ring, if i % 2 == 0 { light } else { dark });
     }
     s.scene

@@ -1,0 +1,33 @@
+//! How time grows with the number of parts in a cell: ever more stripes to the horizon.
+
+use crate::common::draw;
+use crate::common::report::{on_one_thread, timed};
+use crate::common::scenes;
+use pointillist_micropoint::MicropointOptions;
+use std::fmt::Write as _;
+
+/// Stripes, each four times as many as before. Most of the parts that are added lie in the few rows at the horizon.
+const COUNTS: [u32; 5] = [50, 200, 800, 3200, 12_800];
+
+/// Pixels on a side.
+const SIZE: u32 = 256;
+
+/// The section: a table of counts and seconds with the exponent between each count and the one before.
+pub(super) fn section() -> String {
+    let mut text = String::from(
+        "\n## Parts in a cell\n\nStripes to the horizon, ever more of them; the exponent is that of time against stripes since the row above.\n\n\
+         | stripes | seconds | exponent |\n| ---: | ---: | ---: |\n",
+    );
+    let mut before: Option<(u32, f64)> = None;
+    for count in COUNTS {
+        let scene = scenes::stripes(SIZE, count);
+        let draw = || draw::emissive(&scene, MicropointOptions::DEFAULT).expect("the scene is valid");
+        let (seconds, _) = on_one_thread(|| timed(draw));
+        let exponent = before.map_or("–".to_owned(), |(n, s)| {
+            format!("{:.2}", (seconds / s).ln() / (f64::from(count) / f64::from(n)).ln())
+        });
+        writeln!(text, "| {count} | {seconds:.4} | {exponent} |").expect("writing to a string");
+        before = Some((count, seconds));
+    }
+    text
+}
