@@ -6,7 +6,9 @@ pub mod gltf;
 mod mtl;
 mod names;
 mod obj;
+mod obj_index;
 mod obj_lines;
+mod obj_plain;
 mod ply;
 mod triangulate;
 

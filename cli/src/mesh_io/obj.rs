@@ -1,11 +1,13 @@
 //! OBJ.
 
-use super::obj_lines::{Kinds, LineFault, ObjLines};
+use super::obj_index::Kinds;
+use super::obj_lines::{LineFault, ObjLines};
 use super::{FileMesh, triangulate};
 use crate::coordinate::{LARGEST, is_usable};
 use crate::input_error::InputError;
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_render::NONE;
+use std::iter::repeat_n;
 use tobj::{LoadError, LoadOptions};
 
 /// Polygons with more corners than this are refused: cutting one that is not convex takes the square of the time.
@@ -21,7 +23,12 @@ const OPTIONS: LoadOptions =
 ///
 /// A line that cannot be read, an index out of range, a number that is not finite: with the line.
 pub fn read_obj(name: &str, bytes: &[u8]) -> Result<FileMesh, InputError> {
-    let mut lines = ObjLines::new(bytes);
+    // A second look finds the line of what is wrong.
+    read_lines(name, bytes, ObjLines::new(bytes))
+        .or_else(|_| read_lines(name, bytes, ObjLines::one_by_one(bytes)))
+}
+
+fn read_lines(name: &str, bytes: &[u8], mut lines: ObjLines) -> Result<FileMesh, InputError> {
     let result = tobj::load_obj_buf(&mut lines, &OPTIONS, |_| Ok(Default::default()));
     let models = match result {
         Ok((models, _)) => models,
@@ -95,6 +102,13 @@ fn append(
     if u32::try_from(total).is_err() {
         return Err(InputError::of_file(name, format!("{total} vertices are more than can be numbered")));
     }
+    let corners = model.indices.len();
+    if u32::try_from(corners).is_err() {
+        return Err(InputError::of_file(
+            name,
+            format!("{corners} corners of faces are more than can be numbered"),
+        ));
+    }
     mesh.positions.extend(model.positions.chunks_exact(3).map(DVec3::from_slice));
     if kinds.uv {
         mesh.uvs.extend(model.texcoords.chunks_exact(2).map(DVec2::from_slice));
@@ -102,32 +116,51 @@ fn append(
     if kinds.normal {
         mesh.normals.extend(model.normals.chunks_exact(3).map(|n| DVec3::from_slice(n).as_vec3()));
     }
-    let arity = |face: usize| model.face_arities.get(face).map_or(3, |&n| n as usize);
-    let (mut first, mut face) = (0, 0);
+    let cut = cut_faces(model, &mesh.positions[bases[0] as usize..], name)?;
+    mesh.triangles.extend(picked(&cut, bases[0], &model.indices));
+    if kinds.uv {
+        mesh.uv_of.extend(picked(&cut, bases[1], &model.texcoord_indices));
+    } else {
+        mesh.uv_of.extend(repeat_n([NONE; 3], cut.len()));
+    }
+    if kinds.normal {
+        mesh.normal_of.extend(picked(&cut, bases[2], &model.normal_indices));
+    } else {
+        mesh.normal_of.extend(repeat_n([NONE; 3], cut.len()));
+    }
+    mesh.material_of.extend(repeat_n(material, cut.len()));
+    Ok(())
+}
+
+/// What `list` has at the corners of triangles, counted from `base`.
+fn picked(cut: &[[u32; 3]], base: u32, list: &[u32]) -> impl ExactSizeIterator<Item = [u32; 3]> {
+    cut.iter().map(move |triangle| triangle.map(|corner| base + list[corner as usize]))
+}
+
+/// The triangles of all faces, as places in the lists of indices; `positions` are those of the model.
+fn cut_faces(model: &tobj::Mesh, positions: &[DVec3], name: &str) -> Result<Vec<[u32; 3]>, InputError> {
+    // Without arities all faces are triangles.
+    if model.face_arities.is_empty() {
+        return Ok((0..model.indices.len() as u32 / 3)
+            .map(|face| [3 * face, 3 * face + 1, 3 * face + 2])
+            .collect());
+    }
+    let mut cut = Vec::with_capacity(model.indices.len() - 2 * model.face_arities.len());
     let mut corners = Vec::new();
-    while first < model.indices.len() {
-        let count = arity(face);
+    let mut first = 0;
+    for &arity in &model.face_arities {
+        let count = arity as usize;
         if count > MOST_CORNERS {
             let message =
                 format!("a face with {count} corners; at most {MOST_CORNERS} can be cut into triangles");
             return Err(InputError::of_file(name, message));
         }
         corners.clear();
-        let indices = &model.indices[first..first + count];
-        corners.extend(indices.iter().map(|&i| mesh.positions[(bases[0] + i) as usize]));
-        triangulate(&corners, |triangle| {
-            let pick = |has: bool, base: u32, list: &[u32]| {
-                if has { triangle.map(|corner| base + list[first + corner]) } else { [NONE; 3] }
-            };
-            mesh.triangles.push(pick(true, bases[0], &model.indices));
-            mesh.uv_of.push(pick(kinds.uv, bases[1], &model.texcoord_indices));
-            mesh.normal_of.push(pick(kinds.normal, bases[2], &model.normal_indices));
-            mesh.material_of.push(material);
-        });
+        corners.extend(model.indices[first..first + count].iter().map(|&i| positions[i as usize]));
+        triangulate(&corners, |triangle| cut.push(triangle.map(|corner| (first + corner) as u32)));
         first += count;
-        face += 1;
     }
-    Ok(())
+    Ok(cut)
 }
 
 impl FileMesh {
@@ -141,3 +174,6 @@ impl FileMesh {
         self.normals.iter().map(|n| n.as_dvec3().normalize_or_zero().as_vec3())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,18 +1,14 @@
-//! OBJ lines, checked and made plain, on their way to the parser.
+//! OBJ lines, checked and made plain where they are not, on their way to the parser.
 //!
 //! `tobj` stops without saying where, takes no comments after a face, no continued lines and no tabs, makes up
 //! coordinates that a face lacks, and forgets the name of a material that it has no definition of. So it reads
 //! through [`ObjLines`], which passes on vertices and faces, puts a group in front of every run of faces with the
-//! same material and the same kinds of index, and remembers the line.
+//! same material and the same kinds of index, and remembers the line. Runs of lines that [`plain_line`] knows are
+//! passed on as they are, without a copy; every other line is taken apart and written anew.
 
+use super::obj_index::{Kinds, Range};
+use super::obj_plain::{PlainLine, plain_line};
 use std::io::{self, BufRead, Read};
-
-/// The kinds of index that all corners of a run of faces have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Kinds {
-    pub(super) uv: bool,
-    pub(super) normal: bool,
-}
 
 /// What is wrong with a line, numbered from 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,21 +18,20 @@ pub(super) struct LineFault {
     pub(super) help: &'static str,
 }
 
-/// The largest index of one kind that was asked for, and how many there are.
-#[derive(Clone, Copy, Debug, Default)]
-struct Range {
-    count: i64,
-    largest: i64,
-    line_of_largest: usize,
-}
+/// A run of plain lines ends after this many bytes, so that the parser finds them in the cache.
+const LONGEST_RUN: usize = 1 << 14;
 
 /// Reads like a file with only `v`, `vt`, `vn`, `f` and `g` lines.
 pub(super) struct ObjLines<'a> {
     rest: &'a [u8],
     line: usize,
     next_line: usize,
+    /// Lines written anew, which come before `run`, and how much of them has been read.
     out: Vec<u8>,
     given: usize,
+    /// What has not been read of a run of plain lines.
+    run: &'a [u8],
+    takes_runs: bool,
     group: Option<(Kinds, u32)>,
     material: u32,
     ranges: [Range; 3],
@@ -48,7 +43,13 @@ pub(super) struct ObjLines<'a> {
 const NO_NAME: &str = "";
 
 impl<'a> ObjLines<'a> {
+    /// Passes plain lines on as they are: [`ObjLines::line`] is then up to a run ahead of the parser.
     pub(super) fn new(bytes: &'a [u8]) -> Self {
+        Self { takes_runs: true, ..Self::one_by_one(bytes) }
+    }
+
+    /// Takes every line apart: slower, but the line of an error is known.
+    pub(super) fn one_by_one(bytes: &'a [u8]) -> Self {
         Self {
             // Some editors put a byte-order mark in front, which is not part of the first keyword.
             rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes),
@@ -56,6 +57,8 @@ impl<'a> ObjLines<'a> {
             next_line: 1,
             out: Vec::new(),
             given: 0,
+            run: &[],
+            takes_runs: false,
             group: None,
             material: 0,
             ranges: [Range::default(); 3],
@@ -75,6 +78,32 @@ impl<'a> ObjLines<'a> {
         let (kinds, material) = group.split_once(' ')?;
         let kinds = Kinds { uv: kinds.contains('t'), normal: kinds.contains('n') };
         Some((kinds, material.parse().ok()?))
+    }
+
+    /// Takes plain lines into `run`, as long as they need no other group than the first of them.
+    fn take_run(&mut self) {
+        let bytes = self.rest;
+        let mut taken = 0;
+        while taken < bytes.len().min(LONGEST_RUN) {
+            let Some((line, length)) = plain_line(&bytes[taken..], &mut self.ranges, self.next_line) else {
+                break;
+            };
+            match line {
+                PlainLine::Element(kind) => self.ranges[kind].count += 1,
+                PlainLine::Face(kinds) if self.group != Some((kinds, self.material)) => {
+                    if taken > 0 {
+                        break;
+                    }
+                    let group = self.open_group(kinds);
+                    self.out.extend_from_slice(group.as_bytes());
+                }
+                PlainLine::Face(_) => {}
+            }
+            self.line = self.next_line;
+            self.next_line += 1;
+            taken += length;
+        }
+        (self.run, self.rest) = bytes.split_at(taken);
     }
 
     /// The line, with those it continues on, without comment; `None` at the end.
@@ -182,12 +211,11 @@ impl<'a> ObjLines<'a> {
 
     fn face<'w>(&mut self, words: impl Iterator<Item = &'w str>) -> Result<(), LineFault> {
         let start = self.out.len();
-        let mut kinds = Kinds { uv: true, normal: true };
+        let mut kinds = Kinds::ALL;
         let mut corners = 0;
         self.out.push(b'f');
         for word in words {
-            let found = self.corner(word)?;
-            kinds = Kinds { uv: kinds.uv && found.uv, normal: kinds.normal && found.normal };
+            kinds = kinds.and(self.corner(word)?);
             corners += 1;
         }
         self.out.push(b'\n');
@@ -197,13 +225,18 @@ impl<'a> ObjLines<'a> {
             );
         }
         if self.group != Some((kinds, self.material)) {
-            self.group = Some((kinds, self.material));
-            let uv = if kinds.uv { "t" } else { "" };
-            let normal = if kinds.normal { "n" } else { "" };
-            let group = format!("g -{uv}{normal} {}\n", self.material);
+            let group = self.open_group(kinds);
             self.out.splice(start..start, group.into_bytes());
         }
         Ok(())
+    }
+
+    /// The line before faces with other kinds of index, or another material, than those before them.
+    fn open_group(&mut self, kinds: Kinds) -> String {
+        self.group = Some((kinds, self.material));
+        let uv = if kinds.uv { "t" } else { "" };
+        let normal = if kinds.normal { "n" } else { "" };
+        format!("g -{uv}{normal} {}\n", self.material)
     }
 
     /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn` and passes it on with indices from 1.
@@ -226,15 +259,11 @@ impl<'a> ObjLines<'a> {
                 return Err(self.fault(format!("`{word}` is no corner of a face"), HELP));
             };
             let range = &mut self.ranges[kind];
-            let index = if number < 0 { range.count + 1 + i64::from(number) } else { i64::from(number) };
-            if index < 1 {
+            let Some(index) = range.index(number, self.line) else {
                 let name = ["vertex", "texture coordinate", "normal"][kind];
                 let message = format!("{name} {number} in `{word}`, but {} are defined so far", range.count);
                 return Err(self.fault(message, HELP));
-            }
-            if index > range.largest {
-                (range.largest, range.line_of_largest) = (index, self.line);
-            }
+            };
             self.out.extend_from_slice(index.to_string().as_bytes());
             present[kind] = true;
         }
@@ -276,9 +305,15 @@ fn number_help(keyword: &str) -> &'static str {
 
 impl BufRead for ObjLines<'_> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        while self.given == self.out.len() {
+        while self.given == self.out.len() && self.run.is_empty() {
             self.out.clear();
             self.given = 0;
+            if self.takes_runs {
+                self.take_run();
+                if !self.run.is_empty() {
+                    break;
+                }
+            }
             let result = match self.logical_line() {
                 Err(fault) => Err(fault),
                 Ok(Some(line)) => self.convert(&line),
@@ -289,11 +324,15 @@ impl BufRead for ObjLines<'_> {
             };
             result.map_err(|fault| self.stop(fault))?;
         }
-        Ok(&self.out[self.given..])
+        Ok(if self.given < self.out.len() { &self.out[self.given..] } else { self.run })
     }
 
     fn consume(&mut self, amount: usize) {
-        self.given += amount;
+        if self.given < self.out.len() {
+            self.given += amount;
+        } else {
+            self.run = &self.run[amount..];
+        }
     }
 }
 
