@@ -58,8 +58,8 @@ fn each_side_of_a_leaf_shows_the_normals_of_the_card_that_faces_the_eye() {
         let leaf = scene
             .add_material(Material::new("leaf", shade::Material::lambert(Vec3::ONE)).with_opacity_map(holes));
         for &front in cards {
-            // Normals that lean outward, as foliage has them: not opposite on the two sides.
-            let up = if front { 1.0 } else { -1.0 };
+            // The first card faces down. Normals lean outward, as foliage has them: they are not opposite on the two sides.
+            let up = if front { -1.0 } else { 1.0 };
             let normals = CARD.map(|p| Vec3::new(p.x as f32, up, p.z as f32).normalize());
             let triangles = if front { [[0, 1, 2], [0, 2, 3]] } else { [[2, 1, 0], [0, 3, 2]] };
             let part = Part::new("card", &CARD, &triangles).with_uvs(&UVS).with_normals(&normals);
@@ -76,7 +76,7 @@ fn each_side_of_a_leaf_shows_the_normals_of_the_card_that_faces_the_eye() {
         let frame = render(&scene, &options, &()).unwrap();
         (frame.color, frame.layers[0].planes[0].iter().sum::<f32>())
     };
-    for (eye, facing) in [(dvec3(0.5, 4.0, 1.0), true), (dvec3(0.5, -2.0, 1.0), false)] {
+    for (eye, facing) in [(dvec3(0.5, 4.0, 1.0), false), (dvec3(0.5, -2.0, 1.0), true)] {
         for both in [[true, false], [false, true]] {
             let ((both, back), (alone, _)) = (seen(eye, &both), seen(eye, &[facing]));
             let close = |(a, b): (&[f32; 4], &[f32; 4])| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-5);
