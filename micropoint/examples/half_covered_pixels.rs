@@ -4,7 +4,7 @@
 
 use glam::{DVec3, dvec3};
 use pointillist_micropoint::{
-    Geometry, MicropointOptions, PlainOpacity, Projection, Renderer, Surface, Tile, View,
+    Geometry, MicropointOptions, PlainOpacity, Projection, Renderer, SurfaceOpacity, Tile, View,
 };
 
 const SIZE: u32 = 256;
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         [9, 10, 11],
     ];
     let surface_of = [0, 0, 0, 0, 0, 0, 0, 0, 1, 2];
-    let surfaces = [1.0, 0.4, 1.0].map(|opacity| Surface { opacity, ..Surface::default() });
+    let surfaces = [1.0, 0.4, 1.0].map(|opacity| SurfaceOpacity { opacity, ..SurfaceOpacity::default() });
     let geometry = Geometry::new(&corners, &triangles, &surface_of, &surfaces)?;
     let camera = Projection::Perspective { fov_y_rad: 0.8 };
     let view = View::look_at(dvec3(1.0, 0.8, 4.0), DVec3::ZERO, DVec3::Y, camera, SIZE, SIZE)?;

@@ -2,7 +2,7 @@
 
 use crate::bounds::Bounds;
 use crate::face::{Face, GridRect, ProjectedVertex, Setup, TexturedOpacity};
-use crate::geometry::{Geometry, HiddenSides, Surface};
+use crate::geometry::{Geometry, HiddenSides, SurfaceOpacity};
 use crate::interval::Interval;
 use crate::lens::{Lens, LensKind};
 use crate::visit::{FaceVisitor, VisitMemory};
@@ -204,7 +204,7 @@ impl FaceVisitor for DicedFaces<'_> {
     }
 
     #[inline]
-    fn skips(&self, corners: [&ProjectedVertex; 3], _: &Surface) -> bool {
+    fn skips(&self, corners: [&ProjectedVertex; 3], _: &SurfaceOpacity) -> bool {
         self.dicer.outside_window(corners)
     }
 

@@ -1,6 +1,6 @@
 //! A triangle as one lens sees it.
 
-use crate::geometry::{ClusterTriangle, HiddenSides, Surface, Triangle};
+use crate::geometry::{ClusterTriangle, HiddenSides, SurfaceOpacity, Triangle};
 use crate::interval::Interval;
 use crate::lens::{Lens, LensKind, Plane};
 use glam::{DVec2, DVec3};
@@ -111,7 +111,7 @@ impl Face {
     pub fn mean_opacity(
         &self,
         lens: &Lens,
-        surface: &Surface,
+        surface: &SurfaceOpacity,
         mask: &dyn TexturedOpacity,
         corner: DVec2,
         outline: &[DVec2],
@@ -236,7 +236,7 @@ pub(crate) fn set_up_face(
     triangle: &Triangle,
     source: ClusterTriangle,
     v: [&ProjectedVertex; 3],
-    surface: &Surface,
+    surface: &SurfaceOpacity,
 ) -> Option<(Face, Outline)> {
     let Setup { lens, rect, hidden, keeps_backs } = *setup;
     let corners = [v[0].local, v[1].local, v[2].local];

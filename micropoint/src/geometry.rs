@@ -9,7 +9,7 @@ use pointillist_view::morton_code;
 
 /// How a surface lets light through; the rest of a material is the shader's business.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
+pub struct SurfaceOpacity {
     /// Opacity, 0..=1, of every point of the surface, or the factor on a textured opacity.
     pub opacity: f32,
     /// The opacity varies: it is asked for through [`TexturedOpacity`](crate::TexturedOpacity).
@@ -18,14 +18,14 @@ pub struct Surface {
     pub two_sided: bool,
 }
 
-impl Default for Surface {
+impl Default for SurfaceOpacity {
     /// Opaque and two-sided.
     fn default() -> Self {
         Self { opacity: 1.0, textured_opacity: false, two_sided: true }
     }
 }
 
-impl Surface {
+impl SurfaceOpacity {
     /// Whether nothing shows through.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
@@ -109,7 +109,7 @@ pub struct Geometry {
     pub(crate) clusters: Vec<Cluster>,
     /// `levels[0]` bounds groups of clusters, each further level groups of the one before.
     levels: Vec<Vec<Bounds>>,
-    surfaces: Vec<Surface>,
+    surfaces: Vec<SurfaceOpacity>,
     solids: Vec<Solid>,
     bounds: Bounds,
 }
@@ -126,7 +126,7 @@ impl Geometry {
         positions: &[DVec3],
         triangles: &[[u32; 3]],
         surface_of: &[u32],
-        surfaces: &[Surface],
+        surfaces: &[SurfaceOpacity],
     ) -> Result<Self, MicropointError> {
         check(positions, triangles, surface_of, surfaces)?;
         let opaque = |t: usize| surfaces[surface_of[t] as usize].is_opaque();
@@ -246,7 +246,7 @@ impl Geometry {
 
     /// The surfaces, as given.
     #[must_use]
-    pub fn surfaces(&self) -> &[Surface] {
+    pub fn surfaces(&self) -> &[SurfaceOpacity] {
         &self.surfaces
     }
 
@@ -424,7 +424,7 @@ fn check(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     surface_of: &[u32],
-    surfaces: &[Surface],
+    surfaces: &[SurfaceOpacity],
 ) -> Result<(), MicropointError> {
     if triangles.len() >= (u32::MAX / 4) as usize {
         return Err(MicropointError::TooManyTriangles { count: triangles.len() });

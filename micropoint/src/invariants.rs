@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use crate::lens::TIE;
 use crate::{
     Geometry, Interval, Lens, LensKind, MicropointError, MicropointOptions, PixelRect, PlainOpacity,
-    Renderer, Surface, Tile, View,
+    Renderer, SurfaceOpacity, Tile, View,
 };
 
 /// Rounding allowed to a sum of weights over a pixel.
@@ -26,13 +26,13 @@ pub struct Soup {
     /// Surface of each triangle.
     pub surface_of: Vec<u32>,
     /// The surfaces.
-    pub surfaces: Vec<Surface>,
+    pub surfaces: Vec<SurfaceOpacity>,
 }
 
 impl Soup {
     /// Adds a two-sided surface.
     pub fn surface(&mut self, opacity: f32) -> u32 {
-        self.surfaces.push(Surface { opacity, ..Surface::default() });
+        self.surfaces.push(SurfaceOpacity { opacity, ..SurfaceOpacity::default() });
         self.surfaces.len() as u32 - 1
     }
 

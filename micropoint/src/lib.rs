@@ -11,7 +11,7 @@
 //!
 //! // A triangle that covers half of the first pixel of a 2×1 picture.
 //! let corners = [DVec3::new(-1.0, 0.5, 0.0), DVec3::new(0.0, -0.5, 0.0), DVec3::new(0.0, 0.5, 0.0)];
-//! let geometry = Geometry::new(&corners, &[[0, 1, 2]], &[0], &[Surface::default()])?;
+//! let geometry = Geometry::new(&corners, &[[0, 1, 2]], &[0], &[SurfaceOpacity::default()])?;
 //! let camera = Projection::Orthographic { height: 1.0 };
 //! let view = View::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, camera, 2, 1)?;
 //! let renderer = Renderer::new(&geometry, &PlainOpacity, view, MicropointOptions::default())?;
@@ -64,7 +64,7 @@ pub use dicer::TileCounts;
 pub use error::MicropointError;
 pub use face::{Face, GridRect, PlainOpacity, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity};
 pub use front::{Front, Layer, in_front};
-pub use geometry::{ClusterTriangle, Geometry, HiddenSides, Surface};
+pub use geometry::{ClusterTriangle, Geometry, HiddenSides, SurfaceOpacity};
 pub use interval::Interval;
 pub use lens::{BoxImage, Lens, LensKind, Plane};
 pub use pointillist_view::{PixelRect, Projection, View, ViewError};

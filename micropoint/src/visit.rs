@@ -2,7 +2,7 @@
 
 use crate::bounds::Bounds;
 use crate::face::{Face, GridRect, ProjectedVertex, Setup, set_up_face};
-use crate::geometry::{ClusterQueue, ClusterTriangle, Geometry, Surface};
+use crate::geometry::{ClusterQueue, ClusterTriangle, Geometry, SurfaceOpacity};
 use crate::volume::ViewVolume;
 use glam::DVec2;
 
@@ -12,7 +12,7 @@ pub trait FaceVisitor {
     fn wants(&self, bounds: &Bounds) -> bool;
 
     /// Whether a triangle with these corners and this surface can be left out before it is set up: the cheapest and commonest test.
-    fn skips(&self, corners: [&ProjectedVertex; 3], surface: &Surface) -> bool;
+    fn skips(&self, corners: [&ProjectedVertex; 3], surface: &SurfaceOpacity) -> bool;
 
     /// Takes a face. `outline` is convex, in grid coordinates, in positive order; `opacity` is that of its surface, or `None` if it is textured.
     fn visit(&mut self, face: Face, outline: &[DVec2], opacity: Option<f32>);

@@ -3,8 +3,8 @@
 use glam::{DAffine3, DMat3, DVec2, DVec3, dvec2};
 use pointillist_micropoint::{
     Bounds, Face, FaceVisitor, Geometry, GridRect, HiddenSides, Lens, MicropointError, MicropointOptions,
-    Occlusion, PixelRect, PlainOpacity, ProjectedVertex, Projection, Renderer, Setup, Surface, TexelCorner,
-    TexelSums, TexelWrap, Tile, View, VisitMemory,
+    Occlusion, PixelRect, PlainOpacity, ProjectedVertex, Projection, Renderer, Setup, SurfaceOpacity,
+    TexelCorner, TexelSums, TexelWrap, Tile, View, VisitMemory,
 };
 use proptest::prelude::*;
 use testkit::numbers::{finite, number, vector};
@@ -29,7 +29,7 @@ proptest! {
         positions in prop::collection::vec(vector(number), 0..6), triangles in prop::collection::vec([0..8u32, 0..8, 0..8], 0..6),
         surface_of in prop::collection::vec(0..3u32, 0..6), opacities in prop::collection::vec(opacity(), 0..3),
     ) {
-        let surfaces: Vec<_> = opacities.iter().map(|&opacity| Surface { opacity, ..Surface::default() }).collect();
+        let surfaces: Vec<_> = opacities.iter().map(|&opacity| SurfaceOpacity { opacity, ..SurfaceOpacity::default() }).collect();
         let result = Geometry::new(&positions, &triangles, &surface_of, &surfaces);
         let bad_number = positions.iter().any(|p| !p.is_finite());
         let bad_index = triangles.iter().flatten().any(|&v| v as usize >= positions.len());
@@ -53,7 +53,7 @@ proptest! {
         projection in projection(), w in 0..6u32, h in 0..6u32, cells in 0..5u32, paper: bool, rect in [0..9u32, 0..9, 0..9, 0..9],
     ) {
         let triangles: Vec<_> = indices.iter().map(|t| t.map(|v| v as u32)).collect();
-        let surfaces: Vec<_> = opacities.iter().map(|&o| Surface { opacity: o.clamp(0.0, 1.0), textured_opacity: textured, two_sided: o > 0.2 }).collect();
+        let surfaces: Vec<_> = opacities.iter().map(|&o| SurfaceOpacity { opacity: o.clamp(0.0, 1.0), textured_opacity: textured, two_sided: o > 0.2 }).collect();
         prop_assume!(opacities.iter().all(|o| !o.is_nan()));
         let surface_of: Vec<u32> = (0..triangles.len() as u32).collect();
         let Ok(geometry) = Geometry::new(&positions, &triangles, &surface_of, &surfaces) else { return Ok(()) };
@@ -116,7 +116,7 @@ proptest! {
         let Ok(view) = View::look_at(eye, target, DVec3::Y, projection, 4, 4) else { return Ok(()) };
         let lens = Lens::of_view(&view, 1);
         let rect = GridRect { low: dvec2(rect[0], rect[1]), high: dvec2(rect[2], rect[3]) };
-        let Ok(geometry) = Geometry::new(&v, &[[0, 1, 2]], &[0], &[Surface::default()]) else { return Ok(()) };
+        let Ok(geometry) = Geometry::new(&v, &[[0, 1, 2]], &[0], &[SurfaceOpacity::default()]) else { return Ok(()) };
         let _ = geometry.hidden_sides(&lens);
         let picture = GridRect { low: DVec2::ZERO, high: DVec2::splat(4.0) };
         let setup = Setup { lens: &lens, rect: &picture, hidden: &HiddenSides::default(), keeps_backs: true };
@@ -141,7 +141,7 @@ impl FaceVisitor for Faces {
         true
     }
 
-    fn skips(&self, _: [&ProjectedVertex; 3], _: &Surface) -> bool {
+    fn skips(&self, _: [&ProjectedVertex; 3], _: &SurfaceOpacity) -> bool {
         false
     }
 

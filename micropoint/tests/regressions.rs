@@ -5,8 +5,8 @@ use pointillist_micropoint::invariants::{
     Soup, nothing_shows_through, picture, shares, shares_agree, shares_by_arrangement, weights_are_shares,
 };
 use pointillist_micropoint::{
-    Geometry, MicropointError, MicropointOptions, PixelRect, PlainOpacity, Projection, Renderer, Surface,
-    TexelCorner, TexelSums, TexelWrap, Tile, View, ViewError,
+    Geometry, MicropointError, MicropointOptions, PixelRect, PlainOpacity, Projection, Renderer,
+    SurfaceOpacity, TexelCorner, TexelSums, TexelWrap, Tile, View, ViewError,
 };
 
 const EXACT: MicropointOptions = MicropointOptions::DEFAULT;
@@ -44,7 +44,7 @@ fn a_closed_mesh_does_not_leak_where_cuts_run_through_vertices() {
 #[test]
 fn a_rectangle_without_pixels_sees_nothing() {
     let corners = [dvec3(-9.0, -9.0, 0.0), dvec3(9.0, -9.0, 0.0), dvec3(0.0, 9.0, 0.0)];
-    let geometry = Geometry::new(&corners, &[[0, 1, 2]], &[0], &[Surface::default()]).unwrap();
+    let geometry = Geometry::new(&corners, &[[0, 1, 2]], &[0], &[SurfaceOpacity::default()]).unwrap();
     let view = View::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, Projection::Orthographic { height: 4.0 }, 4, 4)
         .unwrap();
     let renderer = Renderer::new(&geometry, &PlainOpacity, view, EXACT).unwrap();

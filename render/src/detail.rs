@@ -2,7 +2,7 @@
 
 use crate::detail_maps::{DetailMaps, DetailMeans};
 use crate::scene::{BumpHeight, Details};
-use crate::shader::{Shader, Surface};
+use crate::shader::{ShadedSurface, Shader};
 use glam::Vec3;
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::SurfacePoint;
@@ -17,7 +17,7 @@ impl Shader<'_> {
         &self,
         details: &Details,
         maps: &DetailMaps,
-        surface: &mut Surface,
+        surface: &mut ShadedSurface,
         outlines: impl FnMut(&mut dyn FnMut(&[SurfacePoint], f32)),
     ) -> f32 {
         let means = if maps.any() {
@@ -40,7 +40,7 @@ impl Shader<'_> {
         1.0 + share * (means.occlusion - 1.0)
     }
 
-    fn tilt(&self, details: &Details, means: &DetailMeans, s: &mut Surface) {
+    fn tilt(&self, details: &Details, means: &DetailMeans, s: &mut ShadedSurface) {
         if details.bump.is_none() && details.normal.is_none() {
             return;
         }
@@ -68,7 +68,7 @@ impl Shader<'_> {
     pub(crate) fn surrounding_light(
         &self,
         details: &Details,
-        surface: &Surface,
+        surface: &ShadedSurface,
         occlusion: f32,
         hint: &mut Hint,
     ) -> Vec3 {
@@ -90,7 +90,7 @@ impl Shader<'_> {
     }
 
     /// What comes from a direction. Without a map of the surroundings, ambient light stands for it.
-    fn seen_towards(&self, details: &Details, s: &Surface, direction: Vec3, hint: &mut Hint) -> Vec3 {
+    fn seen_towards(&self, details: &Details, s: &ShadedSurface, direction: Vec3, hint: &mut Hint) -> Vec3 {
         match self.reflections.of(self.scene, details, s.triangle) {
             Some(map) => map.radiance(direction, s.material.roughness),
             None => self.ambient.at(&s.spot(direction), hint),
@@ -99,7 +99,7 @@ impl Shader<'_> {
 }
 
 /// The share of even light that a GGX surface mirrors to the eye.
-fn coat(material: &Material, s: &Surface) -> Vec3 {
+fn coat(material: &Material, s: &ShadedSurface) -> Vec3 {
     if material.specular == Vec3::ZERO {
         return Vec3::ZERO;
     }
@@ -107,7 +107,7 @@ fn coat(material: &Material, s: &Surface) -> Vec3 {
 }
 
 /// Where the eye looks on from a surface: mirrored, and through it.
-fn looks(details: &Details, s: &Surface, coat: Vec3) -> Looks {
+fn looks(details: &Details, s: &ShadedSurface, coat: Vec3) -> Looks {
     let is_ggx = s.material.model == Model::Ggx;
     let mirrored = above(mirror(s.to_eye, s.normal), s.face_normal);
     let tint = details.reflection;

@@ -3,7 +3,7 @@
 
 use crate::scene::{AmbientLight, Details, Material, Mesh, Scene, SkyLight, Texels, Texture};
 use glam::{DVec2, DVec3, Vec3};
-use pointillist_shade::{Falloff, Light, Material as Surface};
+use pointillist_shade::{Falloff, Light, Material as ShadeMaterial};
 use pointillist_shadow::Resolution;
 use pointillist_view::Projection;
 use std::hash::Hasher as _;
@@ -140,7 +140,7 @@ impl Fingerprint {
     }
 
     fn material(&mut self, material: &Material) {
-        let Surface { model, diffuse, specular, shininess, roughness, emission, opacity, .. } =
+        let ShadeMaterial { model, diffuse, specular, shininess, roughness, emission, opacity, .. } =
             material.surface;
         self.text(&format!("{model:?} {:?}", material.wrap));
         [diffuse, specular, emission, Vec3::new(shininess, opacity, roughness)]
@@ -198,10 +198,10 @@ impl Fingerprint {
 mod tests {
     use super::*;
 
-    /// `Surface` can gain fields without an error here: the fingerprint must then take them in.
+    /// `ShadeMaterial` can gain fields without an error here: the fingerprint must then take them in.
     #[test]
     fn every_field_of_a_surface_is_in_the_fingerprint() {
-        let text = format!("{:?}", Surface::default());
+        let text = format!("{:?}", ShadeMaterial::default());
         assert_eq!(text.matches(": ").count(), 7, "{text}");
     }
 }

@@ -1,7 +1,7 @@
 //! Everything about a micropoint that does not depend on lights: place, normals, material, ambient light.
 
 use crate::ambient::Spot;
-use crate::shader::{Point, Shader, Surface};
+use crate::shader::{Point, ShadedSurface, Shader};
 use glam::Vec3;
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::{Face, Fragment, LensKind, Micropoint, SurfacePoint, Tile};
@@ -38,12 +38,12 @@ impl Shader<'_> {
         let normal = self.shading_normal(face, barycentric, face_normal, to_eye);
         if let Some(maps) = self.surfaces.details(face.id) {
             let (triangle, front) = (face.id, face.front);
-            let mut s = Surface { triangle, front, position, to_eye, face_normal, normal, material };
+            let mut s = ShadedSurface { triangle, front, position, to_eye, face_normal, normal, material };
             let occlusion = self.apply_maps(&described.details, maps, &mut s, |each| {
                 self.for_outlines(tile, m, face, polygon, each);
             });
             let indirect = self.surrounding_light(&described.details, &s, occlusion, hint);
-            let Surface { normal, material, .. } = s;
+            let ShadedSurface { normal, material, .. } = s;
             return Point {
                 position,
                 barycentric,

@@ -65,7 +65,7 @@ pub(crate) struct Point {
 
 /// A point of a surface before light is added.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Surface {
+pub(crate) struct ShadedSurface {
     pub(crate) triangle: u32,
     /// Whether its front is seen.
     pub(crate) front: bool,
@@ -76,7 +76,7 @@ pub(crate) struct Surface {
     pub(crate) material: Material,
 }
 
-impl Surface {
+impl ShadedSurface {
     /// Where ambient light is asked for, from around a direction.
     pub(crate) fn spot(&self, normal: Vec3) -> Spot {
         let Self { position, triangle, front, face_normal, .. } = *self;

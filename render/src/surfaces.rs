@@ -6,7 +6,7 @@ use crate::scene::{Details, Material, Scene, Texture};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec3, Vec4};
 use pointillist_micropoint::{
-    Geometry, MicropointError, Surface, SurfacePoint, TexelSums, TexelWrap, TexturedOpacity,
+    Geometry, MicropointError, SurfaceOpacity, SurfacePoint, TexelSums, TexelWrap, TexturedOpacity,
 };
 use pointillist_parallel as parallel;
 use pointillist_shade::Model;
@@ -77,7 +77,7 @@ pub(crate) struct Surfaces {
     textures: Vec<Arc<Textured>>,
     uvs: Uvs,
     surface_of: Vec<u32>,
-    surfaces: Vec<Surface>,
+    surfaces: Vec<SurfaceOpacity>,
     material_of: Vec<u32>,
     /// For each material; `None` for one of colour and opacity alone.
     details: Vec<Option<DetailMaps>>,
@@ -184,13 +184,13 @@ impl TexturedOpacity for Surfaces {
 }
 
 /// A surface for each material and each kind of object.
-fn surfaces_by_material(scene: &Scene, textures: &[Arc<Textured>]) -> (Vec<Surface>, Vec<u32>) {
+fn surfaces_by_material(scene: &Scene, textures: &[Arc<Textured>]) -> (Vec<SurfaceOpacity>, Vec<u32>) {
     let mut surfaces = Vec::with_capacity(2 * scene.materials.len());
     for (m, t) in scene.materials.iter().zip(textures) {
         let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::Masked(_));
         let opacity = m.surface.opacity;
-        surfaces.push(Surface { opacity, textured_opacity, two_sided: true });
-        surfaces.push(Surface { opacity, textured_opacity, two_sided: false });
+        surfaces.push(SurfaceOpacity { opacity, textured_opacity, two_sided: true });
+        surfaces.push(SurfaceOpacity { opacity, textured_opacity, two_sided: false });
     }
     let mesh = &scene.mesh;
     let two_sided = |t: usize, m: u32| {

@@ -4,7 +4,7 @@
 
 use glam::{DVec3, dvec3};
 use pointillist_micropoint::{
-    Geometry, MicropointOptions, PlainOpacity, Projection, Renderer, Surface, Tile, View,
+    Geometry, MicropointOptions, PlainOpacity, Projection, Renderer, SurfaceOpacity, Tile, View,
 };
 use pointillist_shadow::{Emitter, Receivers, ShadowLight, ShadowOptions, ShadowScratch, Viewer};
 
@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let corners = [square(10.0, 0.0), square(0.5, 1.0)].concat();
     let triangles = [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
-    let geometry = Geometry::new(&corners, &triangles, &[0; 4], &[Surface::default()])?;
+    let geometry = Geometry::new(&corners, &triangles, &[0; 4], &[SurfaceOpacity::default()])?;
 
     // The viewer looks down from below the square: 4 × 4 units of ground, 8 × 8 pixels.
     let camera = Projection::Orthographic { height: 4.0 };

@@ -15,7 +15,7 @@ use glam::{DVec2, DVec3};
 use pointillist_dice::{ConvexPolygon, clip_ring, share_before_crossing};
 use pointillist_micropoint::{
     Bounds, Face, FaceVisitor, Geometry, GridRect, Interval, Lens, LensKind, Occlusion, ProjectedVertex,
-    Setup, Surface, TexturedOpacity,
+    Setup, SurfaceOpacity, TexturedOpacity,
 };
 
 /// A light with its screens, ready to be asked from any thread.
@@ -273,7 +273,7 @@ impl FaceVisitor for Linker<'_> {
     }
 
     #[inline]
-    fn skips(&self, corners: [&ProjectedVertex; 3], surface: &Surface) -> bool {
+    fn skips(&self, corners: [&ProjectedVertex; 3], surface: &SurfaceOpacity) -> bool {
         surface.opacity <= 0.0 || self.grid.is_missed_by(corners)
     }
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, dvec3};
 use pointillist_micropoint::{
-    Geometry, MicropointOptions, Occlusion, PlainOpacity, Projection, Renderer, Surface, Tile, View,
+    Geometry, MicropointOptions, Occlusion, PlainOpacity, Projection, Renderer, SurfaceOpacity, Tile, View,
 };
 use pointillist_shadow::{
     Emitter, Receivers, Resolution, ShadowError, ShadowLight, ShadowOptions, ShadowScratch, Viewer,
@@ -26,7 +26,7 @@ proptest! {
     ) {
         let positions: Vec<_> = triangles.iter().flat_map(|(c, _)| *c).collect();
         let indices: Vec<_> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let surfaces: Vec<_> = triangles.iter().map(|t| Surface { opacity: t.1, ..Surface::default() }).collect();
+        let surfaces: Vec<_> = triangles.iter().map(|t| SurfaceOpacity { opacity: t.1, ..SurfaceOpacity::default() }).collect();
         let surface_of: Vec<_> = (0..triangles.len() as u32).collect();
         let geometry = Geometry::new(&positions, &indices, &surface_of, &surfaces).unwrap();
         let view = View::look_at(dvec3(0.1, 0.2, 3.0), DVec3::ZERO, DVec3::Y, Projection::Perspective { fov_y_rad: 1.0 }, 3, 3).unwrap();

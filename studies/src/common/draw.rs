@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use pointillist_micropoint::{
-    Geometry, MicropointError, MicropointOptions, PlainOpacity, Renderer, Surface, Tile, View, ViewError,
+    Geometry, MicropointError, MicropointOptions, PlainOpacity, Renderer, SurfaceOpacity, Tile, View,
+    ViewError,
 };
 use pointillist_render::Scene;
 use pointillist_render::{DrawOptions, RenderError, render};
@@ -20,7 +21,7 @@ pub(crate) fn with_pipeline(scene: &Scene) -> Result<Picture, RenderError> {
 
 /// The geometry of a scene without textures.
 pub(crate) fn geometry(scene: &Scene) -> Result<Geometry, MicropointError> {
-    let surface = |m: &pointillist_render::Material| Surface {
+    let surface = |m: &pointillist_render::Material| SurfaceOpacity {
         opacity: m.surface.opacity,
         textured_opacity: false,
         two_sided: true,

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3, Vec3, dvec2, dvec3};
 use pointillist_cli::scene::{Format, Overrides, load, parse_str};
 use pointillist_dice::{Accumulator, Grid, accumulate};
 use pointillist_micropoint::{
-    Geometry, MicropointOptions, PlainOpacity, Surface, TexelCorner, TexelSums, TexelWrap,
+    Geometry, MicropointOptions, PlainOpacity, SurfaceOpacity, TexelCorner, TexelSums, TexelWrap,
 };
 use pointillist_render::{Projection, Scene};
 use pointillist_shade::{Falloff, Light};
@@ -358,7 +358,7 @@ fn not_finite(rows: &mut Vec<Check>) {
     for (name, value) in [("NaN", f64::NAN), ("∞", f64::INFINITY)] {
         row(rows, format!("a position that is {name}"), "a typed error", move || {
             let corners = [DVec3::ZERO, DVec3::X, dvec3(0.0, value, 0.0)];
-            Verdict::refused(Geometry::new(&corners, &[[0, 1, 2]], &[0], &[Surface::default()]))
+            Verdict::refused(Geometry::new(&corners, &[[0, 1, 2]], &[0], &[SurfaceOpacity::default()]))
         });
         row(rows, format!("an eye that is {name}"), "a typed error", move || {
             let mut scene = scenes::quads(16);
@@ -390,7 +390,7 @@ fn not_finite(rows: &mut Vec<Check>) {
             Verdict::refused(TexelSums::<1>::new(4, 4, TexelWrap::Repeat, texel))
         });
         row(rows, format!("an opacity that is {name}"), "a typed error", move || {
-            let surface = Surface { opacity: value as f32, ..Surface::default() };
+            let surface = SurfaceOpacity { opacity: value as f32, ..SurfaceOpacity::default() };
             let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
             Verdict::refused(Geometry::new(&corners, &[[0, 1, 2]], &[0], &[surface]))
         });
