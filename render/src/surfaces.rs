@@ -11,7 +11,7 @@ use pointillist_micropoint::{
 use pointillist_parallel as parallel;
 use pointillist_shade::Model;
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// What a material looks up in textures. Colour is summed up as colour × opacity, so that the empty
@@ -81,6 +81,8 @@ pub(crate) struct Surfaces {
     material_of: Vec<u32>,
     /// For each material; `None` for one of colour and opacity alone.
     details: Vec<Option<DetailMaps>>,
+    /// Masked triangles that coincide with an earlier one.
+    copies: Vec<MaskedCopy>,
     /// By the triangles that stand for both sides of a masked card.
     other_sides: HashMap<u32, OtherSide>,
 }
@@ -95,19 +97,13 @@ impl Surfaces {
         let any_texture = any_detail || textures.iter().any(|t| !matches!(**t, Textured::Nothing));
         let uvs = if any_texture { Uvs::new(&scene.mesh) } else { Uvs::default() };
         let material_of = scene.mesh.material_of.clone();
-        let mut all =
-            Self { textures, uvs, surface_of, surfaces, material_of, details, other_sides: HashMap::new() };
-        all.other_sides = other_sides(&scene.mesh, &all.copies(scene, |_| true));
-        Ok(all)
-    }
-
-    /// The masked triangles among those that are shown that coincide with an earlier one.
-    fn copies(&self, scene: &Scene, shown: impl Fn(usize) -> bool) -> Vec<MaskedCopy> {
         let masked = |t: usize| {
-            let surface = &self.surfaces[self.surface_of[t] as usize];
-            (surface.textured_opacity && surface.two_sided && shown(t)).then_some(self.surface_of[t])
+            let surface = &surfaces[surface_of[t] as usize];
+            (surface.textured_opacity && surface.two_sided).then_some(surface_of[t])
         };
-        masked_copies(&scene.mesh, &self.uvs, masked)
+        let copies = masked_copies(&scene.mesh, &uvs, masked);
+        let other_sides = other_sides(&scene.mesh, &copies);
+        Ok(Self { textures, uvs, surface_of, surfaces, material_of, details, copies, other_sides })
     }
 
     /// The triangle in the place of this one that is turned the other way, if it is a card of two sides.
@@ -124,13 +120,22 @@ impl Surfaces {
         self.geometry_of(scene, |t| scene.mesh.object_of[t] != object)
     }
 
-    /// The triangles that are shown, less copies of masked ones ([`masked_copies`]).
+    /// Of masked triangles that coincide, all but the first that is shown.
+    fn hidden_copies(&self, shown: impl Fn(usize) -> bool) -> impl Iterator<Item = u32> {
+        let mut standing = HashSet::new();
+        let hides = move |copy: &&MaskedCopy| {
+            shown(copy.triangle as usize)
+                && (shown(copy.original as usize) || !standing.insert(copy.original))
+        };
+        self.copies.iter().filter(hides).map(|copy| copy.triangle)
+    }
+
+    /// The triangles that are shown, less copies of masked ones.
     fn geometry_of(&self, scene: &Scene, shown: impl Fn(usize) -> bool) -> Result<Geometry, MicropointError> {
         let mesh = &scene.mesh;
         let mut triangles = Cow::Borrowed(&mesh.triangles);
         let hidden = (0..triangles.len()).filter(|&t| !shown(t)).map(|t| t as u32);
-        let copies = self.copies(scene, &shown);
-        for t in hidden.chain(copies.iter().map(|copy| copy.triangle)) {
+        for t in hidden.chain(self.hidden_copies(&shown)) {
             // A triangle without area is never seen, and the others keep their numbers.
             let triangle = &mut triangles.to_mut()[t as usize];
             *triangle = [triangle[0]; 3];
