@@ -1,4 +1,4 @@
-//! Triangles, lights and views of any kind: lit fractions are fractions, and tiles do not matter.
+//! Triangles, lights and views of any kind: lit fractions are fractions, tiles do not matter, and lit regions are what is lit.
 #![no_main]
 
 mod steps;
@@ -40,7 +40,8 @@ fuzz_target!(|input: Input| {
         return;
     }
     let facts = invariants::fractions_are_fractions(&soup, view, emitter, options)
-        .and_then(|()| invariants::tiles_do_not_matter(&soup, view, emitter, options));
+        .and_then(|()| invariants::tiles_do_not_matter(&soup, view, emitter, options))
+        .and_then(|()| invariants::lit_regions_make_up_the_fraction(&soup, view, emitter, 1e-6));
     if let Err(broken) = facts {
         panic!("{broken}");
     }

@@ -1,10 +1,11 @@
 //! Light that comes straight from the lights, asked for only where it can matter.
 
 use crate::lights::LightSample;
+use crate::lit_parts::LitParts;
 use crate::monitor::Monitor;
 use crate::scene::MeasuredBrdf;
 use crate::shader::{Economy, Point, Shader};
-use glam::{DVec2, Vec3};
+use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Face, Fragment, Micropoint, Tile};
 use pointillist_shade::{Incident, Interpolation, interpolate_color, sees_light, turn_to};
 use pointillist_shadow::{Receivers, ShadowScratch, Viewer};
@@ -13,18 +14,19 @@ use std::ops::Range;
 /// Light that would reach a micropoint if nothing stood in its way, and the part of it that does.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrival {
-    point: u32,
-    radiance: Vec3,
-    fraction: f64,
+    pub(crate) point: u32,
+    pub(crate) radiance: Vec3,
+    pub(crate) fraction: f64,
 }
 
 /// Memory for shadows.
 #[derive(Default)]
 pub(crate) struct DirectScratch {
     pub(crate) shadow: ShadowScratch,
-    receivers: Receivers,
-    lit: Vec<f64>,
-    arrivals: Vec<Arrival>,
+    pub(crate) receivers: Receivers,
+    pub(crate) lit: Vec<f64>,
+    pub(crate) arrivals: Vec<Arrival>,
+    pub(crate) lit_parts: LitParts,
     /// Arrivals of a pixel that share the mean fraction of some receivers.
     shared: Vec<(Range<usize>, Range<usize>)>,
     /// Fragments of one pixel: its micropoint and what it counts.
@@ -53,13 +55,13 @@ impl Shader<'_> {
         if let Some(screens) = &light.shadow {
             direct.receivers.clear();
             match self.economy {
-                None => ask_for_all(tile, &direct.arrivals, &mut direct.receivers),
+                None => self.ask_for_all(tile, direct),
                 Some(economy) => ask_for_some(tile, self.shadows_per_pixel(economy, light), direct),
             }
             let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
             screens.lit(viewer, &direct.receivers, &mut direct.shadow, &mut direct.lit);
             match self.economy {
-                None => all_fractions(tile, &mut direct.arrivals, &direct.lit),
+                None => self.take_all(tile, light, points, direct),
                 Some(_) => shared_fractions(direct),
             }
             monitor.lap("shadow");
@@ -70,9 +72,9 @@ impl Shader<'_> {
             p.direct += a.radiance * a.fraction as f32;
             if let Some(layer) = lit_layer.as_deref_mut() {
                 let to_light =
-                    self.scene.lights[light.light].light.illuminate(light.sample, p.position).to_light;
+                    self.scene.lights[light.light].light.illuminate(light.sample, p.place.position).to_light;
                 layer[a.point as usize] +=
-                    if sees_light(p.face_normal, to_light) { a.fraction / samples } else { 0.0 };
+                    if sees_light(p.place.face_normal, to_light) { a.fraction / samples } else { 0.0 };
             }
         }
     }
@@ -84,14 +86,14 @@ impl Shader<'_> {
     }
 
     /// Radiance that a micropoint sends to the eye because of a light, without shadow.
-    fn arriving(&self, light: &LightSample<'_>, p: &Point, face: &Face) -> Vec3 {
+    pub(crate) fn arriving(&self, light: &LightSample<'_>, p: &Point, face: &Face) -> Vec3 {
         let source = &self.scene.lights[light.light].light;
         let black = p.material.diffuse == Vec3::ZERO && p.material.specular == Vec3::ZERO;
         if black && self.measured(face.id).is_none() {
             return Vec3::ZERO;
         }
-        let incident = source.illuminate(light.sample, p.position);
-        if incident.is_dark() || !sees_light(p.face_normal, incident.to_light) {
+        let incident = source.illuminate(light.sample, p.place.position);
+        if incident.is_dark() || !sees_light(p.place.face_normal, incident.to_light) {
             return Vec3::ZERO;
         }
         if self.scene.render.shading == Interpolation::Gouraud
@@ -101,11 +103,11 @@ impl Shader<'_> {
             let at = |k: usize| {
                 let to_eye = (self.eye - corners[k]).normalize_or_zero().as_vec3();
                 let incident = source.illuminate(light.sample, corners[k]);
-                self.reflect(p, face.id, &incident, turn_to(normals[k], p.face_normal), to_eye)
+                self.reflect(p, face.id, &incident, turn_to(normals[k], p.place.face_normal), to_eye)
             };
-            return interpolate_color([at(0), at(1), at(2)], p.barycentric);
+            return interpolate_color([at(0), at(1), at(2)], p.place.barycentric);
         }
-        self.reflect(p, face.id, &incident, p.normal, p.to_eye)
+        self.reflect(p, face.id, &incident, p.normal, p.place.to_eye)
     }
 
     /// By the material's formula, or as measured.
@@ -123,32 +125,14 @@ impl Shader<'_> {
     }
 }
 
-/// Every fragment of every arrival.
-fn ask_for_all(tile: &Tile, arrivals: &[Arrival], receivers: &mut Receivers) {
-    for a in arrivals {
-        let m = &tile.points()[a.point as usize];
-        tile.fragments(m).iter().for_each(|f| receive(tile, m, f, receivers));
-    }
-}
-
-fn receive(tile: &Tile, m: &Micropoint, fragment: &Fragment, receivers: &mut Receivers) {
+/// Corners of a fragment relative to the eye, in world axes.
+pub(crate) fn corners<'t>(
+    tile: &'t Tile,
+    m: &Micropoint,
+    fragment: &Fragment,
+) -> impl Iterator<Item = DVec3> + use<'t> {
     let face = &tile.faces()[m.face as usize];
-    let corner = |&v: &DVec2| tile.position(v, face.nearness_at(v));
-    receivers.push(m.face, tile.outline(fragment).iter().map(corner));
-}
-
-/// What [`ask_for_all`] asked for, as the mean over each micropoint.
-fn all_fractions(tile: &Tile, arrivals: &mut [Arrival], lit: &[f64]) {
-    let mut next = 0;
-    for a in arrivals {
-        let fragments = tile.fragments(&tile.points()[a.point as usize]);
-        let reached: f64 = fragments.iter().zip(&lit[next..]).map(|(f, l)| f.weight * l).sum();
-        next += fragments.len();
-        // Without a division where it would cost the last bit of a plain 0 or 1.
-        let single = fragments.len() == 1;
-        a.fraction =
-            if single { lit[next - 1] } else { reached / fragments.iter().map(|f| f.weight).sum::<f64>() };
-    }
+    tile.outline(fragment).iter().map(|&v| tile.position(v, face.nearness_at(v)))
 }
 
 /// At most `count` fragments of each pixel, taken at even steps of what they would send to the eye: their mean
@@ -173,7 +157,8 @@ fn ask_for_some(tile: &Tile, count: usize, scratch: &mut DirectScratch) {
         for (point, fragment, weight) in candidates.iter() {
             sum += weight;
             while taken < count && sum * count as f64 > (taken as f64 + 0.5) * total {
-                receive(tile, &tile.points()[*point as usize], fragment, receivers);
+                let m = &tile.points()[*point as usize];
+                receivers.push(m.face, corners(tile, m, fragment));
                 taken += 1;
             }
         }

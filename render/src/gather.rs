@@ -38,7 +38,7 @@ impl Shader<'_> {
             });
             pixels.color.push(color);
         }
-        let depth = |i: usize| (points[i].position - self.eye).dot(self.forward) as f32;
+        let depth = |i: usize| (points[i].place.position - self.eye).dot(self.forward) as f32;
         pixels.depth.clear();
         pixels.depth.extend(heaviest(tile).into_iter().map(|i| i.map_or(f32::INFINITY, depth)));
     }
@@ -89,7 +89,7 @@ impl Shader<'_> {
     fn geometry_value(&self, layer: LayerKind, tile: &Tile, p: &Point, m: &Micropoint) -> Vec3 {
         match layer {
             LayerKind::Normal => p.normal,
-            LayerKind::Position => p.position.as_vec3(),
+            LayerKind::Position => p.place.position.as_vec3(),
             _ => {
                 let triangle = tile.faces()[m.face as usize].id as usize;
                 Vec3::splat(self.scene.mesh.object_of[triangle] as f32 + 1.0)

@@ -77,6 +77,7 @@ pub mod invariants;
 mod lamps;
 mod lightmap;
 mod lights;
+mod lit_parts;
 mod look;
 mod mirrors;
 mod monitor;

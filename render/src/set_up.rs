@@ -1,7 +1,7 @@
 //! Everything about a micropoint that does not depend on lights: place, normals, material, ambient light.
 
-use crate::ambient::Spot;
-use crate::shader::{Point, ShadedSurface, Shader};
+use crate::scene;
+use crate::shader::{Place, Point, ShadedSurface, Shader};
 use glam::Vec3;
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::{Face, Fragment, LensKind, Micropoint, SurfacePoint, Tile};
@@ -26,43 +26,49 @@ impl Shader<'_> {
         let normal = face_normal(corners[0], corners[1], corners[2]);
         let face_normal = if face.front { normal } else { -normal }.as_vec3();
         let (barycentric, to_eye) = (at.barycentric.as_vec3(), to_eye.as_vec3());
-        let described = &self.scene.materials[self.scene.mesh.material_of[face.id as usize] as usize];
-        let mut material = self.textured(tile, m, face, described.surface, polygon);
+        let place = Place { position: self.eye + relative, barycentric, to_eye, face_normal };
+        let outlines =
+            |each: &mut dyn FnMut(&[SurfacePoint], f32)| self.for_outlines(tile, m, face, polygon, each);
+        let (surface, occlusion) = self.surface(face, &place, outlines);
+        let indirect = if self.surfaces.details(face.id).is_some() {
+            self.surrounding_light(&self.described(face).details, &surface, occlusion, hint)
+        } else if surface.material.diffuse == Vec3::ZERO {
+            // What reflects nothing needs no light.
+            Vec3::ZERO
+        } else {
+            self.ambient.at(&surface.spot(surface.normal), hint) * surface.material.diffuse
+        };
+        Point { place, normal: surface.normal, material: surface.material, direct: Vec3::ZERO, indirect }
+    }
+
+    /// A place of a face with its maps averaged over `outlines`, each with its weight, and the share of ambient light that its maps leave.
+    pub(crate) fn surface(
+        &self,
+        face: &Face,
+        place: &Place,
+        mut outlines: impl FnMut(&mut dyn FnMut(&[SurfacePoint], f32)),
+    ) -> (ShadedSurface, f32) {
+        let Place { position, barycentric, to_eye, face_normal } = *place;
+        let described = self.described(face);
+        let mut material = self.textured(face, described.surface, &mut outlines);
         if !self.scene.mesh.colors.is_empty() {
             material.diffuse *= self.vertex_color(face.id, barycentric);
         }
         if !self.emission {
             material.emission = Vec3::ZERO;
         }
-        let position = self.eye + relative;
         let normal = self.shading_normal(face, barycentric, face_normal, to_eye);
-        if let Some(maps) = self.surfaces.details(face.id) {
-            let (triangle, front) = (face.id, face.front);
-            let mut s = ShadedSurface { triangle, front, position, to_eye, face_normal, normal, material };
-            let occlusion = self.apply_maps(&described.details, maps, &mut s, |each| {
-                self.for_outlines(tile, m, face, polygon, each);
-            });
-            let indirect = self.surrounding_light(&described.details, &s, occlusion, hint);
-            let ShadedSurface { normal, material, .. } = s;
-            return Point {
-                position,
-                barycentric,
-                to_eye,
-                face_normal,
-                normal,
-                material,
-                direct: Vec3::ZERO,
-                indirect,
-            };
-        }
-        // What reflects nothing needs no light.
-        let indirect = if material.diffuse == Vec3::ZERO {
-            Vec3::ZERO
-        } else {
-            let spot = Spot { position, triangle: face.id, front: face.front, face_normal, normal };
-            self.ambient.at(&spot, hint) * material.diffuse
+        let (triangle, front) = (face.id, face.front);
+        let mut s = ShadedSurface { triangle, front, position, to_eye, face_normal, normal, material };
+        let occlusion = match self.surfaces.details(face.id) {
+            Some(maps) => self.apply_maps(&described.details, maps, &mut s, outlines),
+            None => 1.0,
         };
-        Point { position, barycentric, to_eye, face_normal, normal, material, direct: Vec3::ZERO, indirect }
+        (s, occlusion)
+    }
+
+    fn described(&self, face: &Face) -> &scene::Material {
+        &self.scene.materials[self.scene.mesh.material_of[face.id as usize] as usize]
     }
 
     fn shading_normal(&self, face: &Face, barycentric: Vec3, face_normal: Vec3, to_eye: Vec3) -> Vec3 {
@@ -74,20 +80,18 @@ impl Shader<'_> {
         }
     }
 
-    /// The material with its albedo averaged over what is seen of the micropoint.
+    /// The material with its albedo averaged over the outlines.
     fn textured(
         &self,
-        tile: &Tile,
-        m: &Micropoint,
         face: &Face,
         material: Material,
-        polygon: &mut Vec<SurfacePoint>,
+        outlines: &mut impl FnMut(&mut dyn FnMut(&[SurfacePoint], f32)),
     ) -> Material {
         if !self.surfaces.has_color(face.id) {
             return material;
         }
         let (mut sum, mut total) = (Vec3::ZERO, 0.0);
-        self.for_outlines(tile, m, face, polygon, &mut |polygon, weight| {
+        outlines(&mut |polygon, weight| {
             sum += self.surfaces.color(face.id, polygon) * weight;
             total += weight;
         });

@@ -46,15 +46,21 @@ pub(crate) struct Shader<'a> {
     pub(crate) forward: DVec3,
 }
 
-/// A micropoint while it is shaded.
+/// Where a micropoint is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Point {
+pub(crate) struct Place {
     /// World position.
     pub(crate) position: DVec3,
     pub(crate) barycentric: Vec3,
     pub(crate) to_eye: Vec3,
     /// Unit face normal, on the eye's side.
     pub(crate) face_normal: Vec3,
+}
+
+/// A micropoint while it is shaded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point {
+    pub(crate) place: Place,
     /// Unit normal to shade with.
     pub(crate) normal: Vec3,
     pub(crate) material: Material,

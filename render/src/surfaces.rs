@@ -162,6 +162,17 @@ impl Surfaces {
         matches!(self.textured(triangle), Textured::Color(_) | Textured::Masked(_))
     }
 
+    /// Whether the opacity of a triangle varies.
+    pub(crate) fn is_masked(&self, triangle: u32) -> bool {
+        matches!(self.textured(triangle), Textured::Opacity(_) | Textured::Masked(_))
+    }
+
+    /// Whether a triangle has any map.
+    pub(crate) fn varies(&self, triangle: u32) -> bool {
+        !matches!(self.textured(triangle), Textured::Nothing)
+            || self.details(triangle).is_some_and(DetailMaps::any)
+    }
+
     /// The factor on a triangle's diffuse albedo: the mean colour over a polygon of it, weighted by the mask's opacity if there is one.
     pub(crate) fn color(&self, triangle: u32, polygon: &[SurfacePoint]) -> Vec3 {
         match self.textured(triangle) {

@@ -1,6 +1,7 @@
 //! The correlated rule: the area of a receiver that is left when all casters in front of it are subtracted.
 
 use crate::casters::Caster;
+use crate::lit_regions::LitRegions;
 use crate::query::{Measure, Query};
 use crate::target::Target;
 use glam::DVec2;
@@ -23,18 +24,22 @@ pub(crate) struct Memory {
     pub(crate) partial: u64,
 }
 
-/// The lit fraction of a target, 0..=1.
+/// The lit fraction of a target, 0..=1; of one that is cut, the lit regions go to `regions`.
 pub(crate) fn lit_fraction(
     query: &Query<'_>,
     target: &Target,
     outline: &[DVec2],
     measure: &Measure<'_>,
     work: &mut Memory,
+    mut regions: Option<&mut LitRegions>,
 ) -> f64 {
     if !find_blockers(query, target, outline, measure.face, work) {
         return 0.0;
     }
     if work.blockers.is_empty() {
+        if let Some(regions) = regions.filter(|_| target.shared) {
+            regions.push(target.receiver, outline, measure.area(outline), measure);
+        }
         return 1.0;
     }
     // The result must not depend on the order in which casters were found.
@@ -49,7 +54,12 @@ pub(crate) fn lit_fraction(
     let whole = measure.area(outline);
     let mut lit = 0.0;
     for region in work.regions.list() {
-        lit += region.transmittance * measure.area(region.polygon.vertices());
+        let outline = region.polygon.vertices();
+        let weight = region.transmittance * measure.area(outline);
+        lit += weight;
+        if let Some(regions) = regions.as_deref_mut() {
+            regions.push(target.receiver, outline, weight, measure);
+        }
     }
     if whole > 0.0 { (lit / whole).min(1.0) } else { 0.0 }
 }

@@ -2,6 +2,7 @@
 //!
 //! Each takes any input at all. A scene, view or light that is refused satisfies every fact.
 
+use pointillist_dice::convex;
 use pointillist_micropoint::invariants::{Soup, permutation};
 use pointillist_micropoint::{Geometry, MicropointOptions, PixelRect, PlainOpacity, Renderer, Tile, View};
 
@@ -160,6 +161,48 @@ pub fn triangle_order_does_not_matter(
     let (Some(expected), Some(mut got)) = (expected, got) else { return Ok(()) };
     got.iter_mut().flatten().for_each(|p| p.triangle = order[p.triangle as usize]);
     are_identical(&expected, &got)
+}
+
+/// Behind opaque casters, the lit regions of a receiver make up its lit fraction of its area in the picture, to `tolerance` cells; a receiver
+/// without regions is wholly lit or wholly dark.
+///
+/// # Errors
+/// The first receiver for which that does not hold.
+pub fn lit_regions_make_up_the_fraction(
+    soup: &Soup,
+    view: View,
+    emitter: Emitter,
+    tolerance: f64,
+) -> Result<(), String> {
+    let mut soup = soup.clone();
+    soup.surfaces.iter_mut().for_each(|surface| surface.opacity = 1.0);
+    let result = with_light(&soup, view, emitter, ShadowOptions::DEFAULT, |_, renderer, light| {
+        let (mut tile, mut scratch, mut lit) = (Tile::default(), ShadowScratch::default(), vec![]);
+        renderer.render(renderer.picture(), &mut tile);
+        let (mut receivers, mut areas) = (Receivers::default(), vec![]);
+        for point in tile.points() {
+            let face = &tile.faces()[point.face as usize];
+            for fragment in tile.fragments(point) {
+                let outline = tile.outline(fragment);
+                let corner = |&v: &glam::DVec2| tile.position(v, face.nearness_at(v));
+                receivers.push_with_regions(point.face, outline.iter().map(corner));
+                areas.push(convex::area(outline));
+            }
+        }
+        light.lit(Viewer { lens: tile.lens(), faces: tile.faces() }, &receivers, &mut scratch, &mut lit);
+        for (i, (area, lit)) in areas.iter().zip(&lit).enumerate() {
+            let regions: Vec<f64> =
+                scratch.lit_regions(i as u32).map(|region| convex::area(region.outline).abs()).collect();
+            let sum: f64 = regions.iter().sum();
+            let holds = match regions.is_empty() {
+                true => *lit == 0.0 || *lit == 1.0,
+                false => (sum - lit * area).abs() <= tolerance,
+            };
+            check(holds, || format!("receiver {i}: {lit} of {area} in regions {regions:?}"))?;
+        }
+        Ok(())
+    });
+    result.unwrap_or(Ok(()))
 }
 
 /// Another caster takes light away or leaves it, in every pixel and on every surface that the viewer sees. The caster must

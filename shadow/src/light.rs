@@ -4,6 +4,7 @@ use crate::casters::{Caster, Casters, Nearby};
 use crate::cells::LightCells;
 use crate::error::ShadowError;
 use crate::grid::LightGrid;
+use crate::lit_regions::LitRegions;
 use crate::options::{Resolution, ShadowOptions};
 use crate::query::{Measure, Query};
 use crate::receiver::{Receivers, Viewer};
@@ -77,9 +78,10 @@ impl<'a> ShadowLight<'a> {
             if scratch.grid.sort(targets, screen, self.options.resolution, self.screens.size) {
                 scratch.counts.screens += 1;
                 self.collect_casters(screen, scratch);
-                self.resolve_groups(screen, viewer, scratch);
+                self.resolve_groups(screen, viewer, receivers, scratch);
             }
         }
+        scratch.lit_regions.sort();
         lit.clear();
         lit.extend(scratch.sums.iter().map(Sum::fraction));
     }
@@ -204,8 +206,16 @@ impl<'a> ShadowLight<'a> {
         }
     }
 
-    fn resolve_groups(&self, screen: usize, viewer: Viewer<'_>, scratch: &mut ShadowScratch) {
-        let ShadowScratch { grid, casters, nearby, targets, lit_faces, rules, counts, sums, .. } = scratch;
+    fn resolve_groups(
+        &self,
+        screen: usize,
+        viewer: Viewer<'_>,
+        receivers: &Receivers,
+        scratch: &mut ShadowScratch,
+    ) {
+        let ShadowScratch {
+            grid, casters, nearby, targets, lit_faces, rules, counts, sums, lit_regions, ..
+        } = scratch;
         for group in &grid.groups {
             casters.of_group(group, nearby);
             let settled = if group.dark { Some(0.0) } else { nearby.is_empty().then_some(1.0) };
@@ -223,9 +233,16 @@ impl<'a> ShadowLight<'a> {
                         let face = lit_faces.get(target.face, screen, make);
                         let measure = Measure { lens: query.lens, viewer: viewer.lens, face };
                         let outline = targets.outline(target);
-                        let rule = || self.lit_fraction(&query, target, outline, &measure, rules);
-                        let fraction = settled.unwrap_or_else(rule);
-                        (fraction, if target.shared { measure.area(outline) } else { 1.0 })
+                        let total = if target.shared { measure.area(outline) } else { 1.0 };
+                        let mut regions = self.wanted(receivers, target).then_some(&mut *lit_regions);
+                        if let (Some(regions), Some(1.0)) = (&mut regions, settled) {
+                            // What another screen sees of the same receiver may be dark.
+                            regions.push(target.receiver, outline, total, &measure);
+                        }
+                        let fraction = settled.unwrap_or_else(|| {
+                            self.lit_fraction(&query, target, outline, &measure, rules, regions)
+                        });
+                        (fraction, total)
                     }
                 };
                 let sum = &mut sums[target.receiver as usize];
@@ -234,6 +251,12 @@ impl<'a> ShadowLight<'a> {
             }
         }
         counts.partial += rules.take_partial();
+    }
+
+    /// Whether the lit regions of a target are asked for, and known.
+    fn wanted(&self, receivers: &Receivers, target: &Target) -> bool {
+        self.options.occlusion == Occlusion::Correlated
+            && receivers.list[target.receiver as usize].wants_regions
     }
 
     fn query<'q>(&'q self, screen: usize, casters: &'q [Caster], nearby: &'q [Nearby]) -> Query<'q> {
@@ -248,9 +271,10 @@ impl<'a> ShadowLight<'a> {
         outline: &[DVec2],
         measure: &Measure<'_>,
         rules: &mut RuleMemory,
+        regions: Option<&mut LitRegions>,
     ) -> f64 {
         match self.light_cells() {
-            None => exact::lit_fraction(query, target, outline, measure, &mut rules.exact),
+            None => exact::lit_fraction(query, target, outline, measure, &mut rules.exact, regions),
             Some(cells) => layers::lit_fraction(query, outline, measure.face, cells, &mut rules.layers),
         }
     }

@@ -1,7 +1,7 @@
 //! What both occlusion rules use: the casters of a target's group with their opacity, and the measure of areas.
 
 use crate::casters::{Caster, Nearby};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use pointillist_micropoint::{Face, Geometry, Lens, LensKind, TexturedOpacity};
 
 /// A target with the casters that may darken it.
@@ -52,9 +52,20 @@ impl Measure<'_> {
         sum.abs()
     }
 
-    fn denominator(&self, p: DVec2) -> f64 {
+    /// Where the viewer sees a point of the light grid, on the viewer's grid.
+    pub(crate) fn in_picture(&self, p: DVec2) -> DVec2 {
+        let (_, seen) = self.both(p);
+        self.viewer.project(self.viewer.local_vector(seen))
+    }
+
+    /// A point of the light grid relative to the light in the frame of its lens, and relative to the viewer in world axes.
+    fn both(&self, p: DVec2) -> (DVec3, DVec3) {
         let local = self.lens.unproject(p, self.face.nearness_at(p));
-        let world = self.lens.to_world_axes(local) + (self.lens.origin - self.viewer.origin);
+        (local, self.lens.to_world_axes(local) + (self.lens.origin - self.viewer.origin))
+    }
+
+    fn denominator(&self, p: DVec2) -> f64 {
+        let (local, world) = self.both(p);
         let light_depth = if self.lens.kind == LensKind::Perspective { local.z } else { 1.0 };
         let viewer_depth =
             if self.viewer.kind == LensKind::Perspective { self.viewer.forward.dot(world) } else { 1.0 };

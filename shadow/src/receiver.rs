@@ -15,6 +15,8 @@ pub(crate) struct Receiver {
     pub(crate) face: u32,
     pub(crate) first_vertex: u32,
     pub(crate) vertex_count: u32,
+    /// Its lit regions are kept, too.
+    pub(crate) wants_regions: bool,
 }
 
 impl Receivers {
@@ -38,10 +40,20 @@ impl Receivers {
 
     /// Adds a piece of face `face` with these corners: convex, in any order of winding, at most eleven.
     pub fn push(&mut self, face: u32, corners: impl IntoIterator<Item = DVec3>) {
+        self.add(face, corners, false);
+    }
+
+    /// As [`Receivers::push`]; if only part of the light reaches it, [`ShadowScratch::lit_regions`](crate::ShadowScratch::lit_regions)
+    /// knows where.
+    pub fn push_with_regions(&mut self, face: u32, corners: impl IntoIterator<Item = DVec3>) {
+        self.add(face, corners, true);
+    }
+
+    fn add(&mut self, face: u32, corners: impl IntoIterator<Item = DVec3>, wants_regions: bool) {
         let first_vertex = self.vertices.len() as u32;
         self.vertices.extend(corners);
         let vertex_count = self.vertices.len() as u32 - first_vertex;
-        self.list.push(Receiver { face, first_vertex, vertex_count });
+        self.list.push(Receiver { face, first_vertex, vertex_count, wants_regions });
     }
 
     /// Adds every fragment of a tile's micropoints, in order.

@@ -4,6 +4,7 @@ use crate::casters::{Casters, Nearby};
 use crate::cells::LightCells;
 use crate::counts::ShadowCounts;
 use crate::grid::LightGrid;
+use crate::lit_regions::{LitRegion, LitRegions};
 use crate::target::Targets;
 use crate::{exact, layers};
 use pointillist_micropoint::{Face, VisitMemory};
@@ -96,6 +97,7 @@ pub struct ShadowScratch {
     pub(crate) visit: VisitMemory,
     pub(crate) nearby: Vec<Nearby>,
     pub(crate) rules: RuleMemory,
+    pub(crate) lit_regions: LitRegions,
 }
 
 impl ShadowScratch {
@@ -105,6 +107,13 @@ impl ShadowScratch {
         std::mem::take(&mut self.counts)
     }
 
+    /// Where the light of the last call of [`ShadowLight::lit`](crate::ShadowLight::lit) reached a receiver that was added by
+    /// [`Receivers::push_with_regions`](crate::Receivers::push_with_regions). Nothing for one that is wholly lit or wholly dark, and under
+    /// [`Occlusion::Paper`](pointillist_micropoint::Occlusion::Paper), which knows fractions only.
+    pub fn lit_regions(&self, receiver: u32) -> impl Iterator<Item = LitRegion<'_>> {
+        self.lit_regions.of(receiver)
+    }
+
     pub(crate) fn begin(&mut self, receivers: usize, faces: usize, light_cells: Option<LightCells>) {
         self.sides.clear();
         self.sides.resize(faces, Side::Unknown);
@@ -112,5 +121,6 @@ impl ShadowScratch {
         self.targets.clear(light_cells);
         self.sums.clear();
         self.sums.resize(receivers, Sum::default());
+        self.lit_regions.clear();
     }
 }

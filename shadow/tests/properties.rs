@@ -135,6 +135,11 @@ proptest! {
     }
 
     #[test]
+    fn lit_regions_are_what_is_lit(s in soup(), v in view(), e in emitter()) {
+        holds!(invariants::lit_regions_make_up_the_fraction(&s, v, e, 1e-7));
+    }
+
+    #[test]
     fn adding_a_caster_never_brightens(s in soup(), c in [point(), point(), point()], shift in 3.0..6.0f64, v in view(), e in emitter()) {
         let caster = c.map(|p| p * 3.0 + DVec3::Y * shift);
         holds!(invariants::a_caster_never_brightens(&s, &caster, v, e, exact(), 1e-7));
