@@ -96,9 +96,9 @@ fn scene(input: &Input) -> Scene {
     }
     scene.materials = input.materials.iter().take(8).map(material).collect();
     let (width, height, texels) = &input.texture;
-    let texels = texels.iter().take(64).copied().collect();
+    let texels: Vec<[u8; 4]> = texels.iter().take(64).copied().collect();
     let size = [u32::from(width % 9), u32::from(height % 9)];
-    scene.textures.push(Texture::new("any", size, Texels::Srgb8(texels)));
+    scene.textures.push(Texture::new("any", size, Texels::Srgb8(texels.into())));
     scene.image.environment = input.environment.map(usize::from);
     for &(place, intensity, directional) in input.lights.iter().take(3) {
         let intensity = input.raw_light.map_or(color(intensity), Vec3::from_array);

@@ -4,7 +4,8 @@
 //! slopes and normal maps as vectors, not as heights and colours: the mean of slopes is the slope of the mean height, and
 //! a mean of normals is the normal of what they cover together.
 
-use crate::scene::{Details, Map, Scene, Texture};
+use crate::scene::{Details, Map, Scene, Texels, Texture, unit_of_byte};
+use crate::texel_sums::{Lazy, color_sums, values, when_needed};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec2, Vec3, Vec4, vec3};
 use pointillist_micropoint::{MicropointError, SurfacePoint, TexelSums};
@@ -13,24 +14,21 @@ use pointillist_shade::slope_of_heights;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-/// A map of numbers.
-type Numbers = Option<Arc<TexelSums<1>>>;
-/// A map of colours.
-type Colors = Option<Arc<TexelSums<3>>>;
+/// The sums of a map, shared by the materials that have it.
+type Sums<const N: usize> = Arc<Lazy<TexelSums<N>>>;
 
 /// The maps of one material.
 #[derive(Default)]
 pub(crate) struct DetailMaps {
-    specular: Colors,
-    emission: Colors,
-    shininess: Numbers,
-    roughness: Numbers,
-    metallic: Numbers,
-    occlusion: Numbers,
-    /// Slopes along u and v, each as what is above and below 0: sums take no negative values.
-    slope: Option<Arc<TexelSums<4>>>,
-    /// x and y like slopes, then z.
-    normal: Option<Arc<TexelSums<5>>>,
+    specular: Option<Sums<3>>,
+    emission: Option<Sums<3>>,
+    shininess: Option<Sums<1>>,
+    roughness: Option<Sums<1>>,
+    metallic: Option<Sums<1>>,
+    occlusion: Option<Sums<1>>,
+    /// Slopes along u and v.
+    slope: Option<Sums<2>>,
+    normal: Option<Sums<3>>,
 }
 
 /// Means over what is seen; where there is no map, what changes nothing.
@@ -50,14 +48,14 @@ pub(crate) struct DetailMeans {
 
 /// Maps that materials share, each summed up once.
 pub(crate) struct DetailTable {
-    numbers: HashMap<Map, Arc<TexelSums<1>>>,
-    colors: HashMap<Map, Arc<TexelSums<3>>>,
-    slopes: HashMap<Map, Arc<TexelSums<4>>>,
-    normals: HashMap<Map, Arc<TexelSums<5>>>,
+    numbers: HashMap<Map, Sums<1>>,
+    colors: HashMap<Map, Sums<3>>,
+    slopes: HashMap<Map, Sums<2>>,
+    normals: HashMap<Map, Sums<3>>,
 }
 
 impl DetailTable {
-    /// Sums up the maps of all materials, on all cores.
+    /// The maps of all materials.
     pub(crate) fn new(scene: &Scene) -> Result<Self, MicropointError> {
         let maps = |of: fn(&Details) -> [Option<Map>; 4]| -> HashSet<Map> {
             scene.materials.iter().flat_map(|m| of(&m.details)).flatten().collect()
@@ -69,21 +67,12 @@ impl DetailTable {
         let mut slopes = maps(|d| [d.bump.map(|bump| bump.map), None, None, None]);
         slopes.retain(|map| !scene.textures[map.texture].is_constant());
         let normals = maps(|d| [d.normal.map(|(map, _)| map), None, None, None]);
-        let (numbers, (colors, (slopes, normals))) = parallel::join(
-            || all(&numbers, |map| sums(map, scene, |t, x, y| [map.channel.of(t.texel(x, y))])),
-            || {
-                parallel::join(
-                    || all(&colors, |map| sums(map, scene, |t, x, y| t.texel(x, y).truncate().to_array())),
-                    || {
-                        parallel::join(
-                            || all(&slopes, |map| sums(map, scene, |t, x, y| slope(map, t, x, y))),
-                            || all(&normals, |map| sums(map, scene, normal)),
-                        )
-                    },
-                )
-            },
-        );
-        Ok(Self { numbers: numbers?, colors: colors?, slopes: slopes?, normals: normals? })
+        Ok(Self {
+            numbers: all(&numbers, scene, number_sums)?,
+            colors: all(&colors, scene, |map, t| color_sums(t, texel_wrap(map.wrap)))?,
+            slopes: all(&slopes, scene, slope_sums)?,
+            normals: all(&normals, scene, normal_sums)?,
+        })
     }
 
     pub(crate) fn maps(&self, details: &Details) -> DetailMaps {
@@ -104,32 +93,51 @@ impl DetailTable {
 
 fn all<const N: usize>(
     maps: &HashSet<Map>,
-    make: impl Fn(Map) -> Result<TexelSums<N>, MicropointError> + Sync,
-) -> Result<HashMap<Map, Arc<TexelSums<N>>>, MicropointError> {
+    scene: &Scene,
+    sums: fn(Map, &Texture) -> Result<TexelSums<N>, MicropointError>,
+) -> Result<HashMap<Map, Sums<N>>, MicropointError> {
     let maps: Vec<Map> = maps.iter().copied().collect();
-    let one = |i: usize| Ok((maps[i], Arc::new(make(maps[i])?)));
+    let one = |i: usize| {
+        let map = maps[i];
+        let sums = when_needed([&scene.textures[map.texture]], move |[texture]| sums(map, texture))?;
+        Ok((map, Arc::new(sums)))
+    };
     parallel::map_heavy(maps.len(), one).into_iter().collect()
 }
 
-fn slope(map: Map, t: &Texture, x: u32, y: u32) -> [f32; 4] {
+fn number_sums(map: Map, t: &Texture) -> Result<TexelSums<1>, MicropointError> {
+    let wrap = texel_wrap(map.wrap);
+    let Texture { width, height, .. } = *t;
+    if let Texels::Gray8(texels) = &t.texels {
+        let values = values(|byte| map.channel.of(Vec3::splat(unit_of_byte(byte)).extend(1.0)));
+        return TexelSums::from_bytes(width, height, wrap, texels.clone(), &values);
+    }
+    TexelSums::new(width, height, wrap, |x, y| [map.channel.of(t.texel(x, y))])
+}
+
+fn slope_sums(map: Map, t: &Texture) -> Result<TexelSums<2>, MicropointError> {
+    let wrap = texel_wrap(map.wrap);
+    match &t.texels {
+        // All channels are the grey.
+        Texels::Gray8(heights) => TexelSums::slopes_of_bytes(t.width, t.height, wrap, heights.clone()),
+        _ => TexelSums::new_signed(t.width, t.height, wrap, |x, y| slope(map, t, x, y).to_array()),
+    }
+}
+
+fn slope(map: Map, t: &Texture, x: u32, y: u32) -> Vec2 {
     let height =
         |x: i64, y: i64| map.channel.of(t.texel(map.wrap.texel(x, t.width), map.wrap.texel(y, t.height)));
-    let slope = slope_of_heights([t.width, t.height], x, y, height);
-    [slope.x.max(0.0), (-slope.x).max(0.0), slope.y.max(0.0), (-slope.y).max(0.0)]
+    slope_of_heights([t.width, t.height], x, y, height)
 }
 
-fn normal(t: &Texture, x: u32, y: u32) -> [f32; 5] {
+fn normal_sums(map: Map, t: &Texture) -> Result<TexelSums<3>, MicropointError> {
+    TexelSums::new_signed(t.width, t.height, texel_wrap(map.wrap), |x, y| normal(t, x, y))
+}
+
+/// A normal map's vector, on the front.
+fn normal(t: &Texture, x: u32, y: u32) -> [f32; 3] {
     let n = normal_of_texel(t.texel(x, y));
-    [n.x.max(0.0), (-n.x).max(0.0), n.y.max(0.0), (-n.y).max(0.0), n.z.max(0.0)]
-}
-
-fn sums<const N: usize>(
-    map: Map,
-    scene: &Scene,
-    texel: impl Fn(&Texture, u32, u32) -> [f32; N],
-) -> Result<TexelSums<N>, MicropointError> {
-    let texture = &scene.textures[map.texture];
-    TexelSums::new(texture.width, texture.height, texel_wrap(map.wrap), |x, y| texel(texture, x, y))
+    [n.x, n.y, n.z.max(0.0)]
 }
 
 /// A normal map's vector: −1 to 1 stored as 0 to 1.
@@ -191,11 +199,11 @@ impl DetailMeans {
     };
 
     fn add(&mut self, maps: &DetailMaps, uvs: &Uvs, triangle: u32, polygon: &[SurfacePoint], weight: f32) {
-        let number =
-            |map: &Numbers| map.as_ref().map_or(0.0, |m| weight * uvs.mean(triangle, polygon, m)[0] as f32);
-        let color = |map: &Colors| {
-            let mean = |m: &Arc<TexelSums<3>>| vector(uvs.mean(triangle, polygon, m)) * weight;
-            map.as_ref().map_or(Vec3::ZERO, mean)
+        let number = |map: &Option<Sums<1>>| {
+            map.as_ref().map_or(0.0, |sums| weight * uvs.mean(triangle, polygon, sums)[0] as f32)
+        };
+        let color = |map: &Option<Sums<3>>| {
+            map.as_ref().map_or(Vec3::ZERO, |sums| vector(uvs.mean(triangle, polygon, sums)) * weight)
         };
         self.specular += color(&maps.specular);
         self.emission += color(&maps.emission);
@@ -203,13 +211,12 @@ impl DetailMeans {
         self.roughness += number(&maps.roughness);
         self.metallic += number(&maps.metallic);
         self.occlusion += number(&maps.occlusion);
-        if let Some(map) = &maps.slope {
-            let [right, left, up, down] = uvs.mean(triangle, polygon, map);
-            self.slope += Vec2::new((right - left) as f32, (up - down) as f32) * weight;
+        if let Some(sums) = &maps.slope {
+            let [u, v] = uvs.mean(triangle, polygon, sums);
+            self.slope += Vec2::new(u as f32, v as f32) * weight;
         }
-        if let Some(map) = &maps.normal {
-            let [right, left, up, down, out] = uvs.mean(triangle, polygon, map);
-            self.normal += vector([right - left, up - down, out]) * weight;
+        if let Some(sums) = &maps.normal {
+            self.normal += vector(uvs.mean(triangle, polygon, sums)) * weight;
         }
     }
 

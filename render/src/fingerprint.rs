@@ -13,6 +13,9 @@ use twox_hash::XxHash3_64;
 #[derive(Default)]
 struct Fingerprint(XxHash3_64);
 
+/// Texels that are hashed at once: each call takes as long as some hundred bytes.
+const OPAQUE_AT_ONCE: usize = 1024;
+
 /// The hash of everything that a picture of the scene depends on.
 #[must_use]
 pub fn of_scene(scene: &Scene) -> u64 {
@@ -157,13 +160,35 @@ impl Fingerprint {
         self.int(u64::from(texture.width));
         self.int(u64::from(texture.height));
         match &texture.texels {
-            Texels::Srgb8(texels) => texels.iter().for_each(|t| self.0.write(t)),
+            Texels::Srgb8(texels) => self.0.write(texels.as_flattened()),
+            Texels::OpaqueSrgb8(texels) => self.opaque(texels, |rgb| rgb),
             Texels::Linear8(texels) => {
                 self.int(1);
-                texels.iter().for_each(|t| self.0.write(t));
+                self.0.write(texels.as_flattened());
             }
-            Texels::Opacity8(texels) => self.0.write(texels),
+            Texels::OpaqueLinear8(texels) => {
+                self.int(1);
+                self.opaque(texels, |rgb| rgb);
+            }
+            Texels::Gray8(texels) => {
+                self.int(1);
+                self.opaque(texels, |[gray]| [gray; 3]);
+            }
+            Texels::Opacity8(texels) => self.0.write(texels.as_flattened()),
             Texels::Float(texels) => texels.iter().flatten().for_each(|c| self.0.write(&c.to_le_bytes())),
+        }
+    }
+
+    /// How opaque texels are stored does not count: they are taken as with an alpha of 255.
+    fn opaque<T: Copy>(&mut self, texels: &[T], rgb: impl Fn(T) -> [u8; 3]) {
+        let mut bytes = Vec::with_capacity(4 * OPAQUE_AT_ONCE);
+        for some in texels.chunks(OPAQUE_AT_ONCE) {
+            bytes.clear();
+            for &texel in some {
+                let [r, g, b] = rgb(texel);
+                bytes.extend([r, g, b, u8::MAX]);
+            }
+            self.0.write(&bytes);
         }
     }
 

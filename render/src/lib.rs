@@ -90,6 +90,7 @@ mod shader;
 mod shading;
 mod solids;
 mod surfaces;
+mod texel_sums;
 mod uvs;
 
 pub use ambient::Ambient;

@@ -3,6 +3,7 @@
 use crate::copies::{MaskedCopy, OtherSide, masked_copies, other_sides};
 use crate::detail_maps::{DetailMaps, DetailTable};
 use crate::scene::{Details, Material, Scene, Texture};
+use crate::texel_sums::{Lazy, color_sums, opacity_sums, when_needed};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec3, Vec4};
 use pointillist_micropoint::{
@@ -18,17 +19,19 @@ use std::sync::Arc;
 /// part of a leaf's texture does not bleed into its rim.
 enum Textured {
     Nothing,
-    Color(TexelSums<3>),
-    Opacity(TexelSums<1>),
-    Masked(MaskedColor),
+    Color(Lazy<TexelSums<3>>),
+    Opacity(Lazy<TexelSums<1>>),
+    Masked {
+        color: Lazy<MaskedColor>,
+        /// By itself: shadows ask for it often, and for nothing else.
+        opacity: Lazy<TexelSums<1>>,
+    },
 }
 
 /// Colour under a mask of opacity.
 struct MaskedColor {
     /// Colour × opacity, and opacity.
     premultiplied: TexelSums<4>,
-    /// Opacity once more by itself: shadows ask for it often, and for nothing else.
-    opacity: TexelSums<1>,
     /// Smallest and largest colour of a texel that is not empty.
     range: (Vec3, Vec3),
     /// Mean colour of the whole map by its mask.
@@ -58,8 +61,7 @@ impl MaskedColor {
         })?;
         let whole = Vec4::from_array(premultiplied.whole_mean().map(|v| v as f32));
         let mean = if whole.w > 0.0 { whole.truncate() / whole.w } else { Vec3::ZERO };
-        let opacity = TexelSums::new(mask.width, mask.height, wrap, |x, y| [mask.texel(x, y).w])?;
-        Ok(Self { premultiplied, opacity, range, mean })
+        Ok(Self { premultiplied, range, mean })
     }
 
     /// The colour of a region from its sum of colour × opacity and of opacity.
@@ -159,7 +161,7 @@ impl Surfaces {
 
     /// Whether the colour of a triangle varies.
     pub(crate) fn has_color(&self, triangle: u32) -> bool {
-        matches!(self.textured(triangle), Textured::Color(_) | Textured::Masked(_))
+        matches!(self.textured(triangle), Textured::Color(_) | Textured::Masked { .. })
     }
 
     /// Whether the opacity of a triangle varies.
@@ -180,9 +182,9 @@ impl Surfaces {
             Textured::Color(sums) => {
                 Vec3::from_array(self.uvs.mean(triangle, polygon, sums).map(|v| v as f32))
             }
-            Textured::Masked(masked) => {
-                let mean = self.uvs.mean(triangle, polygon, &masked.premultiplied).map(|v| v as f32);
-                masked.straight(Vec4::from_array(mean))
+            Textured::Masked { color, .. } => {
+                let mean = self.uvs.mean(triangle, polygon, &color.premultiplied).map(|v| v as f32);
+                color.straight(Vec4::from_array(mean))
             }
         }
     }
@@ -192,7 +194,7 @@ impl TexturedOpacity for Surfaces {
     fn mean_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
         match self.textured(triangle) {
             Textured::Nothing | Textured::Color(_) => 1.0,
-            Textured::Opacity(sums) | Textured::Masked(MaskedColor { opacity: sums, .. }) => {
+            Textured::Opacity(sums) | Textured::Masked { opacity: sums, .. } => {
                 self.uvs.mean(triangle, polygon, sums)[0] as f32
             }
         }
@@ -203,7 +205,7 @@ impl TexturedOpacity for Surfaces {
 fn surfaces_by_material(scene: &Scene, textures: &[Arc<Textured>]) -> (Vec<SurfaceOpacity>, Vec<u32>) {
     let mut surfaces = Vec::with_capacity(2 * scene.materials.len());
     for (m, t) in scene.materials.iter().zip(textures) {
-        let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::Masked(_));
+        let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::Masked { .. });
         let opacity = m.surface.opacity;
         surfaces.push(SurfaceOpacity { opacity, textured_opacity, two_sided: true });
         surfaces.push(SurfaceOpacity { opacity, textured_opacity, two_sided: false });
@@ -228,7 +230,8 @@ fn textured_by_material(scene: &Scene) -> Result<Vec<Arc<Textured>>, MicropointE
         });
         number_of.push(number);
     }
-    let sums = parallel::map_heavy(different.len(), |i| sum_up(different[i], &scene.textures).map(Arc::new));
+    let sums =
+        parallel::map_heavy(different.len(), |i| textured(different[i], &scene.textures).map(Arc::new));
     let sums: Vec<Arc<Textured>> = sums.into_iter().collect::<Result<_, _>>()?;
     Ok(number_of.into_iter().map(|number| sums[number].clone()).collect())
 }
@@ -242,18 +245,17 @@ fn details_by_material(scene: &Scene) -> Result<Vec<Option<DetailMaps>>, Micropo
     Ok(scene.materials.iter().map(maps).collect())
 }
 
-fn sum_up(material: &Material, textures: &[Texture]) -> Result<Textured, MicropointError> {
+fn textured(material: &Material, textures: &[Texture]) -> Result<Textured, MicropointError> {
     let wrap = texel_wrap(material.wrap);
-    let color = material.diffuse_map.map(|i| &textures[i]);
-    let opacity = material.opacity_map.map(|i| &textures[i]);
-    Ok(match (color, opacity) {
+    let texture = |map: Option<usize>| map.map(|i| &textures[i]);
+    let opacity = |mask: &Texture| when_needed([mask], move |[mask]| opacity_sums(mask, wrap));
+    Ok(match (texture(material.diffuse_map), texture(material.opacity_map)) {
         (None, None) => Textured::Nothing,
-        (Some(c), None) => Textured::Color(TexelSums::new(c.width, c.height, wrap, |x, y| {
-            c.texel(x, y).truncate().to_array()
-        })?),
-        (None, Some(o)) => {
-            Textured::Opacity(TexelSums::new(o.width, o.height, wrap, |x, y| [o.texel(x, y).w])?)
-        }
-        (Some(c), Some(o)) => Textured::Masked(MaskedColor::new(c, o, wrap)?),
+        (Some(color), None) => Textured::Color(when_needed([color], move |[color]| color_sums(color, wrap))?),
+        (None, Some(mask)) => Textured::Opacity(opacity(mask)?),
+        (Some(color), Some(mask)) => Textured::Masked {
+            color: when_needed([color, mask], move |[color, mask]| MaskedColor::new(color, mask, wrap))?,
+            opacity: opacity(mask)?,
+        },
     })
 }

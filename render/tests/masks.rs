@@ -14,7 +14,7 @@ const UVS: [DVec2; 4] = [dvec2(0.0, 0.0), dvec2(1.0, 0.0), dvec2(1.0, 1.0), dvec
 fn picture(back: Option<[DVec2; 4]>, change: impl Fn(&mut Scene)) -> Frame {
     let mut scene = Scene::new(Camera::perspective(dvec3(1.0, 3.0, 4.0), DVec3::ZERO, 0.8), [40, 30]);
     let holes: Vec<u8> = (0..64).map(|i| if (i * 37 + i / 8 * 11) % 5 < 2 { 0 } else { 255 }).collect();
-    let holes = scene.add_texture(Texture::new("holes", [8, 8], Texels::Opacity8(holes)));
+    let holes = scene.add_texture(Texture::new("holes", [8, 8], Texels::from_opacities(holes)));
     let leaf = shade::Material::lambert(Vec3::new(0.2, 0.7, 0.1));
     let leaf = scene.add_material(Material::new("leaf", leaf).with_opacity_map(holes));
     let floor = scene.add_material(Material::new("floor", shade::Material::lambert(Vec3::ONE)));
@@ -54,7 +54,7 @@ fn each_side_of_a_leaf_shows_the_normals_of_the_card_that_faces_the_eye() {
     let seen = |eye: DVec3, cards: &[bool]| {
         let mut scene = Scene::new(Camera::perspective(eye, dvec3(0.0, 1.0, 0.0), 0.8), [24, 18]);
         let holes = (0..16).map(|i| if i % 3 == 0 { 0 } else { 255 }).collect();
-        let holes = scene.add_texture(Texture::new("holes", [4, 4], Texels::Opacity8(holes)));
+        let holes = scene.add_texture(Texture::new("holes", [4, 4], Texels::from_opacities(holes)));
         let leaf = scene
             .add_material(Material::new("leaf", shade::Material::lambert(Vec3::ONE)).with_opacity_map(holes));
         for &front in cards {

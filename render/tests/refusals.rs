@@ -74,7 +74,7 @@ fn textures_that_do_not_exist_are_named_with_who_wants_them() {
 fn textures_have_as_many_texels_as_they_say() {
     let texels = |width, height, texels: Vec<u8>| {
         refusal(|s| {
-            s.add_texture(Texture::new("holes.png", [width, height], Texels::Opacity8(texels)));
+            s.add_texture(Texture::new("holes.png", [width, height], Texels::from_opacities(texels)));
         })
     };
     let error = texels(2, 2, vec![0; 3]);

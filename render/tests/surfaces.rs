@@ -33,7 +33,8 @@ fn grey(albedo: f32) -> Material {
 
 /// A map of this one colour.
 fn map(scene: &mut Scene, color: Vec4) -> Map {
-    let texture = scene.add_texture(Texture::new("even", [2, 2], Texels::Float(vec![color.to_array(); 4])));
+    let texture =
+        scene.add_texture(Texture::new("even", [2, 2], Texels::Float(vec![color.to_array(); 4].into())));
     Map { texture, wrap: shade::Wrap::Repeat, channel: Channel::Green }
 }
 

@@ -63,18 +63,22 @@ struct Pictures<'a> {
 impl Pictures<'_> {
     fn load(&mut self, image: usize, purpose: Purpose) -> Result<usize, InputError> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
-        let loaded = match &self.model.images[image] {
-            GltfBytes::File(name) => self.textures.load(&folder.join(name), purpose),
+        let fault = || {
+            let name = self.path.display().to_string();
+            let message = format!("image {image}, used by material `{}`, ", self.material);
+            InputError::of_file(name, message).with_help("PNG and JPEG pictures can be part of a glTF")
+        };
+        match &self.model.images[image] {
+            GltfBytes::File(name) => Ok(self.textures.load(&folder.join(name), purpose, fault)),
             GltfBytes::Embedded(bytes) => {
                 let place = format!("{}#image{image}", self.path.display());
-                self.textures.load_embedded(Path::new(&place), bytes, purpose)
+                self.textures.load_embedded(Path::new(&place), bytes, purpose).map_err(|reason| {
+                    let mut fault = fault();
+                    fault.message.push_str(&reason);
+                    fault
+                })
             }
-        };
-        loaded.map_err(|fault| {
-            let name = self.path.display().to_string();
-            let message = format!("image {image}, used by material `{}`, {fault}", self.material);
-            InputError::of_file(name, message).with_help("PNG and JPEG pictures can be part of a glTF")
-        })
+        }
     }
 
     fn optional(
@@ -108,7 +112,8 @@ impl Pictures<'_> {
         };
         let Some(texture) = material.base_texture else { return Ok(None) };
         let number = self.load(texture.image, purpose)?;
-        let opaque = self.textures.is_constant(number) && self.textures.first_alpha(number) == 1.0;
+        let texture = self.textures.decoded(number)?;
+        let opaque = texture.is_constant() && texture.texel(0, 0).w == 1.0;
         Ok((!opaque).then_some(number))
     }
 }

@@ -189,27 +189,25 @@ impl<'a> MaterialTable<'a> {
             load_texture(textures, self.description, self.folder, reference, purpose)
         };
         let mut colored = |reference: &Option<TextureReference>| {
-            let load = |r: &TextureReference| load(r, Purpose::Color { srgb: r.srgb });
-            reference.as_ref().map(load).transpose()
+            reference.as_ref().map(|r| load(r, Purpose::Color { srgb: r.srgb }))
         };
-        let diffuse_map = colored(&found.diffuse_map)?;
+        let diffuse_map = colored(&found.diffuse_map);
         let map = |texture| Map { texture, wrap: found.wrap, channel: Channel::Mean };
-        let specular_map = colored(&found.specular_map)?.map(map);
-        let emission_map = colored(&found.emission_map)?.map(map);
+        let specular_map = colored(&found.specular_map).map(map);
+        let emission_map = colored(&found.emission_map).map(map);
         // Numbers, not colours: never decoded.
         let mut plain = |reference: &Option<TextureReference>| {
-            let load = |r: &TextureReference| load(r, Purpose::Color { srgb: false }).map(map);
-            reference.as_ref().map(load).transpose()
+            reference.as_ref().map(|r| map(load(r, Purpose::Color { srgb: false })))
         };
         let mut details = Details::default();
         details.specular_map = specular_map;
         details.emission_map = emission_map;
-        details.shininess_map = plain(&found.shininess_map)?;
-        details.roughness_map = plain(&found.roughness_map)?;
-        details.metallic_map = plain(&found.metallic_map)?;
+        details.shininess_map = plain(&found.shininess_map);
+        details.roughness_map = plain(&found.roughness_map);
+        details.metallic_map = plain(&found.metallic_map);
         details.bump =
-            plain(&found.bump_map)?.map(|map| Bump { map, height: BumpHeight::World(found.bump_scale) });
-        details.normal = plain(&found.normal_map)?.map(|map| (map, 1.0));
+            plain(&found.bump_map).map(|map| Bump { map, height: BumpHeight::World(found.bump_scale) });
+        details.normal = plain(&found.normal_map).map(|map| (map, 1.0));
         details.metallic = found.metallic;
         details.measured = found.merl.as_ref().map(|file| self.measured_of(file)).transpose()?;
         details.reflection = found.reflection;
@@ -218,11 +216,11 @@ impl<'a> MaterialTable<'a> {
             SurroundingsDescription::Scene => Surroundings::Scene,
             SurroundingsDescription::Capture => Surroundings::Capture,
             SurroundingsDescription::File(reference) => {
-                Surroundings::Texture(load(reference, Purpose::Color { srgb: true })?)
+                Surroundings::Texture(load(reference, Purpose::Color { srgb: true }))
             }
         };
         details.uv = found.uv;
-        let opacity_map = found.opacity_map.as_ref().map(|r| load(r, Purpose::Opacity)).transpose()?;
+        let opacity_map = found.opacity_map.as_ref().map(|r| load(r, Purpose::Opacity));
         let mut surface = found.surface;
         if let Some(measured) = &details.measured {
             // What stands for the table in ambient light.
@@ -263,7 +261,7 @@ impl<'a> MaterialTable<'a> {
             let file = library.path.display();
             warnings.push(format!("{file}: `{ignored}` of material `{name}` is not understood; ignored"));
         }
-        let material = mtl_materials::build(library, material, textures, warnings)?;
+        let material = mtl_materials::build(library, material, textures, warnings);
         let number = self.add(material);
         self.of_mtl.insert(key, number);
         Ok(Some(number))

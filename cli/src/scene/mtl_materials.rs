@@ -28,33 +28,33 @@ pub(super) fn build(
     material: &MtlMaterial,
     textures: &mut TextureTable,
     warnings: &mut Vec<String>,
-) -> Result<Material, InputError> {
+) -> Material {
     let mut load = |keyword: &str, purpose: Purpose| {
-        material.map(keyword).map(|map| texture(library, map, purpose, textures)).transpose()
+        material.map(keyword).map(|map| texture(library, map, purpose, textures))
     };
     let color = Purpose::Color { srgb: true };
-    let diffuse_map = load("map_Kd", color)?;
-    let opacity_map = load("map_d", Purpose::Opacity)?;
-    let mut map = |keyword: &str, purpose: Purpose| -> Result<Option<Map>, InputError> {
+    let diffuse_map = load("map_Kd", color);
+    let opacity_map = load("map_d", Purpose::Opacity);
+    let mut map = |keyword: &str, purpose: Purpose| {
         let wrap = wrap(material.map(keyword));
-        Ok(load(keyword, purpose)?.map(|texture| Map { texture, wrap, channel: Channel::Mean }))
+        load(keyword, purpose).map(|texture| Map { texture, wrap, channel: Channel::Mean })
     };
     let number = Purpose::Color { srgb: false };
-    let bump = map("map_bump", number)?.map(|map| Bump { map, height: bump_height(material) });
+    let bump = map("map_bump", number).map(|map| Bump { map, height: bump_height(material) });
     let mut details = Details::default();
-    details.specular_map = map("map_Ks", color)?;
-    details.shininess_map = map("map_Ns", number)?;
-    details.emission_map = map("map_Ke", color)?;
-    details.roughness_map = map("map_Pr", number)?;
-    details.metallic_map = map("map_Pm", number)?;
-    details.normal = map("norm", number)?.map(|map| (map, 1.0));
+    details.specular_map = map("map_Ks", color);
+    details.shininess_map = map("map_Ns", number);
+    details.emission_map = map("map_Ke", color);
+    details.roughness_map = map("map_Pr", number);
+    details.metallic_map = map("map_Pm", number);
+    details.normal = map("norm", number).map(|map| (map, 1.0));
     details.bump = bump;
     let surface = surface(material, &mut details);
-    surroundings(library, material, &mut details, &mut load, warnings)?;
+    surroundings(library, material, &mut details, &mut load, warnings);
     let wrap = wrap(material.map("map_Kd"));
     let mut made = Material::new(&material.name, surface).with_details(details);
     (made.diffuse_map, made.opacity_map, made.wrap) = (diffuse_map, opacity_map, wrap);
-    Ok(made)
+    made
 }
 
 fn wrap(map: Option<&MtlMap>) -> Wrap {
@@ -111,38 +111,32 @@ fn surroundings(
     library: &Library,
     material: &MtlMaterial,
     details: &mut Details,
-    load: &mut impl FnMut(&str, Purpose) -> Result<Option<usize>, InputError>,
+    load: &mut impl FnMut(&str, Purpose) -> Option<usize>,
     warnings: &mut Vec<String>,
-) -> Result<(), InputError> {
-    let Some(map) = material.map("refl") else { return Ok(()) };
+) {
+    let Some(map) = material.map("refl") else { return };
     if map.kind.as_deref().is_some_and(|kind| kind != "sphere") {
         let (file, name) = (library.path.display(), &material.name);
         warnings.push(format!("{file}: `refl` of material `{name}` is not of -type sphere; ignored"));
-        return Ok(());
+        return;
     }
-    if let Some(texture) = load("refl", Purpose::Color { srgb: true })? {
+    if let Some(texture) = load("refl", Purpose::Color { srgb: true }) {
         details.surroundings = Surroundings::Texture(texture);
         let own = material.specular.filter(|&s| s != Vec3::ZERO);
         details.reflection = details.reflection.or(own).or(Some(Vec3::ONE));
     }
-    Ok(())
 }
 
-fn texture(
-    library: &Library,
-    map: &MtlMap,
-    purpose: Purpose,
-    textures: &mut TextureTable,
-) -> Result<usize, InputError> {
+fn texture(library: &Library, map: &MtlMap, purpose: Purpose, textures: &mut TextureTable) -> usize {
     let folder = library.path.parent().unwrap_or(Path::new(""));
     let mut path = folder.join(&map.file);
     if !path.exists() {
         // Written on Windows, as many are.
         path = folder.join(map.file.replace('\\', "/"));
     }
-    textures.load(&path, purpose).map_err(|fault| {
+    textures.load(&path, purpose, || {
         let name = library.path.display().to_string();
-        let message = format!("texture `{}` {fault}", path.display());
+        let message = format!("texture `{}` ", path.display());
         InputError::in_line(&name, &library.bytes, map.line, message)
             .with_help("paths are relative to the MTL; PNG, JPEG, HDR and EXR can be read")
     })

@@ -45,7 +45,7 @@ pub(super) fn resolve(
     for object in &description.objects {
         builder.add(object)?;
     }
-    let environment = builder.environment()?;
+    let environment = builder.environment();
     let [width, height] = description.size;
     let aspect = f64::from(width) / f64::from(height);
     // A glTF that is the scene brings its camera and its lights.
@@ -72,7 +72,7 @@ pub(super) fn resolve(
     scene.render.shading = shading;
     scene.mesh = builder.mesh;
     scene.materials = builder.materials.into_materials();
-    scene.textures = builder.textures.into_textures();
+    scene.textures = builder.textures.into_textures()?;
     scene.lights = lights;
     let unlit = is_plain_model && scene.lights.is_empty();
     if unlit {
@@ -188,17 +188,11 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn environment(&mut self) -> Result<Option<usize>, InputError> {
-        let Some(file) = &self.description.environment else { return Ok(None) };
-        let reference = TextureReference { file: file.clone(), srgb: true };
-        load_texture(
-            &mut self.textures,
-            self.description,
-            self.folder,
-            &reference,
-            Purpose::Color { srgb: true },
-        )
-        .map(Some)
+    fn environment(&mut self) -> Option<usize> {
+        let file = self.description.environment.clone()?;
+        let reference = TextureReference { file, srgb: true };
+        let purpose = Purpose::Color { srgb: true };
+        Some(load_texture(&mut self.textures, self.description, self.folder, &reference, purpose))
     }
 
     fn add(&mut self, object: &ObjectDescription) -> Result<(), InputError> {

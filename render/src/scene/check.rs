@@ -2,8 +2,7 @@
 
 use super::error::SceneError;
 use super::{
-    AmbientLight, Bump, BumpHeight, Details, Map, Material, Mesh, NONE, Scene, Surroundings, Texels,
-    Transmission,
+    AmbientLight, Bump, BumpHeight, Details, Map, Material, Mesh, NONE, Scene, Surroundings, Transmission,
 };
 use glam::Vec3;
 use pointillist_shade::Light;
@@ -17,11 +16,7 @@ impl Scene {
     pub fn check(&self) -> Result<(), SceneError> {
         self.mesh.check(self.materials.len())?;
         self.textures.iter().try_for_each(|texture| {
-            let found = match &texture.texels {
-                Texels::Srgb8(texels) | Texels::Linear8(texels) => texels.len(),
-                Texels::Opacity8(texels) => texels.len(),
-                Texels::Float(texels) => texels.len(),
-            };
+            let found = texture.texels.len();
             super::texture::check_size(&texture.name, texture.width, texture.height, found)
         })?;
         let textures = self.textures.len();

@@ -17,6 +17,7 @@ pub use error::SceneError;
 pub use light::LightSource;
 pub use material::Material;
 pub use mesh::{Mesh, NONE, Object, Part};
+pub(crate) use texture::{LINEAR_OF_SRGB, unit_of_byte};
 pub use texture::{Texels, Texture, linear_from_srgb, srgb_from_linear};
 
 use glam::{DVec3, Vec3};

@@ -1,9 +1,9 @@
 //! Decoded pictures, and how they are looked up.
 
 use super::error::SceneError;
-use glam::{DVec2, Vec4};
+use glam::{DVec2, Vec3, Vec4};
 use pointillist_shade::Wrap;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 /// A decoded picture; row 0 is the top, that is v = 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,22 +19,64 @@ pub struct Texture {
     pub name: String,
 }
 
-/// The texels of a [`Texture`] as they are stored; [`Texture::texel`] decodes them.
+/// The texels of a [`Texture`] as they are stored; [`Texture::texel`] decodes them. Clones share them.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Texels {
     /// sRGB-encoded colour with linear alpha.
-    Srgb8(Vec<[u8; 4]>),
+    Srgb8(Arc<Vec<[u8; 4]>>),
+    /// sRGB-encoded colour; alpha is 1.
+    OpaqueSrgb8(Arc<Vec<[u8; 3]>>),
     /// Linear colour and alpha in 8 bits.
-    Linear8(Vec<[u8; 4]>),
+    Linear8(Arc<Vec<[u8; 4]>>),
+    /// Linear colour in 8 bits; alpha is 1.
+    OpaqueLinear8(Arc<Vec<[u8; 3]>>),
+    /// Linear grey in 8 bits; alpha is 1.
+    Gray8(Arc<Vec<[u8; 1]>>),
     /// One number that is the opacity: colour is white, alpha is the number.
-    Opacity8(Vec<u8>),
+    Opacity8(Arc<Vec<[u8; 1]>>),
     /// Linear colour and alpha.
-    Float(Vec<[f32; 4]>),
+    Float(Arc<Vec<[f32; 4]>>),
+}
+
+impl Texels {
+    /// Opacities, one byte for each texel.
+    #[must_use]
+    pub fn from_opacities(bytes: Vec<u8>) -> Self {
+        Self::Opacity8(single(bytes))
+    }
+
+    /// Linear greys, one byte for each texel.
+    #[must_use]
+    pub fn from_grays(bytes: Vec<u8>) -> Self {
+        Self::Gray8(single(bytes))
+    }
+
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        match self {
+            Self::Srgb8(texels) | Self::Linear8(texels) => texels.len(),
+            Self::OpaqueSrgb8(texels) | Self::OpaqueLinear8(texels) => texels.len(),
+            Self::Gray8(texels) | Self::Opacity8(texels) => texels.len(),
+            Self::Float(texels) => texels.len(),
+        }
+    }
+}
+
+/// Texels of one byte.
+fn single(bytes: Vec<u8>) -> Arc<Vec<[u8; 1]>> {
+    // The same memory: entries are of the same size.
+    Arc::new(bytes.into_iter().map(|byte| [byte]).collect())
 }
 
 /// sRGB byte to linear, once for all: a power per texel would cost more than the rest of the lookup.
-static LINEAR_OF_SRGB: LazyLock<[f32; 256]> =
+pub(crate) static LINEAR_OF_SRGB: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|byte| linear_from_srgb(byte as f32 / 255.0)));
+
+/// What a byte that is not sRGB-encoded stands for.
+pub(crate) fn unit_of_byte(byte: u8) -> f32 {
+    f32::from(byte) / 255.0
+}
 
 /// The sRGB transfer function, encoded to linear.
 #[must_use]
@@ -66,12 +108,8 @@ impl Texture {
     /// A picture of sRGB-encoded opaque colours, from a function of column and row from the top.
     #[must_use]
     pub fn from_srgb(name: impl Into<String>, size: [u32; 2], color: impl Fn(u32, u32) -> [u8; 3]) -> Self {
-        let texel = |x, y| {
-            let [r, g, b] = color(x, y);
-            [r, g, b, u8::MAX]
-        };
-        let texels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))).map(|(x, y)| texel(x, y));
-        Self::new(name, size, Texels::Srgb8(texels.collect()))
+        let texels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))).map(|(x, y)| color(x, y));
+        Self::new(name, size, Texels::OpaqueSrgb8(texels.collect::<Vec<_>>().into()))
     }
 
     /// Linear red, green, blue and alpha of column `x`, row `y` from the top.
@@ -84,15 +122,18 @@ impl Texture {
         // A column beyond the last would be one of the next row.
         assert!(x < self.width, "column {x} of a picture that is {} wide", self.width);
         let i = y as usize * self.width as usize + x as usize;
-        let unit = |byte: u8| f32::from(byte) / 255.0;
+        let unit = unit_of_byte;
+        let linear = |byte: u8| LINEAR_OF_SRGB[byte as usize];
         match &self.texels {
             Texels::Srgb8(texels) => {
                 let [r, g, b, a] = texels[i];
-                let table = &*LINEAR_OF_SRGB;
-                Vec4::new(table[r as usize], table[g as usize], table[b as usize], unit(a))
+                Vec4::new(linear(r), linear(g), linear(b), unit(a))
             }
+            Texels::OpaqueSrgb8(texels) => Vec3::from_array(texels[i].map(linear)).extend(1.0),
             Texels::Linear8(texels) => Vec4::from_array(texels[i].map(unit)),
-            Texels::Opacity8(texels) => Vec4::new(1.0, 1.0, 1.0, unit(texels[i])),
+            Texels::OpaqueLinear8(texels) => Vec3::from_array(texels[i].map(unit)).extend(1.0),
+            Texels::Gray8(texels) => Vec3::splat(unit(texels[i][0])).extend(1.0),
+            Texels::Opacity8(texels) => Vec4::new(1.0, 1.0, 1.0, unit(texels[i][0])),
             Texels::Float(texels) => Vec4::from_array(texels[i]),
         }
     }
@@ -113,7 +154,8 @@ impl Texture {
         }
         match &self.texels {
             Texels::Srgb8(texels) | Texels::Linear8(texels) => same(texels),
-            Texels::Opacity8(texels) => same(texels),
+            Texels::OpaqueSrgb8(texels) | Texels::OpaqueLinear8(texels) => same(texels),
+            Texels::Gray8(texels) | Texels::Opacity8(texels) => same(texels),
             Texels::Float(texels) => same(texels),
         }
     }
@@ -123,7 +165,8 @@ impl Texture {
     pub fn bytes(&self) -> u64 {
         let per_texel = match self.texels {
             Texels::Srgb8(_) | Texels::Linear8(_) => 4,
-            Texels::Opacity8(_) => 1,
+            Texels::OpaqueSrgb8(_) | Texels::OpaqueLinear8(_) => 3,
+            Texels::Gray8(_) | Texels::Opacity8(_) => 1,
             Texels::Float(_) => 16,
         };
         u64::from(self.width) * u64::from(self.height) * per_texel

@@ -37,7 +37,7 @@ fn surface() -> impl Strategy<Value = shade::Material> {
 fn texture() -> impl Strategy<Value = Texture> {
     (1..5u32, 1..4u32).prop_flat_map(|(width, height)| {
         prop::collection::vec(any::<[u8; 4]>(), (width * height) as usize)
-            .prop_map(move |texels| Texture::new("any", [width, height], Texels::Srgb8(texels)))
+            .prop_map(move |texels| Texture::new("any", [width, height], Texels::Srgb8(texels.into())))
     })
 }
 

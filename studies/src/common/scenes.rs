@@ -99,9 +99,9 @@ impl Sketch {
     pub(crate) fn checker(&mut self, size: u32) -> usize {
         let texel = |i: u32| {
             let v = if (i % size + i / size).is_multiple_of(2) { 230 } else { 25 };
-            [v, v, v, 255]
+            v
         };
-        let texels = Texels::Linear8((0..size * size).map(texel).collect());
+        let texels = Texels::from_grays((0..size * size).map(texel).collect());
         self.scene.add_texture(Texture::new("checker", [size, size], texels))
     }
 

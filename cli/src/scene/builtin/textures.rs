@@ -1,7 +1,7 @@
 //! The textures of the built-in scene.
 
 use crate::scene::textures::Purpose;
-use crate::scene::{Texels, Texture, srgb_from_linear};
+use crate::scene::{Texture, srgb_from_linear};
 
 /// All of them, by the names that the scene file uses.
 pub(super) fn all() -> Vec<(&'static str, Purpose, Texture)> {
@@ -11,13 +11,7 @@ pub(super) fn all() -> Vec<(&'static str, Purpose, Texture)> {
 
 fn texture(name: &str, width: u32, height: u32, color: impl Fn(u32, u32) -> [f32; 3]) -> Texture {
     let byte = |c: f32| (srgb_from_linear(c) * 255.0 + 0.5) as u8;
-    let texel = |x: u32, y: u32| {
-        let [r, g, b] = color(x, y).map(byte);
-        [r, g, b, u8::MAX]
-    };
-    let texels =
-        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
-    Texture::new(name, [width, height], Texels::Srgb8(texels))
+    Texture::from_srgb(name, [width, height], |x, y| color(x, y).map(byte))
 }
 
 /// A chequered floor, no two tiles quite alike.

@@ -1,0 +1,521 @@
+//! Textures without filters: the exact mean of nearest texels over a polygon.
+//!
+//! The paper dices a surface by its texel grid, so that every piece sees one texel (\[1\], §3.3). Shading
+//! is linear in the albedo, so the mean over all those pieces is all that is needed of them; and
+//! that is an integral over a polygon of texels, ∬ f = ∮ F dy with F the sums along rows. It
+//! costs the texels on the outline, not those inside.
+
+mod corner;
+mod perspective;
+mod plane;
+mod rows;
+mod slopes;
+mod storage;
+
+pub use corner::{TexelCorner, TexelWrap};
+
+use crate::error::MicropointError;
+use corner::is_usable;
+use glam::DVec2;
+use perspective::LITTLE_PERSPECTIVE;
+use plane::Plane;
+use pointillist_dice::convex;
+use slopes::Slopes;
+use std::sync::{Arc, OnceLock};
+use storage::{Rows, with_rows};
+
+/// Sums along the rows of a texture with `N` channels, in 32-bit fixed point: differences are exact.
+///
+/// What is taken together for outlines of many texels is computed when it is first asked for.
+#[derive(Clone, Debug)]
+pub struct TexelSums<const N: usize> {
+    width: usize,
+    height: usize,
+    wrap: TexelWrap,
+    /// Value of one unit of the fixed point.
+    unit: f64,
+    /// Smallest and largest texel of each channel: no mean lies beyond them.
+    range: [(f64, f64); N],
+    /// Sums of each row.
+    rows: Rows<N>,
+    /// `bands[k]`: rows of sums, each the mean of 4ᵏ⁺¹ rows of texels (fewer in the last), and the unit they are in, for
+    /// outlines that are too narrow to take columns together.
+    bands: Vec<OnceLock<(Rows<N>, f64)>>,
+    /// The same texture with half as many texels on a side, each the mean of four.
+    coarser: OnceLock<Box<TexelSums<N>>>,
+}
+
+/// Rows that an outline may cross before rows are taken together: then an outline texel is wrong by
+/// at most its difference from its three neighbours, and there are hundreds of rows.
+const MOST_ROWS: f64 = 128.0;
+
+/// Texels that an outline may span before four are taken together: then its border is right to about
+/// a thousandth of the contrast between neighbours, and what is inside stays exact.
+const MOST_SPAN: f64 = 32.0;
+
+/// Mean width in texels below which an outline is all border, and is followed texel by texel.
+const LEAST_WIDTH: f64 = 8.0;
+
+/// Texels up to which perspective is followed texel by texel.
+const FEW_TEXELS: f64 = 48.0;
+
+/// Extent in texels beyond which the mean of the whole texture is taken: a polygon of this size holds the texture several times, and time
+/// grows with the rows that its outline crosses.
+const MOST_TEXELS: f64 = (1 << 16) as f64;
+
+/// Ratio of depths over a polygon up to which perspective does not matter: weights then vary by 0.3 %
+/// from their mean, and the border of two texels would have to run right through the polygon for a
+/// quarter of that to show.
+const NO_PERSPECTIVE: f64 = 1.002;
+
+/// Most texels on a side of a texture that is summed up.
+pub const MOST_TEXELS_ON_A_SIDE: u32 = 1 << 20;
+
+impl<const N: usize> TexelSums<N> {
+    /// Sums up a texture; `texel(x, y)` gives values of at least 0, row 0 on top.
+    ///
+    /// # Errors
+    /// [`MicropointError::BadTexture`] if there are no texels; [`MicropointError::BadTexel`] for a
+    /// value that is NaN, infinite or negative.
+    pub fn new(
+        width: u32,
+        height: u32,
+        wrap: TexelWrap,
+        texel: impl Fn(u32, u32) -> [f32; N],
+    ) -> Result<Self, MicropointError> {
+        let texels = collect(width, height, texel, |v| v.is_finite() && v >= 0.0)?;
+        Ok(Self::of_texels(width as usize, height as usize, wrap, &texels))
+    }
+
+    /// The same for a texture whose values may be negative. Sums are right to 2⁻³¹ of the largest of them.
+    ///
+    /// # Errors
+    /// [`MicropointError::BadTexture`] if there are no texels; [`MicropointError::BadTexel`] for a value that is NaN or infinite.
+    pub fn new_signed(
+        width: u32,
+        height: u32,
+        wrap: TexelWrap,
+        texel: impl Fn(u32, u32) -> [f32; N],
+    ) -> Result<Self, MicropointError> {
+        let texels = collect(width, height, texel, f32::is_finite)?;
+        Ok(Self::of_signed_texels(width as usize, height as usize, wrap, &texels))
+    }
+
+    /// The same as [`TexelSums::new`] of 8-bit texels, row by row from the top, with a table of what each byte stands for, and the same
+    /// means bit by bit. Takes one byte for a channel of a texel beside `texels`, which are shared (4 bytes otherwise).
+    ///
+    /// # Errors
+    /// [`MicropointError::BadTexture`] if there are no texels or not `width · height`; [`MicropointError::BadTexel`] for the
+    /// first texel whose value is NaN, infinite or negative.
+    pub fn from_bytes(
+        width: u32,
+        height: u32,
+        wrap: TexelWrap,
+        texels: Arc<Vec<[u8; N]>>,
+        values: &[f32; 256],
+    ) -> Result<Self, MicropointError> {
+        check_size(width, height)?;
+        if texels.len() as u64 != u64::from(width) * u64::from(height) {
+            return Err(MicropointError::BadTexture { width, height, texels: texels.len() });
+        }
+        let sound = |v: f32| v.is_finite() && v >= 0.0;
+        let mut occurs = [[false; 256]; N];
+        for (index, texel) in texels.iter().enumerate() {
+            for (occurs, &byte) in occurs.iter_mut().zip(texel) {
+                if !std::mem::replace(&mut occurs[byte as usize], true) && !sound(values[byte as usize]) {
+                    return Err(MicropointError::BadTexel { index });
+                }
+            }
+        }
+        let range = occurs.map(|occurs| {
+            let found = values.iter().zip(occurs).filter(|(_, occurs)| *occurs).map(|(&v, _)| f64::from(v));
+            found.fold((f64::INFINITY, 0.0_f64), |(least, most), v| (least.min(v), most.max(v)))
+        });
+        let (rows, unit) = Rows::bytes(width as usize, texels, values, largest(&range));
+        Ok(Self::of_rows(width as usize, height as usize, wrap, range, rows, unit))
+    }
+
+    fn of_texels(width: usize, height: usize, wrap: TexelWrap, texels: &[[f32; N]]) -> Self {
+        let range = range_of(texels, 0.0);
+        let (rows, unit) = Rows::unsigned(width, texels, largest(&range));
+        Self::of_rows(width, height, wrap, range, rows, unit)
+    }
+
+    fn of_signed_texels(width: usize, height: usize, wrap: TexelWrap, texels: &[[f32; N]]) -> Self {
+        let (rows, unit) = Rows::signed(width, texels);
+        Self::of_rows(width, height, wrap, range_of(texels, f32::NEG_INFINITY), rows, unit)
+    }
+
+    fn of_rows(
+        width: usize,
+        height: usize,
+        wrap: TexelWrap,
+        range: [(f64, f64); N],
+        rows: Rows<N>,
+        unit: f64,
+    ) -> Self {
+        let levels = (1..).take_while(|&k| height > 16 && 4_usize.pow(k) < height).count();
+        let bands = vec![OnceLock::new(); levels];
+        Self { width, height, wrap, unit, range, rows, bands, coarser: OnceLock::new() }
+    }
+
+    /// Half as many texels on a side, if that is a whole number.
+    fn coarser(&self) -> Option<&Self> {
+        let (width, height) = (self.width, self.height);
+        if !width.is_multiple_of(2) || !height.is_multiple_of(2) || width.min(height) < 8 {
+            return None;
+        }
+        let make = || {
+            let texels = self.rows.means_of_four(width, height, self.unit);
+            let of_texels = match self.rows {
+                Rows::Signed(_) | Rows::Slopes(_) => Self::of_signed_texels,
+                Rows::Unsigned(_) | Rows::Bytes(_) => Self::of_texels,
+            };
+            Box::new(of_texels(width / 2, height / 2, self.wrap, &texels))
+        };
+        Some(self.coarser.get_or_init(make))
+    }
+
+    fn plane<'a, R>(&self, sums: &'a R, rows: usize) -> Plane<'a, R> {
+        Plane { sums, width: self.width, height: self.height, wrap: self.wrap, rows }
+    }
+
+    /// Texels in a row.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width as u32
+    }
+
+    /// Rows of texels.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height as u32
+    }
+
+    /// The texel at integer coordinates, wrapped.
+    #[must_use]
+    pub fn texel(&self, x: f64, y: f64) -> [f64; N] {
+        let texel = with_rows!(&self.rows, sums => self.plane(sums, 1).texel(x, y));
+        self.within_range(texel.map(|t| t * self.unit))
+    }
+
+    /// Rounding of a mean over a tiny or narrow polygon is relative to the row sums, not to the mean: without this, means
+    /// would be negative where a polygon sees nothing but black texels.
+    fn within_range(&self, mean: [f64; N]) -> [f64; N] {
+        std::array::from_fn(|c| mean[c].max(self.range[c].0).min(self.range[c].1))
+    }
+
+    /// The mean over a convex polygon, weighted by area in the grid.
+    ///
+    /// Exact up to rounding where the polygon sees few texels or little perspective; elsewhere it is cut
+    /// into strips of nearly equal depth. Never beyond the smallest and largest texel of a channel. Corners that are
+    /// not finite give the texel at the origin.
+    #[must_use]
+    pub fn mean(&self, corners: &[TexelCorner]) -> [f64; N] {
+        self.within_range(self.unbounded_mean(corners))
+    }
+
+    fn unbounded_mean(&self, corners: &[TexelCorner]) -> [f64; N] {
+        let (low, high) = corners
+            .iter()
+            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), c| (l.min(c.texel), h.max(c.texel)));
+        if corners.is_empty() || !corners.iter().all(|c| is_usable(c.texel)) {
+            return self.texel(0.0, 0.0);
+        }
+        if low.floor() == high.floor() {
+            return self.texel(low.x, low.y);
+        }
+        let texels = (high.ceil() - low.floor()).max(DVec2::ONE);
+        let few = texels.x * texels.y <= FEW_TEXELS;
+        let rationals = corners.iter().map(|c| c.rational);
+        let (least, most) = rationals.fold((f64::INFINITY, 0.0_f64), |(l, h), q| (l.min(q), h.max(q)));
+        let ratio = if least > 0.0 { most / least } else { f64::INFINITY };
+        if ratio > NO_PERSPECTIVE
+            && few
+            && least > 0.0
+            && let Some(mean) = perspective::mean_by_texels(corners, |x, y| self.texel(x, y))
+        {
+            return mean;
+        }
+        if ratio > LITTLE_PERSPECTIVE && !few {
+            let mean = |strip: &[TexelCorner]| self.mean_in_texels(strip);
+            return perspective::mean_by_strips(corners, least.max(most * 1e-6), most, mean);
+        }
+        self.mean_in_texels(corners)
+    }
+
+    /// The mean of all texels.
+    #[must_use]
+    pub fn whole_mean(&self) -> [f64; N] {
+        let mut sum = [0.0; N];
+        with_rows!(&self.rows, sums => for row in 0..self.height {
+            let total: [f64; N] = self.plane(sums, 1).row_sum(row, self.width as f64);
+            sum.iter_mut().zip(total).for_each(|(s, t)| *s += t);
+        });
+        sum.map(|s| s * self.unit / (self.width * self.height) as f64)
+    }
+
+    /// The mean weighted by area in the texture: right where there is no perspective.
+    fn mean_in_texels(&self, corners: &[TexelCorner]) -> [f64; N] {
+        let mut ring = [DVec2::ZERO; convex::MAX_VERTICES];
+        let len = corners.len().min(ring.len());
+        // Whole periods are taken away so that sums stay small.
+        let period = DVec2::new(self.width as f64, self.height as f64) * 2.0;
+        let shift = match self.wrap {
+            TexelWrap::Clamp => DVec2::ZERO,
+            _ => (corners[0].texel / period).floor() * period,
+        };
+        for (to, c) in ring.iter_mut().zip(corners) {
+            *to = c.texel - shift;
+        }
+        let ring = &mut ring[..len];
+        let (low, high) = convex::bounds(ring);
+        let area = convex::area(ring);
+        let span = (high - low).max_element();
+        // Not finite where a strip of a polygon reaches behind the eye.
+        // Each corner is looked at: bounds do not always keep a NaN.
+        let usable = ring.iter().all(|&v| is_usable(v));
+        if !usable || span > MOST_TEXELS.max(4.0 * self.width.max(self.height) as f64) {
+            let middle = 0.5 * (low + high);
+            return match self.wrap {
+                TexelWrap::Clamp if middle.is_finite() => self.texel(middle.x, middle.y),
+                _ => self.whole_mean(),
+            };
+        }
+        if span > MOST_SPAN
+            && area.abs() > LEAST_WIDTH * span
+            && let Some(coarser) = self.coarser()
+        {
+            let mut halved =
+                [TexelCorner { grid: DVec2::ZERO, rational: 1.0, texel: DVec2::ZERO }; convex::MAX_VERTICES];
+            for (to, &texel) in halved.iter_mut().zip(&*ring) {
+                to.texel = 0.5 * texel;
+            }
+            return coarser.mean_in_texels(&halved[..len]);
+        }
+        let size = high - low;
+        // A polygon without area in the texture (a surface seen edge-on): the texel in the middle of the line stands for all.
+        if area.abs() <= 1e-9 * size.x.max(size.y).powi(2) {
+            let middle = ring.iter().sum::<DVec2>() / len as f64;
+            return self.texel(middle.x, middle.y);
+        }
+        let mut level = 0;
+        while level < self.bands.len() && size.y > MOST_ROWS * 4.0_f64.powi(level as i32) {
+            level += 1;
+        }
+        self.integral(level, ring).map(|s| s / area)
+    }
+
+    /// The integral over a ring, from sums of rows or, with a `level` beyond 0, of bands of 4 to this power.
+    fn integral(&self, level: usize, ring: &[DVec2]) -> [f64; N] {
+        let texels = 4_usize.pow(level as u32);
+        let (rows, unit) = match level.checked_sub(1) {
+            None => (&self.rows, self.unit),
+            Some(band) => {
+                let make = || self.rows.bands(self.width, self.height, texels, self.unit);
+                let (rows, unit) = self.bands[band].get_or_init(make);
+                (rows, *unit)
+            }
+        };
+        with_rows!(rows, sums => self.plane(sums, texels).integral(ring)).map(|s| s * unit)
+    }
+}
+
+impl TexelSums<2> {
+    /// The slopes along u and v of an 8-bit height map, row by row from the top, per unit of u and of v (v upward): differences of
+    /// the two neighbours. A byte of 255 is the height 1. Exact, of the heights alone and one byte for each.
+    ///
+    /// # Errors
+    /// [`MicropointError::BadTexture`] if there are no texels or not `width · height`.
+    pub fn slopes_of_bytes(
+        width: u32,
+        height: u32,
+        wrap: TexelWrap,
+        heights: Arc<Vec<[u8; 1]>>,
+    ) -> Result<Self, MicropointError> {
+        check_size(width, height)?;
+        if heights.len() as u64 != u64::from(width) * u64::from(height) {
+            return Err(MicropointError::BadTexture { width, height, texels: heights.len() });
+        }
+        let (width, height) = (width as usize, height as usize);
+        let slopes = Slopes::new(heights, width, height, wrap);
+        let unit = 1.0 / 255.0;
+        let range = slopes.range().map(|(least, most)| (least * unit, most * unit));
+        Ok(Self::of_rows(width, height, wrap, range, Rows::Slopes(slopes), unit))
+    }
+}
+
+fn check_size(width: u32, height: u32) -> Result<(), MicropointError> {
+    if width == 0 || height == 0 || width.max(height) > MOST_TEXELS_ON_A_SIDE {
+        return Err(MicropointError::BadTexture { width, height, texels: 0 });
+    }
+    Ok(())
+}
+
+/// All texels, if all their values are sound.
+fn collect<const N: usize>(
+    width: u32,
+    height: u32,
+    texel: impl Fn(u32, u32) -> [f32; N],
+    is_sound: impl Fn(f32) -> bool,
+) -> Result<Vec<[f32; N]>, MicropointError> {
+    check_size(width, height)?;
+    let mut texels = Vec::with_capacity(width as usize * height as usize);
+    for y in 0..height {
+        texels.extend((0..width).map(|x| texel(x, y)));
+    }
+    match texels.iter().position(|texel| !texel.iter().all(|&v| is_sound(v))) {
+        Some(index) => Err(MicropointError::BadTexel { index }),
+        None => Ok(texels),
+    }
+}
+
+/// Smallest and largest value of each channel; the largest is at least `least_most`.
+fn range_of<const N: usize>(texels: &[[f32; N]], least_most: f32) -> [(f64, f64); N] {
+    let mut range = [(f32::INFINITY, least_most); N];
+    for texel in texels {
+        for ((least, most), &v) in range.iter_mut().zip(texel) {
+            (*least, *most) = (least.min(v), most.max(v));
+        }
+    }
+    range.map(|(least, most)| (f64::from(least), f64::from(most)))
+}
+
+fn largest<const N: usize>(range: &[(f64, f64); N]) -> f64 {
+    range.iter().fold(0.0, |most, r| most.max(r.1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec2;
+
+    fn checker(width: u32, height: u32, wrap: TexelWrap) -> TexelSums<1> {
+        TexelSums::new(width, height, wrap, |x, y| [((x * 7 + y * 13) % 5) as f32]).unwrap()
+    }
+
+    fn corners(points: &[DVec2]) -> Vec<TexelCorner> {
+        points.iter().map(|&p| TexelCorner { grid: p, rational: 1.0, texel: p }).collect()
+    }
+
+    /// The mean by many samples.
+    fn sampled(sums: &TexelSums<1>, points: &[DVec2]) -> f64 {
+        let (low, high) = convex::bounds(points);
+        let (mut sum, mut count) = (0.0, 0.0);
+        let n = 600;
+        for i in 0..n * n {
+            let s = dvec2(f64::from(i % n) + 0.5, f64::from(i / n) + 0.5) / f64::from(n);
+            let p = low + s * (high - low);
+            let inside = (0..points.len()).all(|k| {
+                let (a, b) = (points[k], points[(k + 1) % points.len()]);
+                (b - a).perp_dot(p - a) >= 0.0
+            });
+            if inside {
+                sum += sums.texel(p.x, p.y)[0];
+                count += 1.0;
+            }
+        }
+        sum / count
+    }
+
+    #[test]
+    fn a_polygon_sees_the_mean_of_its_texels_in_every_wrap_mode() {
+        for wrap in [TexelWrap::Repeat, TexelWrap::Clamp, TexelWrap::Mirror] {
+            let sums = checker(6, 5, wrap);
+            for shift in [dvec2(0.0, 0.0), dvec2(-7.3, 3.1), dvec2(11.2, -6.7)] {
+                let triangle = [dvec2(0.3, 0.2) + shift, dvec2(5.1, 1.4) + shift, dvec2(1.7, 6.6) + shift];
+                let got = sums.mean(&corners(&triangle))[0];
+                let expected = sampled(&sums, &triangle);
+                assert!((got - expected).abs() < 0.01, "{wrap:?} {shift}: {got} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn bytes_have_the_means_of_the_same_texels_bit_by_bit() {
+        let (width, height) = (37, 24);
+        let bytes: Vec<[u8; 3]> =
+            (0..width * height).map(|i| [i * i % 251, i * 7 % 256, i % 13 * 19].map(|v| v as u8)).collect();
+        let values: [f32; 256] = std::array::from_fn(|byte| (byte as f32 / 255.0).powf(2.2));
+        for wrap in [TexelWrap::Repeat, TexelWrap::Clamp, TexelWrap::Mirror] {
+            let texel = |x: u32, y: u32| bytes[(y * width + x) as usize].map(|byte| values[byte as usize]);
+            let whole = TexelSums::<3>::new(width, height, wrap, texel).unwrap();
+            let shared = Arc::new(bytes.clone());
+            let compact = TexelSums::from_bytes(width, height, wrap, shared, &values).unwrap();
+            for size in [1.3, 7.1, 33.3, 210.7] {
+                let ring = [dvec2(-3.3, 2.1), dvec2(1.0, 0.3) * size, dvec2(0.4, 1.0) * size];
+                assert_eq!(whole.mean(&corners(&ring)), compact.mean(&corners(&ring)), "{wrap:?} {size}");
+            }
+            assert_eq!(whole.whole_mean(), compact.whole_mean());
+        }
+    }
+
+    #[test]
+    fn slopes_of_bytes_are_those_of_the_heights() {
+        let (width, height) = (20, 24);
+        let bytes: Vec<[u8; 1]> = (0..width * height).map(|i| [(i * i % 251) as u8]).collect();
+        for wrap in [TexelWrap::Repeat, TexelWrap::Clamp, TexelWrap::Mirror] {
+            let sums = TexelSums::slopes_of_bytes(width, height, wrap, Arc::new(bytes.clone())).unwrap();
+            let place = |i: i64, size: u32| match wrap {
+                TexelWrap::Repeat => i.rem_euclid(i64::from(size)),
+                _ => i.clamp(0, i64::from(size) - 1),
+            };
+            let at = |x: i64, y: i64| {
+                let (x, y) = (place(x, width), place(y, height));
+                f32::from(bytes[(y * i64::from(width) + x) as usize][0]) / 255.0
+            };
+            let slope = |x: u32, y: u32| {
+                let (x, y) = (i64::from(x), i64::from(y));
+                let [u, v] = [at(x + 1, y) - at(x - 1, y), at(x, y - 1) - at(x, y + 1)];
+                [0.5 * width as f32 * u, 0.5 * height as f32 * v]
+            };
+            let plain = TexelSums::<2>::new_signed(width, height, wrap, slope).unwrap();
+            for size in [1.3, 7.1, 33.3, 210.7] {
+                let ring = [dvec2(-3.3, 2.1), dvec2(1.0, 0.3) * size, dvec2(0.4, 1.0) * size];
+                let [got, expected] = [&sums, &plain].map(|sums| sums.mean(&corners(&ring)));
+                for (a, b) in got.iter().zip(expected) {
+                    assert!((a - b).abs() < 2e-6 * f64::from(width), "{wrap:?} {size}: {got:?} {expected:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn whole_texels_are_exact() {
+        let sums = checker(8, 8, TexelWrap::Repeat);
+        let square = [dvec2(2.0, 3.0), dvec2(4.0, 3.0), dvec2(4.0, 5.0), dvec2(2.0, 5.0)];
+        let texels = [(2, 3), (3, 3), (2, 4), (3, 4)];
+        let expected = texels.iter().map(|&(x, y)| f64::from((x * 7 + y * 13) % 5)).sum::<f64>() / 4.0;
+        assert!((sums.mean(&corners(&square))[0] - expected).abs() < 1e-7);
+    }
+
+    #[test]
+    fn coarse_levels_agree_with_fine_ones() {
+        let sums =
+            TexelSums::<1>::new(64, 300, TexelWrap::Repeat, |x, y| [((x * 31 + y * y) % 17) as f32]).unwrap();
+        let ring = [dvec2(3.2, -500.3), dvec2(9.9, -500.3), dvec2(17.7, 900.4), dvec2(11.0, 900.4)];
+        let fine: [f64; 1] = sums.integral(0, &ring);
+        let fine = fine[0] / convex::area(&ring);
+        let got = sums.mean(&corners(&ring))[0];
+        assert!((got - fine).abs() < 2e-3 * fine, "{got} {fine}");
+    }
+
+    #[test]
+    fn perspective_weighs_texels_by_their_area_on_screen() {
+        // Two texels, one of which is seen at four times the distance.
+        let sums = TexelSums::<1>::new(2, 1, TexelWrap::Clamp, |x, _| [x as f32]).unwrap();
+        let corner = |x: f64, y: f64, depth: f64| TexelCorner {
+            grid: dvec2(x, y) / depth,
+            rational: 1.0 / depth,
+            texel: dvec2(x, y),
+        };
+        let quad =
+            [corner(0.0, 0.0, 1.0), corner(2.0, 0.0, 4.0), corner(2.0, 1.0, 4.0), corner(0.0, 1.0, 1.0)];
+        let far = {
+            let ring =
+                [corner(1.0, 0.0, 2.5), corner(2.0, 0.0, 4.0), corner(2.0, 1.0, 4.0), corner(1.0, 1.0, 2.5)];
+            convex::area(&ring.map(|c| c.grid)) / convex::area(&quad.map(|c| c.grid))
+        };
+        assert!((sums.mean(&quad)[0] - far).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,146 @@
+//! The ways in which sums along rows are stored, and how they are computed.
+
+use super::rows::{Bytes, RowSums, Whole};
+use super::slopes::Slopes;
+use std::sync::Arc;
+
+/// The ways in which sums are stored.
+#[derive(Clone, Debug)]
+pub(super) enum Rows<const N: usize> {
+    /// Of texels that are not negative.
+    Unsigned(Whole<u32, N>),
+    /// Of any texels.
+    Signed(Whole<i32, N>),
+    /// Of 8-bit texels.
+    Bytes(Bytes<N>),
+    /// Of the slopes of 8-bit heights, for two channels.
+    Slopes(Slopes),
+}
+
+/// `$call` with `$rows` as the [`RowSums`] that it holds.
+macro_rules! with_rows {
+    ($rows:expr, $name:ident => $call:expr) => {
+        match $rows {
+            $crate::texel::storage::Rows::Unsigned($name) => $call,
+            $crate::texel::storage::Rows::Signed($name) => $call,
+            $crate::texel::storage::Rows::Bytes($name) => $call,
+            $crate::texel::storage::Rows::Slopes($name) => $call,
+        }
+    };
+}
+pub(super) use with_rows;
+
+/// The unit in which texels from 0 to `most` add up to a row's sum below 2³², with half a unit of rounding for each.
+fn unit_of(width: usize, most: f64) -> f64 {
+    let steps = (f64::from(u32::MAX) - width as f64) / width as f64;
+    if most > 0.0 { most / steps } else { 1.0 }
+}
+
+/// To the nearest: `f64::round` is a call on machines without an instruction for it.
+fn in_units(value: f32, unit: f64) -> u32 {
+    (f64::from(value) / unit + 0.5) as u32
+}
+
+/// Sums as `row_sums` gives them row by row, and the unit they are in: each is right to 2⁻³² of the largest.
+fn signed_whole<const N: usize>(
+    rows: usize,
+    stride: usize,
+    row_sums: impl Fn(usize, &mut [[f64; N]]),
+) -> (Rows<N>, f64) {
+    let mut row = vec![[0.0; N]; stride];
+    let mut most = 0.0_f64;
+    for y in 0..rows {
+        row_sums(y, &mut row);
+        most = row.iter().flatten().fold(most, |most, s| most.max(s.abs()));
+    }
+    let unit = if most > 0.0 { most / f64::from(i32::MAX) } else { 1.0 };
+    let mut sums = Vec::with_capacity(rows * stride);
+    for y in 0..rows {
+        row_sums(y, &mut row);
+        // To the nearest, and away from 0 from the middle on.
+        sums.extend(row.iter().map(|sum| sum.map(|s| (s / unit + 0.5_f64.copysign(s)) as i32)));
+    }
+    (Rows::Signed(Whole { stride, sums }), unit)
+}
+
+impl<const N: usize> Rows<N> {
+    /// Sums of texels that are finite and not negative, and the unit they are in.
+    pub(super) fn unsigned(width: usize, texels: &[[f32; N]], most: f64) -> (Self, f64) {
+        let unit = unit_of(width, most);
+        let mut sums = Vec::with_capacity(texels.len() + texels.len() / width);
+        for row in texels.chunks_exact(width) {
+            let mut sum = [0; N];
+            sums.push(sum);
+            for texel in row {
+                sum.iter_mut().zip(texel).for_each(|(s, &v)| *s += in_units(v, unit));
+                sums.push(sum);
+            }
+        }
+        (Self::Unsigned(Whole { stride: width + 1, sums }), unit)
+    }
+
+    /// Sums of texels that are finite, and the unit they are in.
+    pub(super) fn signed(width: usize, texels: &[[f32; N]]) -> (Self, f64) {
+        let stride = width + 1;
+        signed_whole(texels.len() / width, stride, |row, sums| {
+            sums[0] = [0.0; N];
+            for (x, texel) in texels[row * width..][..width].iter().enumerate() {
+                sums[x + 1] = std::array::from_fn(|c| sums[x][c] + f64::from(texel[c]));
+            }
+        })
+    }
+
+    /// Sums of 8-bit texels that stand for `values`, which are finite and not negative, and the unit they are in.
+    pub(super) fn bytes(
+        width: usize,
+        texels: Arc<Vec<[u8; N]>>,
+        values: &[f32; 256],
+        most: f64,
+    ) -> (Self, f64) {
+        let unit = unit_of(width, most);
+        // Values of bytes that do not occur may be beyond `most`.
+        let units = Box::new(values.map(|v| in_units(v.min(most as f32), unit)));
+        (Self::Bytes(Bytes::new(width, texels, units)), unit)
+    }
+
+    /// Bands of rows, each the mean of `rows` of them (fewer in the last), and the unit they are in if these are in `unit`.
+    pub(super) fn bands(&self, width: usize, height: usize, rows: usize, unit: f64) -> (Self, f64) {
+        let stride = width + 1;
+        let bands = height.div_ceil(rows);
+        let add_up = |band: usize, sums: &mut [[f64; N]]| {
+            let taken = band * rows..((band + 1) * rows).min(height);
+            sums.fill([0.0; N]);
+            for y in taken.clone() {
+                with_rows!(self, all => for (x, sum) in sums.iter_mut().enumerate() {
+                    let before: [f64; N] = all.before(y, x);
+                    sum.iter_mut().zip(before).for_each(|(s, v)| *s += v);
+                });
+            }
+            taken.len()
+        };
+        if let Self::Unsigned(_) | Self::Bytes(_) = self {
+            let mut band_sums = vec![[0.0; N]; stride];
+            let mut sums = Vec::with_capacity(bands * stride);
+            for band in 0..bands {
+                let count = add_up(band, &mut band_sums) as u64;
+                sums.extend(band_sums.iter().map(|sum| sum.map(|s| (s as u64 / count) as u32)));
+            }
+            return (Self::Unsigned(Whole { stride, sums }), unit);
+        }
+        signed_whole(bands, stride, |band, sums| {
+            let count = add_up(band, sums) as f64;
+            sums.iter_mut().flatten().for_each(|s| *s *= unit / count);
+        })
+    }
+
+    /// A texture with half as many texels on a side, each the mean of four, times `unit`.
+    pub(super) fn means_of_four(&self, width: usize, height: usize, unit: f64) -> Vec<[f32; N]> {
+        let mut means = Vec::with_capacity(width / 2 * (height / 2));
+        with_rows!(self, all => for (y, x) in (0..height / 2).flat_map(|y| (0..width / 2).map(move |x| (y, x))) {
+            let [upper, lower] = [2 * y, 2 * y + 1].map(|row| (all.before(row, 2 * x), all.before(row, 2 * x + 2)));
+            let pair = |(before, after): ([f64; N], [f64; N]), c: usize| after[c] - before[c];
+            means.push(std::array::from_fn(|c| ((pair(upper, c) + pair(lower, c)) * unit / 4.0) as f32));
+        });
+        means
+    }
+}

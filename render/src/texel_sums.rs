@@ -1,0 +1,66 @@
+//! Textures summed up for exact means, when they are first looked up.
+//!
+//! A picture shows some of its scene's textures: the others cost no time and no memory beyond their texels. Sums of 8-bit texels
+//! share these.
+
+use crate::scene::{LINEAR_OF_SRGB, Texels, Texture, unit_of_byte};
+use pointillist_micropoint::{MOST_TEXELS_ON_A_SIDE, MicropointError, TexelSums, TexelWrap};
+use std::sync::{Arc, LazyLock};
+
+/// A value that is made when it is first read, by one thread while others that need it wait.
+pub(crate) type Lazy<T> = LazyLock<T, Box<dyn FnOnce() -> T + Send>>;
+
+/// What is made of textures when it is first read; at once if making it may fail.
+///
+/// # Errors
+/// Those of `make`.
+pub(crate) fn when_needed<T: Send + 'static, const K: usize>(
+    textures: [&Texture; K],
+    make: impl FnOnce([&Texture; K]) -> Result<T, MicropointError> + Send + 'static,
+) -> Result<Lazy<T>, MicropointError> {
+    let cannot_fail = |texture: &Texture| {
+        let is_float = matches!(texture.texels, Texels::Float(_));
+        !is_float && texture.width.max(texture.height) <= MOST_TEXELS_ON_A_SIDE
+    };
+    if textures.iter().all(|texture| cannot_fail(texture)) {
+        let textures = textures.map(Texture::clone);
+        let make = move || make(textures.each_ref()).expect("bytes stand for numbers from 0 to 1");
+        return Ok(Lazy::new(Box::new(make)));
+    }
+    let made = make(textures)?;
+    Ok(Lazy::new(Box::new(|| made)))
+}
+
+/// The sums of a texture's colours.
+///
+/// # Errors
+/// [`MicropointError`] for a texture that is too large, or with a value that is not finite or negative.
+pub(crate) fn color_sums(texture: &Texture, wrap: TexelWrap) -> Result<TexelSums<3>, MicropointError> {
+    let Texture { width, height, .. } = *texture;
+    let of_bytes =
+        |texels: &Arc<_>, values: &_| TexelSums::from_bytes(width, height, wrap, Arc::clone(texels), values);
+    match &texture.texels {
+        Texels::OpaqueSrgb8(texels) => of_bytes(texels, &LINEAR_OF_SRGB),
+        Texels::OpaqueLinear8(texels) => of_bytes(texels, &values(unit_of_byte)),
+        _ => TexelSums::new(width, height, wrap, |x, y| texture.texel(x, y).truncate().to_array()),
+    }
+}
+
+/// The sums of a texture's opacities.
+///
+/// # Errors
+/// As [`color_sums`].
+pub(crate) fn opacity_sums(texture: &Texture, wrap: TexelWrap) -> Result<TexelSums<1>, MicropointError> {
+    let Texture { width, height, .. } = *texture;
+    match &texture.texels {
+        Texels::Opacity8(texels) => {
+            TexelSums::from_bytes(width, height, wrap, texels.clone(), &values(unit_of_byte))
+        }
+        _ => TexelSums::new(width, height, wrap, |x, y| [texture.texel(x, y).w]),
+    }
+}
+
+/// A value for each byte.
+pub(crate) fn values(of: impl Fn(u8) -> f32) -> [f32; 256] {
+    std::array::from_fn(|byte| of(byte as u8))
+}
