@@ -70,7 +70,7 @@ pub use lens::{BoxImage, Lens, LensKind, Plane};
 pub use pointillist_view::{PixelRect, Projection, View, ViewError};
 pub use render::{MicropointOptions, Renderer};
 pub use resolve::Occlusion;
-pub use texel::{MOST_TEXELS_ON_A_SIDE, TexelCorner, TexelSums, TexelWrap};
+pub use texel::{MOST_TEXELS_ON_A_SIDE, MaskSums, TexelCorner, TexelSums, TexelWrap};
 pub use tile::{Fragment, Micropoint, Tile};
 pub use visit::{FaceVisitor, VisitCounts, VisitMemory};
 

@@ -7,7 +7,7 @@ use crate::texel_sums::{Lazy, color_sums, opacity_sums, when_needed};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec3, Vec4};
 use pointillist_micropoint::{
-    Geometry, MicropointError, SurfaceOpacity, SurfacePoint, TexelSums, TexelWrap, TexturedOpacity,
+    Geometry, MaskSums, MicropointError, SurfaceOpacity, SurfacePoint, TexelSums, TexelWrap, TexturedOpacity,
 };
 use pointillist_parallel as parallel;
 use pointillist_shade::Model;
@@ -20,11 +20,11 @@ use std::sync::Arc;
 enum Textured {
     Nothing,
     Color(Lazy<TexelSums<3>>),
-    Opacity(Lazy<TexelSums<1>>),
+    Opacity(Lazy<MaskSums>),
     Masked {
         color: Lazy<MaskedColor>,
         /// By itself: shadows ask for it often, and for nothing else.
-        opacity: Lazy<TexelSums<1>>,
+        opacity: Lazy<MaskSums>,
     },
 }
 
@@ -166,7 +166,7 @@ impl Surfaces {
 
     /// Whether the opacity of a triangle varies.
     pub(crate) fn is_masked(&self, triangle: u32) -> bool {
-        matches!(self.textured(triangle), Textured::Opacity(_) | Textured::Masked(_))
+        matches!(self.textured(triangle), Textured::Opacity(_) | Textured::Masked { .. })
     }
 
     /// Whether a triangle has any map.
@@ -195,7 +195,7 @@ impl TexturedOpacity for Surfaces {
         match self.textured(triangle) {
             Textured::Nothing | Textured::Color(_) => 1.0,
             Textured::Opacity(sums) | Textured::Masked { opacity: sums, .. } => {
-                self.uvs.mean(triangle, polygon, sums)[0] as f32
+                self.uvs.mean_of_mask(triangle, polygon, sums) as f32
             }
         }
     }

@@ -4,7 +4,7 @@
 //! share these.
 
 use crate::scene::{LINEAR_OF_SRGB, Texels, Texture, unit_of_byte};
-use pointillist_micropoint::{MOST_TEXELS_ON_A_SIDE, MicropointError, TexelSums, TexelWrap};
+use pointillist_micropoint::{MOST_TEXELS_ON_A_SIDE, MaskSums, MicropointError, TexelSums, TexelWrap};
 use std::sync::{Arc, LazyLock};
 
 /// A value that is made when it is first read, by one thread while others that need it wait.
@@ -50,14 +50,15 @@ pub(crate) fn color_sums(texture: &Texture, wrap: TexelWrap) -> Result<TexelSums
 ///
 /// # Errors
 /// As [`color_sums`].
-pub(crate) fn opacity_sums(texture: &Texture, wrap: TexelWrap) -> Result<TexelSums<1>, MicropointError> {
+pub(crate) fn opacity_sums(texture: &Texture, wrap: TexelWrap) -> Result<MaskSums, MicropointError> {
     let Texture { width, height, .. } = *texture;
-    match &texture.texels {
+    let sums = match &texture.texels {
         Texels::Opacity8(texels) => {
             TexelSums::from_bytes(width, height, wrap, texels.clone(), &values(unit_of_byte))
         }
         _ => TexelSums::new(width, height, wrap, |x, y| [texture.texel(x, y).w]),
-    }
+    };
+    sums.map(MaskSums::new)
 }
 
 /// A value for each byte.

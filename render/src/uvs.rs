@@ -2,7 +2,7 @@
 
 use crate::scene::{Mesh, NONE};
 use glam::{DVec2, DVec3};
-use pointillist_micropoint::{SurfacePoint, TexelCorner, TexelSums, TexelWrap};
+use pointillist_micropoint::{MaskSums, SurfacePoint, TexelCorner, TexelSums, TexelWrap};
 use pointillist_shade::Wrap;
 
 /// Texture coordinates of the corners of all triangles; nothing for a scene without textures.
@@ -32,6 +32,11 @@ impl Uvs {
         map: &TexelSums<N>,
     ) -> [f64; N] {
         map.mean(self.corners(triangle, polygon, map).as_slice())
+    }
+
+    /// Mean of a mask over a polygon of a triangle.
+    pub(crate) fn mean_of_mask(&self, triangle: u32, polygon: &[SurfacePoint], mask: &MaskSums) -> f64 {
+        mask.mean(self.corners(triangle, polygon, mask.sums()).as_slice())
     }
 
     fn corners<const N: usize>(

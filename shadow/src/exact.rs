@@ -18,6 +18,8 @@ const NEGLIGIBLE: f64 = 1e-9;
 pub(crate) struct Memory {
     regions: Regions,
     blockers: Vec<Blocker>,
+    /// Opacities over the whole target that are known already, by caster.
+    known: Vec<(u32, f64)>,
     /// The caster that hid the last target.
     last_hider: u32,
     /// Targets that had to be cut.
@@ -47,7 +49,8 @@ pub(crate) fn lit_fraction(
     work.blockers.sort_unstable_by(|a, b| compare(caster(a), caster(b)));
     work.partial += 1;
     let polygon = ConvexPolygon::from_vertices(outline);
-    work.regions.hide(polygon, NEGLIGIBLE * target.area, &work.blockers, query);
+    let occluders = TargetOccluders { query, outline, known: &work.known };
+    work.regions.hide(polygon, NEGLIGIBLE * target.area, &work.blockers, &occluders);
     if work.regions.is_hidden() {
         return 0.0;
     }
@@ -74,6 +77,7 @@ fn find_blockers(
     work: &mut Memory,
 ) -> bool {
     work.blockers.clear();
+    work.known.clear();
     let (low, high) = target.bounds;
     // The caster that hid the last target often hides the next one.
     let nearby = query.nearby;
@@ -103,6 +107,7 @@ fn find_blockers(
             if opacity <= 0.0 {
                 continue;
             }
+            work.known.push((c, opacity));
         }
         match front {
             Front::Nowhere => {}
@@ -139,17 +144,29 @@ fn overlap(caster: &ConvexPolygon, target: &[DVec2]) -> Overlap {
     if over { Overlap::Over } else { Overlap::Other }
 }
 
-impl Occluders for Query<'_> {
+/// The casters before one target.
+struct TargetOccluders<'a> {
+    query: &'a Query<'a>,
+    outline: &'a [DVec2],
+    known: &'a [(u32, f64)],
+}
+
+impl Occluders for TargetOccluders<'_> {
     fn outline(&self, number: u32) -> &[DVec2] {
-        self.casters[number as usize].polygon.vertices()
+        self.query.casters[number as usize].polygon.vertices()
     }
 
     fn is_opaque(&self, number: u32) -> bool {
-        self.casters[number as usize].opacity == Some(1.0)
+        self.query.casters[number as usize].opacity == Some(1.0)
     }
 
     fn opacity(&self, number: u32, over: &ConvexPolygon) -> f64 {
-        self.opacity(&self.casters[number as usize], over.vertices())
+        let known = || self.known.iter().find(|(caster, _)| *caster == number);
+        // Behind masks alone most targets are never cut.
+        match (over.vertices() == self.outline).then(known).flatten() {
+            Some((_, opacity)) => *opacity,
+            None => self.query.opacity(&self.query.casters[number as usize], over.vertices()),
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 //! costs the texels on the outline, not those inside.
 
 mod corner;
+mod mask;
 mod perspective;
 mod plane;
 mod rows;
@@ -13,6 +14,7 @@ mod slopes;
 mod storage;
 
 pub use corner::{TexelCorner, TexelWrap};
+pub use mask::MaskSums;
 
 use crate::error::MicropointError;
 use corner::is_usable;
@@ -176,8 +178,8 @@ impl<const N: usize> TexelSums<N> {
         Some(self.coarser.get_or_init(make))
     }
 
-    fn plane<'a, R>(&self, sums: &'a R, rows: usize) -> Plane<'a, R> {
-        Plane { sums, width: self.width, height: self.height, wrap: self.wrap, rows }
+    fn plane<'a, R>(&self, sums: &'a R, shift: u32) -> Plane<'a, R> {
+        Plane { sums, width: self.width, height: self.height, wrap: self.wrap, shift }
     }
 
     /// Texels in a row.
@@ -195,7 +197,7 @@ impl<const N: usize> TexelSums<N> {
     /// The texel at integer coordinates, wrapped.
     #[must_use]
     pub fn texel(&self, x: f64, y: f64) -> [f64; N] {
-        let texel = with_rows!(&self.rows, sums => self.plane(sums, 1).texel(x, y));
+        let texel = with_rows!(&self.rows, sums => self.plane(sums, 0).texel(x, y));
         self.within_range(texel.map(|t| t * self.unit))
     }
 
@@ -249,7 +251,7 @@ impl<const N: usize> TexelSums<N> {
     pub fn whole_mean(&self) -> [f64; N] {
         let mut sum = [0.0; N];
         with_rows!(&self.rows, sums => for row in 0..self.height {
-            let total: [f64; N] = self.plane(sums, 1).row_sum(row, self.width as f64);
+            let total: [f64; N] = self.plane(sums, 0).row_sum(row, self.width as f64);
             sum.iter_mut().zip(total).for_each(|(s, t)| *s += t);
         });
         sum.map(|s| s * self.unit / (self.width * self.height) as f64)
@@ -308,16 +310,15 @@ impl<const N: usize> TexelSums<N> {
 
     /// The integral over a ring, from sums of rows or, with a `level` beyond 0, of bands of 4 to this power.
     fn integral(&self, level: usize, ring: &[DVec2]) -> [f64; N] {
-        let texels = 4_usize.pow(level as u32);
         let (rows, unit) = match level.checked_sub(1) {
             None => (&self.rows, self.unit),
             Some(band) => {
-                let make = || self.rows.bands(self.width, self.height, texels, self.unit);
+                let make = || self.rows.bands(self.width, self.height, 4_usize.pow(level as u32), self.unit);
                 let (rows, unit) = self.bands[band].get_or_init(make);
                 (rows, *unit)
             }
         };
-        with_rows!(rows, sums => self.plane(sums, texels).integral(ring)).map(|s| s * unit)
+        with_rows!(rows, sums => self.plane(sums, 2 * level as u32).integral(ring)).map(|s| s * unit)
     }
 }
 

@@ -10,8 +10,8 @@ pub(super) struct Plane<'a, R> {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) wrap: TexelWrap,
-    /// Rows of texels that a row of sums stands for.
-    pub(super) rows: usize,
+    /// A row of sums stands for 2 to this power rows of texels. Not a number of rows: it would be divided by at every step.
+    pub(super) shift: u32,
 }
 
 /// Where one row's sums hold.
@@ -152,10 +152,10 @@ impl<R> Plane<'_, R> {
     #[inline]
     fn band(&self, y: f64) -> Band {
         let height = self.height as f64;
-        let rows = self.rows;
-        let last = self.height.div_ceil(rows) - 1;
-        let inside = |r: f64| ((r as usize) / rows).min(last);
-        let upper = |band: usize| ((band + 1) * rows).min(self.height) as f64;
+        let shift = self.shift;
+        let last = (self.height - 1) >> shift;
+        let inside = |r: f64| ((r as usize) >> shift).min(last);
+        let upper = |band: usize| ((band + 1) << shift).min(self.height) as f64;
         if (0.0..height).contains(&y) {
             let row = inside(y);
             return Band { row, end: upper(row) };
@@ -167,8 +167,8 @@ impl<R> Plane<'_, R> {
                 let next = ((y / height).floor() + 1.0) * height;
                 // Distance from the next mirror line, upward: rows run backward.
                 let back = (next - y).min(height);
-                let row = ((back.ceil() as usize).max(1) - 1) / rows;
-                Band { row: row.min(last), end: next - (row.min(last) * rows) as f64 }
+                let row = ((back.ceil() as usize).max(1) - 1) >> shift;
+                Band { row: row.min(last), end: next - (row.min(last) << shift) as f64 }
             }
             _ => {
                 let base = (y / height).floor() * height;
