@@ -65,3 +65,28 @@ pub(crate) fn opacity_sums(texture: &Texture, wrap: TexelWrap) -> Result<MaskSum
 pub(crate) fn values(of: impl Fn(u8) -> f32) -> [f32; 256] {
     std::array::from_fn(|byte| of(byte as u8))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DVec2, Vec3, dvec2};
+    use pointillist_micropoint::TexelCorner;
+    use pointillist_shade::Wrap;
+
+    #[test]
+    fn borders_belong_to_the_same_texels_as_in_lookups_of_points() {
+        let texture =
+            Texture::from_srgb("any", [8, 4], |x, y| [(x * 31) as u8, (y * 60) as u8, (x * y) as u8]);
+        for (wrap, texel_wrap) in [(Wrap::Repeat, TexelWrap::Repeat), (Wrap::Clamp, TexelWrap::Clamp)] {
+            let sums = color_sums(&texture, texel_wrap).unwrap();
+            for (i, j) in (-20..20).flat_map(|i| (-20..20).map(move |j| (i, j))) {
+                let uv = dvec2(f64::from(i), f64::from(j)) / 8.0;
+                let texel = dvec2(uv.x, 1.0 - uv.y) * dvec2(8.0, 4.0);
+                let mean = sums.mean(&[TexelCorner { grid: DVec2::ZERO, rational: 1.0, texel }; 3]);
+                let mean = Vec3::from_array(mean.map(|v| v as f32));
+                let expected = texture.lookup(wrap, uv).truncate();
+                assert!((mean - expected).abs().max_element() < 1e-6, "{uv}: {mean} {expected}");
+            }
+        }
+    }
+}

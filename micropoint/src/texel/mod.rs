@@ -4,8 +4,21 @@
 //! is linear in the albedo, so the mean over all those pieces is all that is needed of them; and
 //! that is an integral over a polygon of texels, ∬ f = ∮ F dy with F the sums along rows. It
 //! costs the texels on the outline, not those inside.
+//!
+//! # Accuracy
+//! Errors are relative to the contrast: the difference between the largest and the smallest texel. A mean is off by at most 0.015, and
+//! by 0.001 in the root mean square over outlines of 1 to 400 texels, up to 60 times as long as they are wide and with depths in a ratio of up to
+//! 1.5, on textures of black and white noise, the worst that was found (`means_keep_the_stated_bound`). What falls short of exact, and the
+//! constants that decide when it is done, all chosen to keep this bound:
+//!
+//! | where | constants |
+//! | --- | --- |
+//! | outlines of many texels: four texels count as one, or rows are taken together | [`MOST_SPAN`], [`LEAST_WIDTH`], [`MOST_ROWS`] |
+//! | depths in the ratio that counts as none, or as the same within a strip | [`NO_PERSPECTIVE`], [`FEW_TEXELS`], `LITTLE_PERSPECTIVE`, `MOST_STRIPS` |
+//! | outlines that hold the texture several times, or lines longer than `MOST_ON_LINE` | [`MOST_TEXELS`] |
 
 mod corner;
+mod line;
 mod mask;
 mod perspective;
 mod plane;
@@ -17,7 +30,7 @@ pub use corner::{TexelCorner, TexelWrap};
 pub use mask::MaskSums;
 
 use crate::error::MicropointError;
-use corner::is_usable;
+use corner::{cell, is_usable};
 use glam::DVec2;
 use perspective::LITTLE_PERSPECTIVE;
 use plane::Plane;
@@ -209,8 +222,11 @@ impl<const N: usize> TexelSums<N> {
 
     /// The mean over a convex polygon, weighted by area in the grid.
     ///
-    /// Exact up to rounding where the polygon sees few texels or little perspective; elsewhere it is cut
-    /// into strips of nearly equal depth. Never beyond the smallest and largest texel of a channel. Corners that are
+    /// Exact up to rounding where the polygon sees few texels; elsewhere off by at most 0.015 of the contrast between the largest and the smallest texel, and by
+    /// 0.001 in the root mean square: many texels on the outline are taken together, and a polygon of different depths is
+    /// cut into strips of nearly equal depth. A polygon that is a line in the texture sees each texel by the area that sees it or,
+    /// without area in the grid, by the length of the line in it. A texel is half open: a place on a border belongs to the
+    /// texel on the right (growing u) and above (growing v). Never beyond the smallest and largest texel of a channel. Corners that are
     /// not finite give the texel at the origin.
     #[must_use]
     pub fn mean(&self, corners: &[TexelCorner]) -> [f64; N] {
@@ -224,8 +240,12 @@ impl<const N: usize> TexelSums<N> {
         if corners.is_empty() || !corners.iter().all(|c| is_usable(c.texel)) {
             return self.texel(0.0, 0.0);
         }
-        if low.floor() == high.floor() {
-            return self.texel(low.x, low.y);
+        let first = DVec2::new(low.x.floor(), if low.y < high.y { low.y.floor() } else { cell(low).y });
+        if high.x <= first.x + 1.0 && high.y <= first.y + 1.0 {
+            return self.texel(first.x, first.y);
+        }
+        if line::is_line(corners, high - low) {
+            return self.mean_along_line(corners);
         }
         let texels = (high.ceil() - low.floor()).max(DVec2::ONE);
         let few = texels.x * texels.y <= FEW_TEXELS;
@@ -255,6 +275,10 @@ impl<const N: usize> TexelSums<N> {
             sum.iter_mut().zip(total).for_each(|(s, t)| *s += t);
         });
         sum.map(|s| s * self.unit / (self.width * self.height) as f64)
+    }
+
+    fn mean_along_line(&self, corners: &[TexelCorner]) -> [f64; N] {
+        line::mean_along_line(corners, |texel| self.texel(texel.x, texel.y))
     }
 
     /// The mean weighted by area in the texture: right where there is no perspective.
@@ -296,10 +320,9 @@ impl<const N: usize> TexelSums<N> {
             return coarser.mean_in_texels(&halved[..len]);
         }
         let size = high - low;
-        // A polygon without area in the texture (a surface seen edge-on): the texel in the middle of the line stands for all.
-        if area.abs() <= 1e-9 * size.x.max(size.y).powi(2) {
-            let middle = ring.iter().sum::<DVec2>() / len as f64;
-            return self.texel(middle.x, middle.y);
+        // A strip of a polygon may be a line where the whole is not.
+        if line::is_line(corners, size) {
+            return self.mean_along_line(corners);
         }
         let mut level = 0;
         while level < self.bands.len() && size.y > MOST_ROWS * 4.0_f64.powi(level as i32) {
@@ -478,6 +501,93 @@ mod tests {
                     assert!((a - b).abs() < 2e-6 * f64::from(width), "{wrap:?} {size}: {got:?} {expected:?}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_line_sees_each_texel_by_the_area_that_sees_it() {
+        // A triangle whose three corners lie on one row of texels: the share of texel k of 4 is the area between two verticals.
+        let sums =
+            TexelSums::<1>::new(4, 2, TexelWrap::Clamp, |x, _| [[0.0, 1.0, 5.0, 2.0][x as usize]]).unwrap();
+        let corner = |grid: DVec2| TexelCorner { grid, rational: 1.0, texel: dvec2(grid.x, 0.5) };
+        let triangle = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(0.0, 4.0)].map(corner);
+        let expected = (5.0 * 1.0 + 3.0 * 5.0 + 1.0 * 2.0) / 16.0;
+        assert!((sums.mean(&triangle)[0] - expected).abs() < 1e-7, "{}", sums.mean(&triangle)[0]);
+        // Without area in the grid, by length.
+        let edge_on =
+            [0.5, 3.5, 2.0].map(|x| TexelCorner { grid: DVec2::X, rational: 1.0, texel: dvec2(x, 0.5) });
+        let expected = (0.5 * 0.0 + 1.0 + 5.0 + 0.5 * 2.0) / 3.0;
+        assert!((sums.mean(&edge_on)[0] - expected).abs() < 1e-7, "{}", sums.mean(&edge_on)[0]);
+    }
+
+    #[test]
+    fn a_line_in_perspective_is_cut_where_texels_meet() {
+        let sums = TexelSums::<1>::new(2, 1, TexelWrap::Clamp, |x, _| [x as f32]).unwrap();
+        // The texture runs into the depth only, from 1 to 4.
+        let corner = |x: f64, depth: f64, u: f64| TexelCorner {
+            grid: dvec2(x, 1.0) / depth,
+            rational: 1.0 / depth,
+            texel: dvec2(u, 0.5),
+        };
+        let quad = [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0), (1.0, 4.0, 2.0), (0.0, 4.0, 2.0)];
+        let far = [(0.0, 2.5, 1.0), (1.0, 2.5, 1.0), (1.0, 4.0, 2.0), (0.0, 4.0, 2.0)];
+        let [quad, far] = [quad, far].map(|ring| ring.map(|(x, depth, u)| corner(x, depth, u)));
+        let area = |ring: &[TexelCorner; 4]| convex::area(&ring.map(|c| c.grid));
+        assert!((sums.mean(&quad)[0] - area(&far) / area(&quad)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_place_on_a_border_belongs_to_the_texel_on_its_right_and_above() {
+        let sums = checker(6, 5, TexelWrap::Repeat);
+        let at = |x: f64, y: f64| sums.mean(&corners(&[dvec2(x, y); 3]))[0];
+        assert_eq!(at(2.0, 3.0), sums.texel(2.0, 2.0)[0]);
+        assert_eq!(at(2.5, 0.0), sums.texel(2.0, 4.0)[0]);
+        assert_eq!(at(6.0, 5.0), sums.texel(0.0, 4.0)[0]);
+    }
+
+    /// A square cell of the grid that sees a plane: `extent` in texels across, `squeeze` times less along, depths in this ratio.
+    fn seen(random: &mut impl FnMut() -> f64, extent: f64, squeeze: f64, ratio: f64) -> [TexelCorner; 4] {
+        let turn = DVec2::from_angle(6.3 * random());
+        let tilt = DVec2::from_angle(6.3 * random());
+        let place = 100.0 * dvec2(random(), random());
+        [dvec2(0.0, 0.0), dvec2(1.0, 0.0), dvec2(1.0, 1.0), dvec2(0.0, 1.0)].map(|grid| {
+            let d = grid - 0.5;
+            // From 1 to `ratio` over the circle around the cell.
+            let rational = 1.0 + (ratio - 1.0) * (0.5 + d.dot(tilt) * std::f64::consts::FRAC_1_SQRT_2);
+            let texel = place + extent * turn.rotate(dvec2(d.x, d.y / squeeze)) / rational;
+            TexelCorner { grid, rational, texel }
+        })
+    }
+
+    #[test]
+    fn means_keep_the_stated_bound() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let noise: Vec<f32> = (0..128 * 128).map(|_| f32::from(u8::from(random() < 0.5))).collect();
+        let textures: [&dyn Fn(u32, u32) -> f32; 3] =
+            [&|x, y| noise[(y * 128 + x) as usize], &|x, y| ((x + y) % 2) as f32, &|x, y| {
+                f32::from(u8::from((x / 16 + y / 16) % 2 == 0))
+            }];
+        for texture in textures {
+            let sums = TexelSums::<1>::new(128, 128, TexelWrap::Repeat, |x, y| [texture(x, y)]).unwrap();
+            let (mut worst, mut squares, mut count) = (0.0_f64, 0.0, 0);
+            for _ in 0..1000 {
+                let extent = 400.0_f64.powf(random());
+                let squeeze = 60.0_f64.powf(random() * random());
+                let ratio = 1.0 + 0.5 * random().powi(4);
+                let cell = seen(&mut random, extent, squeeze, ratio);
+                let exact = perspective::mean_by_texels(&cell, |x, y| sums.texel(x, y)).unwrap();
+                let error = (sums.mean(&cell)[0] - exact[0]).abs();
+                worst = worst.max(error);
+                squares += error * error;
+                count += 1;
+            }
+            let rms = (squares / f64::from(count)).sqrt();
+            // Measured: 1.1e-2 and 8.5e-4 for noise, which is the worst of the three.
+            assert!(worst < 0.015 && rms < 0.001, "{worst} {rms}");
         }
     }
 

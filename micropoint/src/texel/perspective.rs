@@ -11,6 +11,9 @@ pub(super) const LITTLE_PERSPECTIVE: f64 = 1.01;
 /// Most strips: reached where one cell sees depths in a ratio of 13.
 const MOST_STRIPS: f64 = 256.0;
 
+/// Extent in texels that is followed texel by texel; time grows with what is seen of it, not with this.
+const MOST_CELLS: i32 = 1 << 12;
+
 /// Perspective, few texels: each texel's share is its area in the grid. `None` for a polygon without area.
 pub(super) fn mean_by_texels<const N: usize>(
     corners: &[TexelCorner],
@@ -23,7 +26,7 @@ pub(super) fn mean_by_texels<const N: usize>(
     if convex::area(&ring) < 0.0 {
         ring.reverse();
     }
-    let window = CellWindow { x0: 0, y0: 0, x1: 64, y1: 64 };
+    let window = CellWindow { x0: 0, y0: 0, x1: MOST_CELLS, y1: MOST_CELLS };
     let (mut sum, mut total) = ([0.0; N], 0.0);
     let mut add = |column: i32, row: i32, outline: &[DVec2]| {
         let mut in_grid = ConvexPolygon::EMPTY;
@@ -60,8 +63,11 @@ pub(super) fn mean_by_strips<const N: usize>(
     for i in 0..count as usize {
         let last = i + 1 == count as usize;
         let below = border(i as f64 + 1.0);
-        let (strip, further) =
-            if last { (std::mem::take(&mut rest), Vec::new()) } else { divide(&rest, below) };
+        let (strip, further) = if last {
+            (std::mem::take(&mut rest), Vec::new())
+        } else {
+            divide(&rest, |c| c.rational - below)
+        };
         rest = further;
         if strip.len() >= 3 {
             let ring: Vec<DVec2> = strip.iter().map(|c| c.grid).collect();
@@ -74,11 +80,14 @@ pub(super) fn mean_by_strips<const N: usize>(
     if total > 0.0 { sum.map(|s| s / total) } else { mean_of(corners) }
 }
 
-/// Divides a polygon where its `rational` equals `border`: the nearer part, then the farther.
-fn divide(corners: &[TexelCorner], border: f64) -> (Vec<TexelCorner>, Vec<TexelCorner>) {
+/// The part of a polygon where a function is above 0, and that where it is below. The function is linear over the grid.
+pub(super) fn divide(
+    corners: &[TexelCorner],
+    value: impl Fn(&TexelCorner) -> f64,
+) -> (Vec<TexelCorner>, Vec<TexelCorner>) {
     let part = |sign: f64| {
         let mut part = Vec::with_capacity(corners.len() + 1);
-        clip_ring(corners, |c| sign * (c.rational - border), crossing, |c| part.push(c));
+        clip_ring(corners, |c| sign * value(&c), crossing, |c| part.push(c));
         part
     };
     (part(1.0), part(-1.0))
