@@ -166,7 +166,14 @@ impl Surfaces {
 
     /// Whether the opacity of a triangle varies.
     pub(crate) fn is_masked(&self, triangle: u32) -> bool {
-        matches!(self.textured(triangle), Textured::Opacity(_) | Textured::Masked { .. })
+        self.mask(triangle).is_some()
+    }
+
+    fn mask(&self, triangle: u32) -> Option<&MaskSums> {
+        match self.textured(triangle) {
+            Textured::Nothing | Textured::Color(_) => None,
+            Textured::Opacity(mask) | Textured::Masked { opacity: mask, .. } => Some(mask),
+        }
     }
 
     /// Whether a triangle has any map.
@@ -192,12 +199,11 @@ impl Surfaces {
 
 impl TexturedOpacity for Surfaces {
     fn mean_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
-        match self.textured(triangle) {
-            Textured::Nothing | Textured::Color(_) => 1.0,
-            Textured::Opacity(sums) | Textured::Masked { opacity: sums, .. } => {
-                self.uvs.mean_of_mask(triangle, polygon, sums) as f32
-            }
-        }
+        self.mask(triangle).map_or(1.0, |mask| self.uvs.mean_of_mask(triangle, polygon, mask) as f32)
+    }
+
+    fn rough_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
+        self.mask(triangle).map_or(1.0, |mask| self.uvs.rough_mean_of_mask(triangle, polygon, mask) as f32)
     }
 }
 

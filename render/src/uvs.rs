@@ -39,6 +39,11 @@ impl Uvs {
         mask.mean(self.corners(triangle, polygon, mask.sums()).as_slice())
     }
 
+    /// The same roughly ([`MaskSums::rough_mean`]).
+    pub(crate) fn rough_mean_of_mask(&self, triangle: u32, polygon: &[SurfacePoint], mask: &MaskSums) -> f64 {
+        mask.rough_mean(self.corners(triangle, polygon, mask.sums()).as_slice())
+    }
+
     fn corners<const N: usize>(
         &self,
         triangle: u32,

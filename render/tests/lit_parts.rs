@@ -89,7 +89,7 @@ fn a_pixel_of_texels_under_shadow_edges_is_the_mean_of_small_ones() {
 fn a_pixel_of_holes_under_shadow_edges_is_the_mean_of_small_ones() {
     let material = |scene: &mut Scene| {
         let bytes = (0..35).map(|i| pattern(i % 7, i / 7)).collect();
-        let holes = scene.add_texture(Texture::new("holes", [7, 5], Texels::Opacity8(bytes)));
+        let holes = scene.add_texture(Texture::new("holes", [7, 5], Texels::from_opacities(bytes)));
         white("floor").with_opacity_map(holes)
     };
     let [coarse, fine] = [1, 8].map(|f| floor([3 * f, 3 * f], material, &CASTERS));

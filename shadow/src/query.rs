@@ -19,7 +19,7 @@ impl Query<'_> {
     pub(crate) fn opacity(&self, caster: &Caster, polygon: &[DVec2]) -> f64 {
         caster.opacity.unwrap_or_else(|| {
             let surface = &self.geometry.surfaces()[caster.face.surface as usize];
-            f64::from(caster.face.mean_opacity(self.lens, surface, self.opacity, DVec2::ZERO, polygon))
+            f64::from(caster.face.rough_opacity(self.lens, surface, self.opacity, DVec2::ZERO, polygon))
         })
     }
 }

@@ -32,12 +32,21 @@ impl MaskSums {
     /// the smallest or all to the largest of the mask.
     #[must_use]
     pub fn mean(&self, corners: &[TexelCorner]) -> f64 {
+        self.uniform_mean(corners).unwrap_or_else(|| self.sums.mean(corners)[0])
+    }
+
+    /// The same as [`TexelSums::rough_mean`].
+    #[must_use]
+    pub fn rough_mean(&self, corners: &[TexelCorner]) -> f64 {
+        self.uniform_mean(corners).unwrap_or_else(|| self.sums.rough_mean(corners)[0])
+    }
+
+    fn uniform_mean(&self, corners: &[TexelCorner]) -> Option<f64> {
         let [(least, most)] = self.sums.range;
-        match self.uniform_over(corners) {
-            Some(Uniform::Least) => least,
-            Some(Uniform::Most) => most,
-            None => self.sums.mean(corners)[0],
-        }
+        self.uniform_over(corners).map(|uniform| match uniform {
+            Uniform::Least => least,
+            Uniform::Most => most,
+        })
     }
 
     fn uniform_over(&self, corners: &[TexelCorner]) -> Option<Uniform> {

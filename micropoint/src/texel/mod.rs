@@ -13,7 +13,7 @@
 //!
 //! | where | constants |
 //! | --- | --- |
-//! | outlines of many texels: four texels count as one, or rows are taken together | [`MOST_SPAN`], [`LEAST_WIDTH`], [`MOST_ROWS`] |
+//! | outlines of many texels: four texels count as one, or rows are taken together | [`MOST_SPAN`], [`ROUGH_SPAN`], [`LEAST_WIDTH`], [`MOST_ROWS`] |
 //! | depths in the ratio that counts as none, or as the same within a strip | [`NO_PERSPECTIVE`], [`FEW_TEXELS`], `LITTLE_PERSPECTIVE`, `MOST_STRIPS` |
 //! | outlines that hold the texture several times, or lines longer than `MOST_ON_LINE` | [`MOST_TEXELS`] |
 
@@ -68,8 +68,11 @@ const MOST_ROWS: f64 = 128.0;
 /// a thousandth of the contrast between neighbours, and what is inside stays exact.
 const MOST_SPAN: f64 = 32.0;
 
-/// Mean width in texels below which an outline is all border, and is followed texel by texel.
-const LEAST_WIDTH: f64 = 8.0;
+/// The same where many means add up, as those of the masks before a light do.
+const ROUGH_SPAN: f64 = 8.0;
+
+/// Mean width, relative to the span at which four are taken together, below which an outline is all border and is followed texel by texel.
+const LEAST_WIDTH: f64 = 0.25;
 
 /// Texels up to which perspective is followed texel by texel.
 const FEW_TEXELS: f64 = 48.0;
@@ -230,10 +233,17 @@ impl<const N: usize> TexelSums<N> {
     /// not finite give the texel at the origin.
     #[must_use]
     pub fn mean(&self, corners: &[TexelCorner]) -> [f64; N] {
-        self.within_range(self.unbounded_mean(corners))
+        self.within_range(self.unbounded_mean(corners, MOST_SPAN))
     }
 
-    fn unbounded_mean(&self, corners: &[TexelCorner]) -> [f64; N] {
+    /// The same in about half the time where many texels are seen, off by at most 0.1 of the contrast and by 0.008 in the root
+    /// mean square, over the outlines and textures of the module's bound.
+    #[must_use]
+    pub fn rough_mean(&self, corners: &[TexelCorner]) -> [f64; N] {
+        self.within_range(self.unbounded_mean(corners, ROUGH_SPAN))
+    }
+
+    fn unbounded_mean(&self, corners: &[TexelCorner], most_span: f64) -> [f64; N] {
         let (low, high) = corners
             .iter()
             .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), c| (l.min(c.texel), h.max(c.texel)));
@@ -260,10 +270,10 @@ impl<const N: usize> TexelSums<N> {
             return mean;
         }
         if ratio > LITTLE_PERSPECTIVE && !few {
-            let mean = |strip: &[TexelCorner]| self.mean_in_texels(strip);
+            let mean = |strip: &[TexelCorner]| self.mean_in_texels(strip, most_span);
             return perspective::mean_by_strips(corners, least.max(most * 1e-6), most, mean);
         }
-        self.mean_in_texels(corners)
+        self.mean_in_texels(corners, most_span)
     }
 
     /// The mean of all texels.
@@ -281,8 +291,9 @@ impl<const N: usize> TexelSums<N> {
         line::mean_along_line(corners, |texel| self.texel(texel.x, texel.y))
     }
 
-    /// The mean weighted by area in the texture: right where there is no perspective.
-    fn mean_in_texels(&self, corners: &[TexelCorner]) -> [f64; N] {
+    /// The mean weighted by area in the texture: right where there is no perspective. Outlines that span more than `most_span` texels see four of them
+    /// as one.
+    fn mean_in_texels(&self, corners: &[TexelCorner], most_span: f64) -> [f64; N] {
         let mut ring = [DVec2::ZERO; convex::MAX_VERTICES];
         let len = corners.len().min(ring.len());
         // Whole periods are taken away so that sums stay small.
@@ -308,8 +319,8 @@ impl<const N: usize> TexelSums<N> {
                 _ => self.whole_mean(),
             };
         }
-        if span > MOST_SPAN
-            && area.abs() > LEAST_WIDTH * span
+        if span > most_span
+            && area.abs() > LEAST_WIDTH * most_span * span
             && let Some(coarser) = self.coarser()
         {
             let mut halved =
@@ -317,7 +328,7 @@ impl<const N: usize> TexelSums<N> {
             for (to, &texel) in halved.iter_mut().zip(&*ring) {
                 to.texel = 0.5 * texel;
             }
-            return coarser.mean_in_texels(&halved[..len]);
+            return coarser.mean_in_texels(&halved[..len], most_span);
         }
         let size = high - low;
         // A strip of a polygon may be a line where the whole is not.
@@ -573,21 +584,26 @@ mod tests {
             }];
         for texture in textures {
             let sums = TexelSums::<1>::new(128, 128, TexelWrap::Repeat, |x, y| [texture(x, y)]).unwrap();
-            let (mut worst, mut squares, mut count) = (0.0_f64, 0.0, 0);
-            for _ in 0..1000 {
+            let mut errors = [(0.0_f64, 0.0); 2];
+            let count = 1000;
+            for _ in 0..count {
                 let extent = 400.0_f64.powf(random());
                 let squeeze = 60.0_f64.powf(random() * random());
                 let ratio = 1.0 + 0.5 * random().powi(4);
                 let cell = seen(&mut random, extent, squeeze, ratio);
                 let exact = perspective::mean_by_texels(&cell, |x, y| sums.texel(x, y)).unwrap();
-                let error = (sums.mean(&cell)[0] - exact[0]).abs();
-                worst = worst.max(error);
-                squares += error * error;
-                count += 1;
+                for ((worst, squares), mean) in
+                    errors.iter_mut().zip([sums.mean(&cell), sums.rough_mean(&cell)])
+                {
+                    let error = (mean[0] - exact[0]).abs();
+                    *worst = worst.max(error);
+                    *squares += error * error;
+                }
             }
-            let rms = (squares / f64::from(count)).sqrt();
-            // Measured: 1.1e-2 and 8.5e-4 for noise, which is the worst of the three.
-            assert!(worst < 0.015 && rms < 0.001, "{worst} {rms}");
+            let [fine, rough] = errors.map(|(worst, squares)| (worst, (squares / f64::from(count)).sqrt()));
+            // Measured: 1.1e-2 and 8.5e-4 for noise, which is the worst of the three; rough 8e-2 and 7.3e-3.
+            assert!(fine.0 < 0.015 && fine.1 < 0.001, "{fine:?}");
+            assert!(rough.0 < 0.1 && rough.1 < 0.008, "{rough:?}");
         }
     }
 
