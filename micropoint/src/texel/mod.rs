@@ -297,10 +297,12 @@ impl<const N: usize> TexelSums<N> {
         let mut ring = [DVec2::ZERO; convex::MAX_VERTICES];
         let len = corners.len().min(ring.len());
         // Whole periods are taken away so that sums stay small.
-        let period = DVec2::new(self.width as f64, self.height as f64) * 2.0;
+        let size = DVec2::new(self.width as f64, self.height as f64);
+        let shift_by = |period: DVec2| (corners[0].texel / period).floor() * period;
         let shift = match self.wrap {
             TexelWrap::Clamp => DVec2::ZERO,
-            _ => (corners[0].texel / period).floor() * period,
+            TexelWrap::Repeat => shift_by(size),
+            TexelWrap::Mirror => shift_by(2.0 * size),
         };
         for (to, c) in ring.iter_mut().zip(corners) {
             *to = c.texel - shift;
@@ -319,27 +321,35 @@ impl<const N: usize> TexelSums<N> {
                 _ => self.whole_mean(),
             };
         }
-        if span > most_span
-            && area.abs() > LEAST_WIDTH * most_span * span
-            && let Some(coarser) = self.coarser()
-        {
-            let mut halved =
-                [TexelCorner { grid: DVec2::ZERO, rational: 1.0, texel: DVec2::ZERO }; convex::MAX_VERTICES];
-            for (to, &texel) in halved.iter_mut().zip(&*ring) {
-                to.texel = 0.5 * texel;
-            }
-            return coarser.mean_in_texels(&halved[..len], most_span);
-        }
-        let size = high - low;
         // A strip of a polygon may be a line where the whole is not.
-        if line::is_line(corners, size) {
+        if line::is_line(corners, high - low) {
             return self.mean_along_line(corners);
         }
+        self.mean_over_ring(ring, high - low, area, most_span)
+    }
+
+    /// The mean over a ring of this extent and area, which is overwritten.
+    fn mean_over_ring(
+        &self,
+        ring: &mut [DVec2],
+        mut extent: DVec2,
+        mut area: f64,
+        most_span: f64,
+    ) -> [f64; N] {
+        let mut sums = self;
+        while extent.max_element() > most_span
+            && area.abs() > LEAST_WIDTH * most_span * extent.max_element()
+            && let Some(coarser) = sums.coarser()
+        {
+            ring.iter_mut().for_each(|v| *v *= 0.5);
+            (extent, area) = (0.5 * extent, 0.25 * area);
+            sums = coarser;
+        }
         let mut level = 0;
-        while level < self.bands.len() && size.y > MOST_ROWS * 4.0_f64.powi(level as i32) {
+        while level < sums.bands.len() && extent.y > MOST_ROWS * 4.0_f64.powi(level as i32) {
             level += 1;
         }
-        self.integral(level, ring).map(|s| s / area)
+        sums.integral(level, ring).map(|s| s / area)
     }
 
     /// The integral over a ring, from sums of rows or, with a `level` beyond 0, of bands of 4 to this power.

@@ -3,6 +3,7 @@
 use super::corner::TexelWrap;
 use super::rows::RowSums;
 use glam::DVec2;
+use pointillist_dice::convex;
 
 /// A texture that fills the plane.
 pub(super) struct Plane<'a, R> {
@@ -35,10 +36,69 @@ impl<R> Plane<'_, R> {
         R: RowSums<N>,
     {
         let mut sum = [0.0; N];
+        let (low, high) = convex::bounds(ring);
+        let size = DVec2::new(self.width as f64, self.height as f64);
+        let inside = low.cmpge(DVec2::ZERO).all() && high.cmplt(size).all();
         for (i, &from) in ring.iter().enumerate() {
-            self.add_edge(from, ring[(i + 1) % ring.len()], &mut sum);
+            let to = ring[(i + 1) % ring.len()];
+            match inside {
+                true => self.add_edge_inside(from, to, &mut sum),
+                false => self.add_edge(from, to, &mut sum),
+            }
         }
         sum
+    }
+
+    /// As [`Plane::add_edge`], with the same result, for an edge inside the texture: rows and columns are counted, not looked for.
+    fn add_edge_inside<const N: usize>(&self, a: DVec2, b: DVec2, sum: &mut [f64; N])
+    where
+        R: RowSums<N>,
+    {
+        if a.y == b.y {
+            return;
+        }
+        let (from, to, sign) = if a.y < b.y { (a, b, 1.0) } else { (b, a, -1.0) };
+        let run = (to.x - from.x) / (to.y - from.y);
+        let (left, right) = (from.x.min(to.x), from.x.max(to.x));
+        let mut p = from;
+        for row in (from.y as usize) >> self.shift.. {
+            let end = ((row + 1) << self.shift) as f64;
+            if end >= to.y {
+                self.add_row_inside(row, p.x, to.x, sign * (to.y - p.y), sum);
+                return;
+            }
+            let x = (from.x + (end - from.y) * run).clamp(left, right);
+            self.add_row_inside(row, p.x, x, sign * (end - p.y), sum);
+            p = DVec2::new(x, end);
+        }
+    }
+
+    /// As [`Plane::add_row`] between two places inside the texture.
+    #[inline]
+    fn add_row_inside<const N: usize>(&self, row: usize, xa: f64, xb: f64, height: f64, sum: &mut [f64; N])
+    where
+        R: RowSums<N>,
+    {
+        let (lo, hi) = (xa.min(xb), xa.max(xb));
+        let (first, last) = (lo as usize, hi as usize);
+        let mut add = |column: usize, x: f64, weight: f64| {
+            let (before, texel) = self.sums.around(row, column);
+            let t = x - column as f64;
+            for c in 0..N {
+                sum[c] += weight * (before[c] + t * texel[c]);
+            }
+        };
+        if first == last {
+            add(first, 0.5 * (lo + hi), height);
+            return;
+        }
+        let per_length = height / (hi - lo);
+        let mut x = lo;
+        for column in first..=last {
+            let end = ((column + 1) as f64).min(hi);
+            add(column, 0.5 * (x + end), per_length * (end - x));
+            x = end;
+        }
     }
 
     /// The texel at integer coordinates.
