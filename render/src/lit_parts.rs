@@ -61,7 +61,7 @@ impl LitParts {
                 continue;
             }
             // What shows through the holes of the receiver's own mask is not lit.
-            let opacity = |corners: &[SurfacePoint]| f64::from(surfaces.mean_opacity(of.face.id, corners));
+            let opacity = |corners: &[SurfacePoint]| f64::from(surfaces.rough_opacity(of.face.id, corners));
             let whole = if masked { opacity(self.push(of, outline, 0.0)) } else { 1.0 };
             for region in regions() {
                 let share = fragment.weight * lit * (region.weight / total);
