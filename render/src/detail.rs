@@ -48,9 +48,12 @@ impl Shader<'_> {
         let Some(frame) = UvFrame::new(corners, self.surfaces.uvs().of(s.triangle)) else { return };
         let side = if s.front { 1.0 } else { -1.0 };
         let mut normal = s.normal;
+        let mut variance = 0.0;
         if let Some((_, scale)) = details.normal {
             let v = means.normal;
             normal = frame.mapped(normal, side, Vec3::new(scale * v.x, scale * v.y, v.z));
+            let slopes = means.normal_slopes;
+            variance += scale * scale * (slopes.z - slopes.truncate().length_squared());
         }
         if let Some(bump) = details.bump {
             let height = match bump.height {
@@ -58,6 +61,10 @@ impl Shader<'_> {
                 BumpHeight::OfTexture(share) => share * frame.span,
             };
             normal = frame.bumped(normal, side, means.slope * height);
+            variance += height * height * spread(&frame, means);
+        }
+        if variance > LEAST_VARIANCE {
+            s.material = s.material.widened(variance);
         }
         if normal != s.normal {
             s.normal = keep_visible(normal, s.to_eye, s.face_normal);
@@ -96,6 +103,17 @@ impl Shader<'_> {
             None => self.ambient.at(&s.spot(direction), hint),
         }
     }
+}
+
+/// Variance of slopes that counts as none: an eighth of the narrowest highlight's α². What is left of a difference of means by rounding is less.
+const LEAST_VARIANCE: f32 = 1e-7;
+
+/// The variance of the slopes of a height map about their mean, summed over both directions on the surface, for a height of 1.
+fn spread(frame: &UvFrame, means: &DetailMeans) -> f32 {
+    let (u, v) = (frame.gradient_u, frame.gradient_v);
+    let mean = means.slope;
+    let about_mean = means.slope_products - Vec3::new(mean.x * mean.x, mean.x * mean.y, mean.y * mean.y);
+    about_mean.dot(Vec3::new(u.length_squared(), 2.0 * u.dot(v), v.length_squared()))
 }
 
 /// The share of even light that a GGX surface mirrors to the eye.

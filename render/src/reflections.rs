@@ -26,9 +26,11 @@ pub(crate) fn mirrors(material: &Material) -> bool {
     material.surface.model == Model::Ggx || details.reflection.is_some() || details.transmission.is_some()
 }
 
-/// Whether what it mirrors is blurred.
+/// Whether what it mirrors is blurred, by its roughness or by bumps that are smaller than a pixel.
 fn is_rough(material: &Material) -> bool {
-    mirrors(material) && material.surface.roughness > SMALLEST_ROUGHNESS
+    let bumpy = material.details.bump.is_some() || material.details.normal.is_some();
+    let widened = bumpy && material.surface.model == Model::Ggx;
+    mirrors(material) && (widened || material.surface.roughness > SMALLEST_ROUGHNESS)
 }
 
 impl Reflections {

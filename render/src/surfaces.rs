@@ -22,7 +22,7 @@ enum Textured {
     Color(Lazy<TexelSums<3>>),
     Opacity(Lazy<MaskSums>),
     Masked {
-        color: Lazy<MaskedColor>,
+        color: Box<Lazy<MaskedColor>>,
         /// By itself: shadows ask for it often, and for nothing else.
         opacity: Lazy<MaskSums>,
     },
@@ -246,7 +246,9 @@ fn details_by_material(scene: &Scene) -> Result<Vec<Option<DetailMaps>>, Micropo
     let table = DetailTable::new(scene)?;
     let maps = |m: &Material| {
         let beyond = m.details != Details::default() || m.surface.model == Model::Ggx;
-        beyond.then(|| table.maps(&m.details))
+        // A metallic map may give a GGX surface the reflectance that it lacks.
+        let highlight = m.surface.model == Model::Ggx || m.surface.depends_on_view();
+        beyond.then(|| table.maps(&m.details, highlight))
     };
     Ok(scene.materials.iter().map(maps).collect())
 }
@@ -259,9 +261,9 @@ fn textured(material: &Material, textures: &[Texture]) -> Result<Textured, Micro
         (None, None) => Textured::Nothing,
         (Some(color), None) => Textured::Color(when_needed([color], move |[color]| color_sums(color, wrap))?),
         (None, Some(mask)) => Textured::Opacity(opacity(mask)?),
-        (Some(color), Some(mask)) => Textured::Masked {
-            color: when_needed([color, mask], move |[color, mask]| MaskedColor::new(color, mask, wrap))?,
-            opacity: opacity(mask)?,
-        },
+        (Some(color), Some(mask)) => {
+            let make = move |[color, mask]: [&Texture; 2]| MaskedColor::new(color, mask, wrap);
+            Textured::Masked { color: Box::new(when_needed([color, mask], make)?), opacity: opacity(mask)? }
+        }
     })
 }

@@ -1,12 +1,12 @@
 //! What materials come to: in pictures, and as surfaces of radiosity.
 
-use glam::{DVec3, Vec3, Vec4, dvec3, vec3};
+use glam::{DVec3, Vec3, Vec4, dvec2, dvec3, vec3};
 use pointillist_render::radiosity::{Baked, BakedTriangle};
 use pointillist_render::shade::{self, Light, MerlTable};
 use pointillist_render::{
-    AmbientLight, BakedLight, BakedSide, Camera, Channel, DrawOptions, LayerKind, LightSource, Lightmap,
-    LightmapError, Map, Material, MeasuredBrdf, Part, Scene, SceneError, Surroundings, Texels, Texture,
-    Transmission, fingerprint, render, scene_surfaces,
+    AmbientLight, BakedLight, BakedSide, Bump, BumpHeight, Camera, Channel, DrawOptions, LayerKind,
+    LightSource, Lightmap, LightmapError, Map, Material, MeasuredBrdf, Part, Scene, SceneError, Surroundings,
+    Texels, Texture, Transmission, fingerprint, render, scene_surfaces,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -160,4 +160,53 @@ fn numbers_of_details_and_ambient_light_are_checked() {
         "material `grey`: a refraction index of 0 is not above 0"
     );
     assert_eq!(message(|s| s.ambient = AmbientLight::Color(Vec3::NAN)), "ambient is not finite");
+}
+
+#[test]
+fn bumps_within_a_pixel_widen_the_highlight_by_the_variance_of_their_slopes() {
+    let surface = shade::Material::ggx(Vec3::ZERO, Vec3::splat(0.9), 0.3);
+    let mut bumpy = square(Material::new("metal", surface));
+    bumpy.mesh.uvs = [(0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0)].map(|(u, v)| dvec2(u, v)).to_vec();
+    bumpy.mesh.uv_of = vec![[0, 1, 2], [0, 2, 3]];
+    // A pixel sees the texture once: eight waves with the slopes s, 0, −s, 0.
+    let waves = (0..32 * 4).map(|i| [100, 150, 100, 50][i % 4]).collect();
+    let texture = bumpy.add_texture(Texture::new("waves", [32, 4], Texels::from_grays(waves)));
+    let map = Map { texture, wrap: shade::Wrap::Repeat, channel: Channel::Mean };
+    let height = 0.01;
+    bumpy.materials[0].details.bump = Some(Bump { map, height: BumpHeight::World(height) });
+    // A difference of 100 steps over two texels; a texture spans a quarter.
+    let slope = 100.0 / 255.0 / (2.0 * 0.25 / 32.0) * height;
+    let widened = square(Material::new("metal", surface.widened(0.5 * slope * slope)));
+    let [bumpy, widened, plain] = [bumpy, widened, square(Material::new("metal", surface))]
+        .map(|scene| render(&scene, &DrawOptions::DEFAULT, &()).unwrap());
+    for (i, a) in bumpy.color.iter().enumerate() {
+        let (b, c) = (widened.color[i], plain.color[i]);
+        // Along the triangles' common edge each sees a part of the waves, whose mean is not level.
+        if i % 8 + i / 8 != 7 {
+            assert!((a[0] - b[0]).abs() < 2e-3 * b[0], "{i}: {a:?} {b:?}");
+            assert!((a[0] - c[0]).abs() > 0.05 * c[0], "{i}: {a:?} {c:?}");
+        }
+    }
+}
+
+#[test]
+fn slopes_that_do_not_vary_change_no_highlight() {
+    let surface = shade::Material::ggx(Vec3::ZERO, Vec3::splat(0.9), 0.3);
+    let with_normals = |texels: Option<(u32, [u8; 3])>| {
+        let mut scene = square(Material::new("metal", surface));
+        scene.mesh.uvs = CORNERS.map(|p| p.truncate()).to_vec();
+        scene.mesh.uv_of = vec![[0, 1, 2], [0, 2, 3]];
+        if let Some((size, texel)) = texels {
+            let texels = Texels::OpaqueLinear8(vec![texel; (size * size) as usize].into());
+            let texture = scene.add_texture(Texture::new("even", [size; 2], texels));
+            let map = Map { texture, wrap: shade::Wrap::Repeat, channel: Channel::Mean };
+            scene.materials[0].details.normal = Some((map, 1.0));
+        }
+        render(&scene, &DrawOptions::DEFAULT, &()).unwrap().color
+    };
+    let none = with_normals(None);
+    assert_eq!(none, with_normals(Some((4, [128, 127, 255]))));
+    let [many, one] = [4, 1].map(|size| with_normals(Some((size, [150, 120, 250]))));
+    assert!(many.iter().zip(&one).all(|(a, b)| (a[0] - b[0]).abs() < 1e-5 * b[0]), "{many:?} {one:?}");
+    assert_ne!(many, none);
 }

@@ -78,6 +78,8 @@
 //! 15. M. Mikkelsen, *Bump mapping unparametrized surfaces on the GPU*, 2010 (surface gradients).
 //! 16. J. Křivánek, M. Colbert, *Real-time shading with filtered importance sampling*, EGSR 2008.
 //! 17. G. Thürmer, C. A. Wüthrich, *Computing vertex normals from polygonal facets*, 1998.
+//! 18. M. Olano, D. Baker, *LEAN mapping*, I3D 2010 (moments of slopes).
+//! 19. A. S. Kaplanyan, S. Hill, A. Patney, A. Lefohn, *Filtering distributions of normals for shading antialiasing*, HPG 2016.
 #![forbid(unsafe_code)]
 
 mod auto_uv;

@@ -1,6 +1,6 @@
 //! Materials, and the radiance that they reflect towards the eye.
 
-use crate::{Incident, LARGEST_IRRADIANCE, brdf, ggx};
+use crate::{Incident, LARGEST_IRRADIANCE, brdf, ggx, roughness};
 use glam::Vec3;
 
 /// Reflectance of clear lacquer, plastic or glass (index 1.5) at normal incidence: ((1.5 − 1)/(1.5 + 1))².
@@ -119,6 +119,42 @@ impl Material {
     #[must_use]
     pub const fn with_opacity(mut self, opacity: f32) -> Self {
         self.opacity = opacity;
+        self
+    }
+
+    /// The same with a highlight that is as wide as those of many normals together: their slopes over the surface vary by `variance`
+    /// about the mean, summed over both directions \[18\], \[19\].
+    ///
+    /// α² of the half vector's distribution grows by the variance, up to 1. For the Phong models α² is 2/(m + 2) of the exponent m for half vectors,
+    /// and what the highlight reflects in sum stays the same. No variance (or NaN) gives the same material, bit by bit.
+    #[must_use]
+    pub fn widened(mut self, variance: f32) -> Self {
+        if variance.is_nan() || variance <= 0.0 || !self.depends_on_view() {
+            return self;
+        }
+        let exponent = |m: f32, halves: f32| {
+            // Mirrored directions turn by twice the angle: their exponent is a quarter of that of half vectors.
+            let alpha2 = 2.0 / (halves * m.max(0.0) + 2.0) + variance;
+            ((2.0 / alpha2 - 2.0) / halves).max(0.0)
+        };
+        let m = self.shininess.max(0.0);
+        match self.model {
+            Model::Lambert => {}
+            Model::Ggx => {
+                let alpha = roughness::alpha(self.roughness);
+                self.roughness = (alpha * alpha + variance).min(1.0).sqrt().sqrt();
+            }
+            Model::NormalizedPhong => self.shininess = exponent(m, 4.0),
+            Model::NormalizedBlinnPhong => self.shininess = exponent(m, 1.0),
+            Model::Phong => {
+                self.shininess = exponent(m, 4.0);
+                self.specular *= brdf::phong_norm(self.shininess) / brdf::phong_norm(m);
+            }
+            Model::BlinnPhong => {
+                self.shininess = exponent(m, 1.0);
+                self.specular *= brdf::blinn_norm(self.shininess) / brdf::blinn_norm(m);
+            }
+        }
         self
     }
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, Vec3, dvec2, dvec3, vec3};
 use pointillist_shade::{
-    Falloff, Light, Material, ShadeError, Weighting, Wrap, gl, interpolate_color, interpolate_normal,
+    Falloff, Light, Material, Model, ShadeError, Weighting, Wrap, gl, interpolate_color, interpolate_normal,
     nearest, turn_to, vertex_normals,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -293,4 +293,30 @@ fn opengl_lights_may_be_any_distance_away() {
         let spot = gl::Spot { direction: DVec3::NEG_Y * far, cutoff_rad: 0.5, exponent: 1.0 };
         assert_eq!(shaded(gl::Placement::At(DVec3::Y * far), Some(spot)), Vec3::ONE, "{far:e}");
     }
+}
+
+#[test]
+fn highlights_widen_by_the_variance_of_slopes() {
+    // α² = 0.5⁴ = 1/16; 2/(6 + 2) = 1/4; 2/(4 · 1.5 + 2) = 1/4.
+    let rough = Material::ggx(Vec3::ZERO, Vec3::ONE, 0.5).widened(3.0 / 16.0);
+    assert!((rough.roughness - 0.5f32.sqrt()).abs() < 1e-6, "{rough:?}");
+    let shiny = |model, m| Material::lambert(Vec3::ZERO).with_specular(model, Vec3::ONE, m);
+    let blinn = shiny(Model::NormalizedBlinnPhong, 6.0).widened(0.25);
+    assert!((blinn.shininess - 2.0).abs() < 1e-5 && blinn.specular == Vec3::ONE, "{blinn:?}");
+    let phong = shiny(Model::NormalizedPhong, 1.5).widened(0.25);
+    assert!((phong.shininess - 0.5).abs() < 1e-5, "{phong:?}");
+    // What the plain lobe reflects in sum stays: (m + 2) times the specular albedo.
+    let plain = shiny(Model::Phong, 1.5).widened(0.25);
+    assert!((plain.specular.x * 3.5 - 2.5).abs() < 1e-5, "{plain:?}");
+}
+
+#[test]
+fn no_variance_widens_nothing() {
+    for variance in [0.0, -1.0, f32::NAN] {
+        let metal = Material::ggx(Vec3::ZERO, Vec3::ONE, 0.01);
+        assert_eq!(metal.widened(variance), metal);
+    }
+    let matt = Material::lambert(Vec3::ONE);
+    assert_eq!(matt.widened(1.0), matt);
+    assert_eq!(Material::ggx(Vec3::ZERO, Vec3::ONE, 0.5).widened(f32::INFINITY).roughness, 1.0);
 }

@@ -1,5 +1,6 @@
 //! `micropoint`: run time against error of pictures, beside plain point sampling.
 
+mod bumps;
 mod growth;
 
 use std::fmt::Write as _;
@@ -53,7 +54,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     }
     write_csv(out_dir, "micropoint", &[], &rows)?;
     chart(out_dir, "micropoint", &rows)?;
-    write(out_dir, "micropoint.md", &(markdown(&rows) + &growth::section()))?;
+    write(out_dir, "micropoint.md", &(markdown(&rows) + &growth::section() + &bumps::section()))?;
     Ok(true)
 }
 
@@ -67,7 +68,7 @@ pub(crate) fn run_quick() -> Outcome {
             println!("| {scene} | {setting} | {rmse:.2e} | {largest:.2e} | {seconds:.4} |");
         }
     }
-    print!("{}", growth::section());
+    print!("{}{}", growth::section(), bumps::section());
     Ok(true)
 }
 

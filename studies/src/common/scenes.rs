@@ -97,10 +97,7 @@ impl Sketch {
 
     /// A texture of black and white texels: `size` × `size`, alternating.
     pub(crate) fn checker(&mut self, size: u32) -> usize {
-        let texel = |i: u32| {
-            let v = if (i % size + i / size).is_multiple_of(2) { 230 } else { 25 };
-            v
-        };
+        let texel = |i: u32| if (i % size + i / size).is_multiple_of(2) { 230 } else { 25 };
         let texels = Texels::from_grays((0..size * size).map(texel).collect());
         self.scene.add_texture(Texture::new("checker", [size, size], texels))
     }
