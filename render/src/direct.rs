@@ -7,7 +7,7 @@ use crate::shader::{Economy, Point, Shader};
 use glam::{DVec2, Vec3};
 use pointillist_micropoint::{Face, Fragment, Micropoint, Tile};
 use pointillist_shade::{Incident, Interpolation, interpolate_color, sees_light, turn_to};
-use pointillist_shadow::{Receivers, ShadowScratch, Viewer};
+use pointillist_shadow::{AreaScratch, Receivers, ShadowScratch, Viewer};
 use std::ops::Range;
 
 /// Light that would reach a micropoint if nothing stood in its way, and the part of it that does.
@@ -22,7 +22,12 @@ pub(crate) struct Arrival {
 #[derive(Default)]
 pub(crate) struct DirectScratch {
     pub(crate) shadow: ShadowScratch,
-    receivers: Receivers,
+    pub(crate) area: AreaScratch,
+    /// What each receiver sends to the eye because of a whole light, and the lit share of it.
+    pub(crate) seen: Vec<(Vec3, f64)>,
+    /// The micropoint of each receiver.
+    pub(crate) owners: Vec<u32>,
+    pub(crate) receivers: Receivers,
     lit: Vec<f64>,
     arrivals: Vec<Arrival>,
     /// Arrivals of a pixel that share the mean fraction of some receivers.
@@ -86,8 +91,7 @@ impl Shader<'_> {
     /// Radiance that a micropoint sends to the eye because of a light, without shadow.
     fn arriving(&self, light: &LightSample<'_>, p: &Point, face: &Face) -> Vec3 {
         let source = &self.scene.lights[light.light].light;
-        let black = p.material.diffuse == Vec3::ZERO && p.material.specular == Vec3::ZERO;
-        if black && self.measured(face.id).is_none() {
+        if self.is_black(p, face.id) {
             return Vec3::ZERO;
         }
         let incident = source.illuminate(light.sample, p.position);
@@ -108,8 +112,21 @@ impl Shader<'_> {
         self.reflect(p, face.id, &incident, p.normal, p.to_eye)
     }
 
+    /// Whether a micropoint reflects nothing.
+    pub(crate) fn is_black(&self, p: &Point, triangle: u32) -> bool {
+        let black = p.material.diffuse == Vec3::ZERO && p.material.specular == Vec3::ZERO;
+        black && self.measured(triangle).is_none()
+    }
+
     /// By the material's formula, or as measured.
-    fn reflect(&self, p: &Point, triangle: u32, incident: &Incident, normal: Vec3, to_eye: Vec3) -> Vec3 {
+    pub(crate) fn reflect(
+        &self,
+        p: &Point,
+        triangle: u32,
+        incident: &Incident,
+        normal: Vec3,
+        to_eye: Vec3,
+    ) -> Vec3 {
         match self.measured(triangle) {
             Some(measured) => measured.table.reflect(incident, normal, to_eye),
             None => p.material.reflect(incident, normal, to_eye),
@@ -117,7 +134,7 @@ impl Shader<'_> {
     }
 
     /// The measured reflection of a triangle's material, which takes the place of its constants.
-    fn measured(&self, triangle: u32) -> Option<&MeasuredBrdf> {
+    pub(crate) fn measured(&self, triangle: u32) -> Option<&MeasuredBrdf> {
         let material = self.scene.mesh.material_of[triangle as usize] as usize;
         self.scene.materials[material].details.measured.as_ref()
     }
@@ -131,7 +148,7 @@ fn ask_for_all(tile: &Tile, arrivals: &[Arrival], receivers: &mut Receivers) {
     }
 }
 
-fn receive(tile: &Tile, m: &Micropoint, fragment: &Fragment, receivers: &mut Receivers) {
+pub(crate) fn receive(tile: &Tile, m: &Micropoint, fragment: &Fragment, receivers: &mut Receivers) {
     let face = &tile.faces()[m.face as usize];
     let corner = |&v: &DVec2| tile.position(v, face.nearness_at(v));
     receivers.push(m.face, tile.outline(fragment).iter().map(corner));
