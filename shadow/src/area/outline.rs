@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 
 /// Casters are cut off at this distance below a receiver's height, relative to the height: what is nearer to the receiver than this share
 /// of the light's distance, in the direction of the light's normal, would be projected to infinity.
-const NEAREST: f64 = 1e-9;
+const NEAREST: f64 = 1e-5;
 
 /// How far the planes of a group's sheets must be from its box for their side to be the same for all points, in units of the distance
 /// that counts as 0: rounding must not decide.

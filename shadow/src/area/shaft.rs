@@ -28,7 +28,8 @@ impl Shaft {
         let (b0, b1) = (low.truncate(), high.truncate());
         let size =
             [least, most, b0, b1].map(|v| v.abs().max_element()).into_iter().fold(high.z.abs(), f64::max);
-        // A box that reaches to the light's plane has no slopes: the shaft is then upright around both.
+        // A box that reaches to the light's plane has no slopes: its shaft has no sides. Upright sides would not do: the shafts of boxes
+        // within it, which widen above their boxes' lower sides, would reach out of it.
         let steep = low.z <= MARGIN * size;
         let slope = |to_box: DVec2, widens: DVec2| {
             // The steepest line from the rectangle's side to a corner of the box.
@@ -36,7 +37,7 @@ impl Shaft {
             DVec2::new(by_height(to_box.x, widens.x), by_height(to_box.y, widens.y))
         };
         let (least, most, least_slope, most_slope) = if steep {
-            (least.min(b0), most.max(b1), DVec2::ZERO, DVec2::ZERO)
+            (DVec2::NEG_INFINITY, DVec2::INFINITY, DVec2::ZERO, DVec2::ZERO)
         } else {
             (least, most, slope(b0 - least, DVec2::NEG_ONE), slope(b1 - most, DVec2::ONE))
         };
