@@ -10,7 +10,10 @@ use glam::{DVec3, Vec3};
 
 /// Largest cell, relative to its distance and to the scale of the lobe. Found by experiment: 3 × 3 points then give a GGX lobe of any
 /// roughness to 1e-3 of its value (`tests/area.rs`).
-const LARGEST_CELL: f64 = 0.7;
+const LARGEST_CELL: f64 = 1.0;
+
+/// Lobes wider than this count as this wide, in radians: cosines and distances change, too.
+const WIDEST: f64 = 0.7;
 
 /// Cells up to this part of [`LARGEST_CELL`] need 2 × 2 points.
 const FOUR_POINTS: f64 = 0.4;
@@ -79,7 +82,7 @@ fn cell(
     let angle = size / distance.max(f64::MIN_POSITIVE);
     let axis = lobe.axis.as_dvec3();
     let away = axis.cross(towards).length().atan2(axis.dot(towards));
-    let scale = f64::from(lobe.width_rad).max(away - 0.5 * angle).min(1.0);
+    let scale = f64::from(lobe.width_rad).max(away - 0.5 * angle).min(WIDEST);
     let relative = angle / (scale * LARGEST_CELL);
     if relative > 1.0 && divisions > 0 {
         let (ab, bc, cd, da) = (0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + d), 0.5 * (d + a));

@@ -101,7 +101,7 @@ impl Glass {
         let mut factor = 0.0_f64;
         for &s in &self.sheets {
             let sheet = &sheets.list[s as usize];
-            let Some(face) = sheet.glass else { continue };
+            let Some(face) = sheets.glass(sheet) else { continue };
             let distance = sheet.normal.dot(seen.point) - sheet.offset;
             if distance.abs() <= light.coincident {
                 continue;
@@ -132,7 +132,7 @@ fn factor_of(
     let top = highest_caster(point.z);
     let mut factor = 0.0_f64;
     for e in sheet.edges() {
-        let [a, b] = sheets.ends(e.edge);
+        let [a, b] = sheets.ends(e.edge());
         let below = |p: DVec3| normal.dot(p - point) <= light.coincident;
         if (a.z > top && b.z > top) || (below(a) && below(b)) {
             continue;
@@ -151,8 +151,8 @@ fn projection(sheets: &Sheets, sheet: &Sheet, point: DVec3, front: bool) -> Conv
     let mut ring = [DVec2::ZERO; 8];
     let mut count = 0;
     for e in sheet.edges() {
-        let [a, b] = sheets.ends(e.edge);
-        let (from, to) = if e.turn > 0 { (a, b) } else { (b, a) };
+        let [a, b] = sheets.ends(e.edge());
+        let (from, to) = if e.turn() > 0 { (a, b) } else { (b, a) };
         if from.z <= top {
             ring[count] = projected(point, from);
             count += 1;

@@ -136,7 +136,8 @@ struct Groups<'s, F> {
 }
 
 impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
-    /// A group of receivers, with the sheets from `first` on the stack.
+    /// A group of receivers, with the sheets from `first` on the stack. Groups are divided into four at a time: half as many tests of
+    /// sheets as with two.
     fn divide(&mut self, targets: &mut [Target], first: usize) {
         let around = bounds(targets);
         let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
@@ -151,14 +152,12 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         if targets.len() <= FEW_RECEIVERS || count <= FEW_SHEETS {
             self.settle(targets, own, around);
         } else {
-            let middle = targets.len() / 2;
-            let size = around.1 - around.0;
-            let axis = if size.x >= size.y.max(size.z) { 0 } else { 1 + usize::from(size.z > size.y) };
-            let key = |t: &Target| t.bounds.0[axis] + t.bounds.1[axis];
-            targets.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
-            let (low, high) = targets.split_at_mut(middle);
-            self.divide(low, own);
-            self.divide(high, own);
+            let (low, high) = split(targets, around);
+            for half in [low, high] {
+                let (low, high) = split(half, bounds(half));
+                self.divide(low, own);
+                self.divide(high, own);
+            }
         }
         self.stack.truncate(own);
     }
@@ -216,6 +215,16 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         sweep.finish(polygon, seen);
         factor.max(glass.dim(self.light, self.sheets, normal, shaft, seen))
     }
+}
+
+/// Two halves of a group, side by side along the longest side of the box around it.
+fn split(targets: &mut [Target], (low, high): Box3) -> (&mut [Target], &mut [Target]) {
+    let middle = targets.len() / 2;
+    let size = high - low;
+    let axis = if size.x >= size.y.max(size.z) { 0 } else { 1 + usize::from(size.z > size.y) };
+    let key = |t: &Target| t.bounds.0[axis] + t.bounds.1[axis];
+    targets.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
+    targets.split_at_mut(middle)
 }
 
 /// Centroid of a convex polygon in space, and the distance of its farthest corner from it.

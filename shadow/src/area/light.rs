@@ -26,7 +26,7 @@ const COINCIDENT: f64 = 1e-10;
 #[non_exhaustive]
 pub struct AreaOptions {
     /// A receiver is asked at one point if no outline of a shadow on the light moves by more than this share of the light's width over it;
-    /// otherwise it is halved. Default: 0.06.
+    /// otherwise it is halved. Default: 0.1.
     pub largest_shift: f64,
     /// How often a receiver is halved at most. Default: 5.
     pub most_halvings: u32,
@@ -34,7 +34,7 @@ pub struct AreaOptions {
 
 impl AreaOptions {
     /// The defaults, as a constant.
-    pub const DEFAULT: Self = Self { largest_shift: 0.06, most_halvings: 5 };
+    pub const DEFAULT: Self = Self { largest_shift: 0.1, most_halvings: 5 };
 
     /// Sets the largest shift of an outline, relative to the light's width.
     #[must_use]

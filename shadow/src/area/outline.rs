@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 
 /// Casters are cut off at this distance below a receiver's height, relative to the height: what is nearer to the receiver than this share
 /// of the light's distance, in the direction of the light's normal, would be projected to infinity.
-const NEAREST: f64 = 1e-5;
+const NEAREST: f64 = 1e-6;
 
 /// How far the planes of a group's sheets must be from its box for their side to be the same for all points, in units of the distance
 /// that counts as 0: rounding must not decide.
@@ -86,13 +86,13 @@ impl Outline {
 
     fn add(&mut self, sheets: &Sheets, sheet: &Sheet, mut act: impl FnMut(&mut OutlineEdge, i32)) {
         for e in sheet.edges() {
-            let position = &mut self.position[e.edge as usize];
+            let position = &mut self.position[e.edge() as usize];
             if *position == NONE {
                 *position = self.edges.len() as u32;
-                self.numbers.push(e.edge);
-                self.edges.push(OutlineEdge { ends: sheets.ends(e.edge), sure: 0, now: 0, open: false });
+                self.numbers.push(e.edge());
+                self.edges.push(OutlineEdge { ends: sheets.ends(e.edge()), sure: 0, now: 0, open: false });
             }
-            act(&mut self.edges[*position as usize], e.turn);
+            act(&mut self.edges[*position as usize], e.turn());
         }
     }
 
@@ -115,7 +115,7 @@ impl Outline {
             }
             let side = if distance > 0.0 { 1 } else { -1 };
             for e in sheet.edges() {
-                self.edges[self.position[e.edge as usize] as usize].now += side * e.turn;
+                self.edges[self.position[e.edge() as usize] as usize].now += side * e.turn();
             }
             self.cast_cut(sheet, point, top, side, sweep);
         }
@@ -143,11 +143,11 @@ impl Outline {
     fn cast_cut(&self, sheet: &Sheet, point: DVec3, top: f64, side: i32, sweep: &mut Sweep) {
         let (mut leaves, mut returns) = (None, None);
         for e in sheet.edges() {
-            let [a, b] = self.edges[self.position[e.edge as usize] as usize].ends;
+            let [a, b] = self.edges[self.position[e.edge() as usize] as usize].ends;
             if (a.z > top) != (b.z > top) {
                 let at = Some(at_height(a, b, top));
                 // Upward as the sheet goes along it.
-                let up = (b.z > top) == (e.turn > 0);
+                let up = (b.z > top) == (e.turn() > 0);
                 if up { leaves = at } else { returns = at }
             }
         }

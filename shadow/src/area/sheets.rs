@@ -6,6 +6,7 @@ use glam::{DVec3, dvec3};
 use pointillist_micropoint::{ClusterFace, ClusterView, Geometry};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
+use std::num::NonZeroU32;
 
 /// A triangle, or what of it is in front of the light; coordinates are those of the light's frame.
 #[derive(Clone, Copy, Debug)]
@@ -16,16 +17,23 @@ pub(crate) struct Sheet {
     corners: [u32; 4],
     edges: [SheetEdge; 4],
     count: u8,
-    /// The triangle, if light may pass through it.
-    pub(crate) glass: Option<ClusterFace>,
+    /// Number of its triangle, if light may pass through it.
+    pub(crate) glass: Option<NonZeroU32>,
 }
 
-/// An edge as a sheet goes along it.
+/// An edge as a sheet goes along it: twice its number, plus 1 if against its direction.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct SheetEdge {
-    pub(crate) edge: u32,
+pub(crate) struct SheetEdge(u32);
+
+impl SheetEdge {
+    pub(crate) fn edge(self) -> u32 {
+        self.0 >> 1
+    }
+
     /// 1 in the direction of the edge, −1 against it.
-    pub(crate) turn: i32,
+    pub(crate) fn turn(self) -> i32 {
+        1 - 2 * (self.0 & 1) as i32
+    }
 }
 
 impl Sheet {
@@ -42,9 +50,14 @@ pub(crate) struct Sheets {
     edges: Vec<[u32; 2]>,
     number_of_vertex: HashMap<[u64; 3], u32, BuildHasherDefault<Mixer>>,
     number_of_edge: HashMap<u64, u32, BuildHasherDefault<Mixer>>,
-    /// Of the cluster at hand.
+    /// Triangles of translucent sheets; the first has number 1.
+    glass: Vec<ClusterFace>,
+    /// Vertices of the cluster at hand, and their numbers or `NONE`.
     local: Vec<DVec3>,
+    numbers: Vec<u32>,
 }
+
+const NONE: u32 = u32::MAX;
 
 impl Sheets {
     /// Removes all sheets and keeps the memory.
@@ -54,6 +67,7 @@ impl Sheets {
         self.edges.clear();
         self.number_of_vertex.clear();
         self.number_of_edge.clear();
+        self.glass.clear();
     }
 
     /// Adds what a shaft does not miss, where it is higher than `lowest` over the light.
@@ -76,6 +90,8 @@ impl Sheets {
     ) {
         self.local.clear();
         self.local.extend(cluster.vertices.iter().map(|&v| frame.local(v)));
+        self.numbers.clear();
+        self.numbers.resize(self.local.len(), NONE);
         for face in cluster.faces() {
             let surface = &geometry.surfaces()[face.surface as usize];
             let corners = face.corners.map(|c| self.local[c]);
@@ -83,20 +99,37 @@ impl Sheets {
                 continue;
             }
             let opaque = surface.opacity >= 1.0 && !surface.textured_opacity;
-            self.add(corners, lowest, (!opaque).then_some(face));
+            let glass = if opaque {
+                None
+            } else {
+                self.glass.push(face);
+                NonZeroU32::new(self.glass.len() as u32)
+            };
+            self.add(corners, face.corners, lowest, glass);
         }
     }
 
-    fn add(&mut self, corners: [DVec3; 3], lowest: f64, glass: Option<ClusterFace>) {
+    fn add(&mut self, corners: [DVec3; 3], places: [usize; 3], lowest: f64, glass: Option<NonZeroU32>) {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        let (ring, count) = above(corners, lowest);
+        let mut numbers = [0; 4];
+        let mut count = 3;
+        if corners.iter().all(|c| c.z >= lowest) {
+            for (number, place) in numbers.iter_mut().zip(places) {
+                if self.numbers[place] == NONE {
+                    self.numbers[place] = self.vertex(self.local[place]);
+                }
+                *number = self.numbers[place];
+            }
+        } else {
+            let ring;
+            (ring, count) = above(corners, lowest);
+            for (number, &p) in numbers.iter_mut().zip(&ring[..count]) {
+                *number = self.vertex(p);
+            }
+        }
         if normal == DVec3::ZERO || count < 3 {
             return;
-        }
-        let mut numbers = [0; 4];
-        for (number, &p) in numbers.iter_mut().zip(&ring[..count]) {
-            *number = self.vertex(p);
         }
         let mut edges = [SheetEdge::default(); 4];
         for i in 0..count {
@@ -128,7 +161,7 @@ impl Sheets {
         if edge == next {
             self.edges.push(ends);
         }
-        SheetEdge { edge, turn: if along { 1 } else { -1 } }
+        SheetEdge(edge << 1 | u32::from(!along))
     }
 
     pub(crate) fn corners(&self, sheet: &Sheet) -> impl Iterator<Item = DVec3> + Clone + '_ {
@@ -139,6 +172,11 @@ impl Sheets {
     /// The ends of an edge.
     pub(crate) fn ends(&self, edge: u32) -> [DVec3; 2] {
         self.edges[edge as usize].map(|v| self.vertices[v as usize])
+    }
+
+    /// The triangle of a translucent sheet.
+    pub(crate) fn glass(&self, sheet: &Sheet) -> Option<ClusterFace> {
+        sheet.glass.map(|number| self.glass[number.get() as usize - 1])
     }
 
     pub(crate) fn edge_count(&self) -> usize {

@@ -71,19 +71,30 @@ fn picture_of(
 fn with_light<T>(
     soup: &Soup,
     view: View,
-    outline: &[DVec3],
+    (outline, options): (&[DVec3], AreaOptions),
     visit: impl FnOnce(&Renderer<'_>, &Geometry, &AreaLight<'_>) -> T,
 ) -> Option<T> {
     let geometry = soup.geometry().ok()?;
     let renderer = Renderer::new(&geometry, &PlainOpacity, view, MicropointOptions::DEFAULT).ok()?;
-    let light = AreaLight::new(&geometry, &PlainOpacity, outline, AreaOptions::DEFAULT).ok()?;
+    let light = AreaLight::new(&geometry, &PlainOpacity, outline, options).ok()?;
     Some(visit(&renderer, &geometry, &light))
 }
 
 /// Renders a scene whole; `None` if something is refused.
 #[must_use]
 pub fn seen_picture(soup: &Soup, view: View, outline: &[DVec3]) -> Option<SeenPicture> {
-    with_light(soup, view, outline, |r, g, l| picture_of(r, g, l, [r.picture()]))
+    seen_picture_with(soup, view, outline, AreaOptions::DEFAULT)
+}
+
+/// As [`seen_picture`], with these options.
+#[must_use]
+pub fn seen_picture_with(
+    soup: &Soup,
+    view: View,
+    outline: &[DVec3],
+    options: AreaOptions,
+) -> Option<SeenPicture> {
+    with_light(soup, view, (outline, options), |r, g, l| picture_of(r, g, l, [r.picture()]))
 }
 
 /// Per pixel and surface, what arrives of the light at a picture's points: Σ weight × share.
@@ -111,7 +122,7 @@ fn are_identical(a: &SeenPicture, b: &SeenPicture) -> Result<(), String> {
 /// # Errors
 /// The first pixel that differs.
 pub fn tiles_do_not_matter(soup: &Soup, view: View, outline: &[DVec3]) -> Result<(), String> {
-    let result = with_light(soup, view, outline, |r, g, l| {
+    let result = with_light(soup, view, (outline, AreaOptions::DEFAULT), |r, g, l| {
         let expected = picture_of(r, g, l, [r.picture()]);
         for size in [16, 3, 1] {
             let tiled = picture_of(r, g, l, r.picture().tiles(size));
