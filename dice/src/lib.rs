@@ -80,6 +80,7 @@ mod grid;
 pub mod hide;
 #[cfg(feature = "invariants")]
 pub mod invariants;
+pub mod lambert;
 mod limits;
 mod meet;
 mod outline;

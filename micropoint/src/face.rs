@@ -150,12 +150,20 @@ impl Face {
         for (to, &v) in points.iter_mut().zip(outline) {
             *to = self.point(lens, v + corner);
         }
-        let rounded = match mean(&points[..outline.len()]) {
+        surface.behind_mask(mean(&points[..outline.len()]))
+    }
+}
+
+impl SurfaceOpacity {
+    /// Its opacity where a mask has this mean opacity.
+    #[must_use]
+    pub fn behind_mask(&self, mean: f32) -> f32 {
+        let rounded = match mean {
             m if m <= OPACITY_ROUNDING => 0.0,
             m if m >= 1.0 - OPACITY_ROUNDING => 1.0,
             m => m,
         };
-        (rounded * surface.opacity).clamp(0.0, 1.0)
+        (rounded * self.opacity).clamp(0.0, 1.0)
     }
 }
 

@@ -341,6 +341,24 @@ impl Geometry {
         total / (4.0 * std::f64::consts::PI)
     }
 
+    /// The level of the hierarchy's root, above which there is nothing; clusters are level 0. `None` without geometry.
+    pub(crate) fn top_level(&self) -> Option<usize> {
+        self.levels.last()?.first().map(|_| self.levels.len())
+    }
+
+    /// A box of the hierarchy: a cluster's at level 0.
+    pub(crate) fn box_at(&self, level: usize, index: usize) -> &Bounds {
+        if level == 0 { &self.clusters[index].bounds } else { &self.levels[level - 1][index] }
+    }
+
+    /// The boxes within a box of a level above 0, at the level below.
+    pub(crate) fn children(&self, level: usize, index: usize) -> std::ops::Range<usize> {
+        let below = level - 1;
+        let count = if below == 0 { self.clusters.len() } else { self.levels[below - 1].len() };
+        let first = index * FAN_OUT;
+        first..(first + FAN_OUT).min(count)
+    }
+
     /// Visits the clusters that `bound` admits, in order of the distance it gives, nearest first.
     ///
     /// `bound` returns a lower bound of the distance of anything in the box, or `None` to refuse it
@@ -371,12 +389,8 @@ impl Geometry {
                 continue;
             }
             let below = level as usize - 1;
-            let count = if below == 0 { self.clusters.len() } else { self.levels[below - 1].len() };
-            let first = index as usize * FAN_OUT;
-            for child in first..(first + FAN_OUT).min(count) {
-                let bounds =
-                    if below == 0 { &self.clusters[child].bounds } else { &self.levels[below - 1][child] };
-                match bound(bounds) {
+            for child in self.children(level as usize, index as usize) {
+                match bound(self.box_at(below, child)) {
                     Some(d) if d <= limit => {
                         heap.push(Entry { distance: d, level: below as u32, index: child as u32 });
                     }

@@ -72,7 +72,7 @@ pub use render::{MicropointOptions, Renderer};
 pub use resolve::Occlusion;
 pub use texel::{MOST_TEXELS_ON_A_SIDE, MaskSums, TexelCorner, TexelSums, TexelWrap};
 pub use tile::{Fragment, Micropoint, Tile};
-pub use visit::{FaceVisitor, VisitCounts, VisitMemory};
+pub use visit::{ClusterFace, ClusterView, FaceVisitor, VisitCounts, VisitMemory};
 
 /// The README's examples, compiled and run as documentation tests.
 #[cfg(doctest)]

@@ -2,9 +2,9 @@
 
 use crate::bounds::Bounds;
 use crate::face::{Face, GridRect, ProjectedVertex, Setup, set_up_face};
-use crate::geometry::{ClusterQueue, ClusterTriangle, Geometry, SurfaceOpacity};
+use crate::geometry::{ClusterQueue, ClusterTriangle, Geometry, SurfaceOpacity, Triangle};
 use crate::volume::ViewVolume;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// A visitor of faces, for [`Geometry::visit_faces`].
 pub trait FaceVisitor {
@@ -101,6 +101,72 @@ impl Geometry {
                     visitor.visit(face, outline.vertices(), opacity);
                 }
             }
+        }
+    }
+}
+
+/// A cluster's triangles in the world, for [`Geometry::visit_clusters`].
+#[derive(Clone, Copy, Debug)]
+pub struct ClusterView<'a> {
+    number: u32,
+    /// Vertices that its triangles refer to, in the world.
+    pub vertices: &'a [DVec3],
+    triangles: &'a [Triangle],
+}
+
+/// A triangle of a [`ClusterView`].
+#[derive(Clone, Copy, Debug)]
+pub struct ClusterFace {
+    /// Where it is in the geometry.
+    pub source: ClusterTriangle,
+    /// Its corners, as indices into [`ClusterView::vertices`].
+    pub corners: [usize; 3],
+    /// Position in the caller's triangle array.
+    pub id: u32,
+    /// Index of its surface.
+    pub surface: u32,
+}
+
+impl ClusterView<'_> {
+    /// Its triangles.
+    pub fn faces(&self) -> impl Iterator<Item = ClusterFace> + '_ {
+        self.triangles.iter().enumerate().map(|(i, t)| ClusterFace {
+            source: ClusterTriangle { cluster: self.number, index: i as u32 },
+            corners: t.corners.map(usize::from),
+            id: t.id,
+            surface: t.surface,
+        })
+    }
+}
+
+impl Geometry {
+    /// Hands over every cluster whose box, and each larger box around it, `wants` admits; in the order of clusters.
+    pub fn visit_clusters(
+        &self,
+        mut wants: impl FnMut(&Bounds) -> bool,
+        mut visit: impl FnMut(&ClusterView<'_>),
+    ) {
+        let Some(top) = self.top_level() else { return };
+        self.visit_boxes(top, 0, &mut wants, &mut visit);
+    }
+
+    fn visit_boxes(
+        &self,
+        level: usize,
+        index: usize,
+        wants: &mut impl FnMut(&Bounds) -> bool,
+        visit: &mut impl FnMut(&ClusterView<'_>),
+    ) {
+        if !wants(self.box_at(level, index)) {
+            return;
+        }
+        if level == 0 {
+            let number = index as u32;
+            let (_, vertices, triangles) = self.cluster(number);
+            return visit(&ClusterView { number, vertices, triangles });
+        }
+        for child in self.children(level, index) {
+            self.visit_boxes(level - 1, child, wants, visit);
         }
     }
 }

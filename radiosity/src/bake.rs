@@ -10,12 +10,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec3;
 
 use crate::gather::visible_share;
-use crate::kernel::lambert;
 use crate::rgb::{Rgb, add, times};
 use crate::solve::Solution;
 use crate::transport::{Entry, Transport};
 use crate::tree::ElementId;
 use crate::visible::parts::Pieces;
+use pointillist_dice::lambert;
 use pointillist_parallel as parallel;
 
 /// Irradiance is gathered at a point moved from the vertex by this share of the way to the mean centre of its patches. On an edge that two

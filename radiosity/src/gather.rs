@@ -3,12 +3,12 @@
 use glam::DVec3;
 
 use crate::error::RadiosityError;
-use crate::kernel::lambert;
 use crate::polygon::Polygon;
 use crate::rgb::Rgb;
 use crate::solve::Solution;
 use crate::tree::ElementId;
 use crate::visible::parts::{Eye, Pieces, Source};
+use pointillist_dice::lambert;
 
 /// Elements whose radius is below this share of their distance are not divided into their children.
 const FAR: f64 = 0.15;

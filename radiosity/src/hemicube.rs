@@ -5,9 +5,8 @@
 //! form factor of a cell is taken as uniform over the cell.
 
 use glam::{DVec2, DVec3};
-use pointillist_dice::{Accumulator, Grid, accumulate};
+use pointillist_dice::{Accumulator, Grid, accumulate, lambert};
 
-use crate::kernel::lambert;
 use crate::polygon::{Polygon, clipped};
 use crate::visible::parts::{Eye, Pieces, Source};
 

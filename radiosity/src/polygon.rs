@@ -188,6 +188,6 @@ pub(crate) fn clipped(ring: &[DVec3], value: impl Fn(DVec3) -> f64) -> Vec<DVec3
 }
 
 /// Where the edge from `a` to `b` meets a plane, by heights over it.
-pub(crate) fn crossing((a, value_a): (DVec3, f64), (b, value_b): (DVec3, f64)) -> DVec3 {
+fn crossing((a, value_a): (DVec3, f64), (b, value_b): (DVec3, f64)) -> DVec3 {
     a + (b - a) * share_before_crossing(value_a, value_b)
 }

@@ -3,7 +3,6 @@
 use crate::error::RadiosityError;
 use crate::estimate::Estimate;
 use crate::factor::{FactorOptions, of_mutual};
-use crate::kernel::lambert;
 use crate::kernel::pair::{self, Rule, facing_parts};
 use crate::link::{Link, LinkCounts};
 use crate::polygon::Polygon;
@@ -14,6 +13,7 @@ use crate::visible::boxes::Boxes;
 use crate::visible::cubature;
 use crate::visible::parts::{Eye, Pieces, Source};
 use crate::visible::shaft::Shaft;
+use pointillist_dice::lambert;
 use pointillist_parallel as parallel;
 
 /// The irradiance at corners is evaluated at points moved towards the centre by this share of the way: on an edge that two walls share,

@@ -8,7 +8,7 @@ use crate::shader::{Economy, Point, Shader};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Face, Fragment, Micropoint, Tile};
 use pointillist_shade::{Incident, Interpolation, interpolate_color, sees_light, turn_to};
-use pointillist_shadow::{Receivers, ShadowScratch, Viewer};
+use pointillist_shadow::{AreaScratch, Receivers, ShadowScratch, Viewer};
 use std::ops::Range;
 
 /// Light that would reach a micropoint if nothing stood in its way, and the part of it that does.
@@ -23,6 +23,11 @@ pub(crate) struct Arrival {
 #[derive(Default)]
 pub(crate) struct DirectScratch {
     pub(crate) shadow: ShadowScratch,
+    pub(crate) area: AreaScratch,
+    /// What each receiver sends to the eye because of a whole light, and the lit share of it.
+    pub(crate) seen: Vec<(Vec3, f64)>,
+    /// The micropoint of each receiver.
+    pub(crate) owners: Vec<u32>,
     pub(crate) receivers: Receivers,
     pub(crate) lit: Vec<f64>,
     pub(crate) arrivals: Vec<Arrival>,
@@ -88,8 +93,7 @@ impl Shader<'_> {
     /// Radiance that a micropoint sends to the eye because of a light, without shadow.
     pub(crate) fn arriving(&self, light: &LightSample<'_>, p: &Point, face: &Face) -> Vec3 {
         let source = &self.scene.lights[light.light].light;
-        let black = p.material.diffuse == Vec3::ZERO && p.material.specular == Vec3::ZERO;
-        if black && self.measured(face.id).is_none() {
+        if self.is_black(p, face.id) {
             return Vec3::ZERO;
         }
         let incident = source.illuminate(light.sample, p.place.position);
@@ -110,8 +114,21 @@ impl Shader<'_> {
         self.reflect(p, face.id, &incident, p.normal, p.place.to_eye)
     }
 
+    /// Whether a micropoint reflects nothing.
+    pub(crate) fn is_black(&self, p: &Point, triangle: u32) -> bool {
+        let black = p.material.diffuse == Vec3::ZERO && p.material.specular == Vec3::ZERO;
+        black && self.measured(triangle).is_none()
+    }
+
     /// By the material's formula, or as measured.
-    fn reflect(&self, p: &Point, triangle: u32, incident: &Incident, normal: Vec3, to_eye: Vec3) -> Vec3 {
+    pub(crate) fn reflect(
+        &self,
+        p: &Point,
+        triangle: u32,
+        incident: &Incident,
+        normal: Vec3,
+        to_eye: Vec3,
+    ) -> Vec3 {
         match self.measured(triangle) {
             Some(measured) => measured.table.reflect(incident, normal, to_eye),
             None => p.material.reflect(incident, normal, to_eye),
@@ -119,7 +136,7 @@ impl Shader<'_> {
     }
 
     /// The measured reflection of a triangle's material, which takes the place of its constants.
-    fn measured(&self, triangle: u32) -> Option<&MeasuredBrdf> {
+    pub(crate) fn measured(&self, triangle: u32) -> Option<&MeasuredBrdf> {
         let material = self.scene.mesh.material_of[triangle as usize] as usize;
         self.scene.materials[material].details.measured.as_ref()
     }

@@ -7,7 +7,7 @@ use crate::background::Background;
 use crate::canvas::Canvas;
 use crate::error::RenderError;
 use crate::frame::{Frame, LayerKind};
-use crate::lights::light_samples;
+use crate::lights::{SceneLights, scene_lights};
 use crate::monitor::{Monitor, go_on};
 use crate::prepared::Prepared;
 use crate::shader::{Shader, Style};
@@ -90,9 +90,11 @@ impl Prepared<'_> {
         let renderer = Renderer::new(&self.geometry, &*self.surfaces, view, self.scene.render.micropoints())?;
         monitor.start_lap();
         let lights = if style.lights {
-            light_samples(self.scene, &self.geometry, &self.surfaces, renderer.lens())?
+            // Pictures that are only summed up have points in the place of areas.
+            let sampled = style.economy.is_some();
+            scene_lights(self.scene, &self.geometry, &self.surfaces, renderer.lens(), sampled)?
         } else {
-            vec![]
+            SceneLights::default()
         };
         monitor.lap("lights");
         let background = Background::new(self.scene, (*self.environment).as_ref(), &view);

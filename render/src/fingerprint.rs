@@ -209,7 +209,15 @@ impl Fingerprint {
             }
             Light::Rect { corner, edge_u, edge_v, samples, falloff: f, .. } => {
                 [corner, edge_u, edge_v].into_iter().for_each(|v| self.vector(v));
-                self.int(u64::from(samples));
+                self.int(samples.map_or(0, |n| u64::from(n.get())));
+                falloff = f;
+            }
+            Light::Polygon { outline, two_sided, samples, falloff: f, .. } => {
+                self.text("polygon");
+                self.int(outline.vertices().len() as u64);
+                outline.vertices().iter().for_each(|&v| self.vector(v));
+                self.int(u64::from(two_sided));
+                self.int(samples.map_or(0, |n| u64::from(n.get())));
                 falloff = f;
             }
             // A light that this version cannot read from a file.

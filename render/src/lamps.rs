@@ -17,24 +17,26 @@ pub struct Lamps {
 enum Part {
     /// A point or a direction, with what arrives from it.
     Sample(Source, Arrives, bool),
-    /// A rectangle with its exitance.
+    /// A light with an area, and its exitance.
     Area(Polygon, [f64; 3], bool),
 }
 
 impl Lamps {
-    /// All lights of a scene. A rectangle with the inverse-square law is one [`Lamp::Area`], or none if its area is 0, which sends out
-    /// nothing; a rectangle with another law is its sample points, as in [`crate::render`].
+    /// All lights of a scene. A rectangle or a polygon with the inverse-square law is one [`Lamp::Area`] for each side, or none if its area is 0, which sends out
+    /// nothing; one with another law is its sample points, as in [`crate::render`].
     pub fn new(scene: &Scene) -> Self {
         let mut parts = vec![];
         for source in &scene.lights {
             let light = source.light;
-            if let Light::Rect { corner, edge_u, edge_v, radiance, falloff: Falloff::InverseSquare, .. } =
-                light
-            {
-                let ring = [corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v];
-                if let Ok(polygon) = Polygon::new(&ring) {
-                    let exitance = bands(radiance).map(|r| r * PI);
-                    parts.push(Part::Area(polygon, exitance, source.shadow));
+            if let (Some(outline), Falloff::InverseSquare) = (light.outline(), light.falloff()) {
+                let exitance = bands(light.color()).map(|r| r * PI);
+                let front = outline.vertices().to_vec();
+                let back = front.iter().rev().copied().collect();
+                let two_sided = matches!(light, Light::Polygon { two_sided: true, .. });
+                for ring in [Some(front), two_sided.then_some(back)].into_iter().flatten() {
+                    if let Ok(polygon) = Polygon::new(&ring) {
+                        parts.push(Part::Area(polygon, exitance, source.shadow));
+                    }
                 }
                 continue;
             }

@@ -92,6 +92,7 @@ mod solids;
 mod surfaces;
 mod texel_sums;
 mod uvs;
+mod whole;
 
 pub use ambient::Ambient;
 pub use bake::{BakedProbe, ProbeBake, bake_probes};
@@ -106,6 +107,7 @@ pub use lightmap::{BakedLight, BakedSide, Lightmap, LightmapError, baked_sides};
 pub use lights::emitter;
 pub use look::{LookOptions, Seen, buried, fingerprints, look_again, look_all};
 pub use monitor::{Monitor, Watch};
+pub use pointillist_shadow::check_outline;
 pub use prepared::Prepared;
 pub use radiosity_surfaces::{SceneSurfaces, scene_surfaces};
 pub use scene::{

@@ -1,11 +1,12 @@
 //! The scene's lights as the points and directions that shadows are cast from.
 
 use crate::error::RenderError;
-use crate::scene::Scene;
+use crate::scene::{LightSource, Scene};
 use crate::surfaces::Surfaces;
+use glam::DVec3;
 use pointillist_micropoint::{Geometry, Lens};
-use pointillist_shade::{Light, Source};
-use pointillist_shadow::{Emitter, ShadowLight, ShadowOptions};
+use pointillist_shade::{Emission, Light, LightOutline, Source};
+use pointillist_shadow::{AreaLight, AreaOptions, Emitter, ShadowError, ShadowLight, ShadowOptions};
 
 /// One point or direction from which light comes: a light, or a sample of an area light.
 pub(crate) struct LightSample<'a> {
@@ -16,15 +17,36 @@ pub(crate) struct LightSample<'a> {
     pub(crate) shadow: Option<ShadowLight<'a>>,
 }
 
-/// All lights, area lights sample by sample, for receivers that `lens` sees.
-pub(crate) fn light_samples<'a>(
+/// One side of a light with an area, taken as a whole.
+pub(crate) struct WholeLight<'a> {
+    /// Index into [`Scene::lights`].
+    pub(crate) light: usize,
+    pub(crate) side: AreaLight<'a>,
+    /// What the side sends out.
+    pub(crate) emission: Emission,
+}
+
+/// The lights of a scene for one view.
+#[derive(Default)]
+pub(crate) struct SceneLights<'a> {
+    pub(crate) samples: Vec<LightSample<'a>>,
+    pub(crate) whole: Vec<WholeLight<'a>>,
+}
+
+/// All lights, for receivers that `lens` sees. Lights with an area are taken as a whole unless they ask for samples, or `sampled` does.
+pub(crate) fn scene_lights<'a>(
     scene: &Scene,
     geometry: &'a Geometry,
     surfaces: &'a Surfaces,
     lens: &Lens,
-) -> Result<Vec<LightSample<'a>>, RenderError> {
-    let mut samples = Vec::new();
+    sampled: bool,
+) -> Result<SceneLights<'a>, RenderError> {
+    let mut lights = SceneLights::default();
     for (light, source) in scene.lights.iter().enumerate() {
+        if !sampled && let Some((outline, two_sided)) = source.light.exact_area() {
+            lights.whole.extend(whole_light(light, source, (outline, two_sided), geometry, surfaces)?);
+            continue;
+        }
         let options = ShadowOptions::default()
             .with_occlusion(scene.render.occlusion())
             .with_resolution(source.resolution);
@@ -36,10 +58,34 @@ pub(crate) fn light_samples<'a>(
             } else {
                 None
             };
-            samples.push(LightSample { light, sample, shadow });
+            lights.samples.push(LightSample { light, sample, shadow });
         }
     }
-    Ok(samples)
+    Ok(lights)
+}
+
+/// The sides of a light that shine; none of a rectangle without area.
+fn whole_light<'a>(
+    light: usize,
+    source: &LightSource,
+    (outline, two_sided): (LightOutline, bool),
+    geometry: &'a Geometry,
+    surfaces: &'a Surfaces,
+) -> Result<Vec<WholeLight<'a>>, RenderError> {
+    let back: Vec<DVec3> = outline.vertices().iter().rev().copied().collect();
+    let sides = [Some(outline.vertices()), two_sided.then_some(&back[..])];
+    let mut found = vec![];
+    for vertices in sides.into_iter().flatten() {
+        let side = match AreaLight::new(geometry, surfaces, vertices, AreaOptions::default()) {
+            Err(ShadowError::OutlineWithoutArea) if matches!(source.light, Light::Rect { .. }) => continue,
+            side => side.map_err(|e| RenderError::Shadow { name: source.name.clone(), source: e })?,
+        };
+        let side = if source.shadow { side } else { side.without_shadows() };
+        let emission =
+            Emission { front: side.front(), radiance: source.light.color(), falloff: source.light.falloff() };
+        found.push(WholeLight { light, side, emission });
+    }
+    Ok(found)
 }
 
 /// One sample of a light as `pointillist-shadow` takes it. Lights of one point or direction have the single sample 0
@@ -50,7 +96,8 @@ pub fn emitter(light: &Light, sample: u32) -> Emitter {
     let axis = match light {
         Light::Spot { direction, .. } => *direction,
         Light::Rect { edge_u, edge_v, .. } => edge_u.cross(*edge_v),
-        _ => glam::DVec3::NEG_Y,
+        Light::Polygon { outline, .. } => outline.area_vector(),
+        _ => DVec3::NEG_Y,
     };
     match light.source(sample) {
         Source::Direction(direction) => Emitter::Directional { direction },

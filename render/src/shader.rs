@@ -1,7 +1,7 @@
 //! What shading knows of a scene, and the state of one micropoint while it is shaded.
 
 use crate::ambient::{Ambient, Spot};
-use crate::lights::LightSample;
+use crate::lights::SceneLights;
 use crate::prepared::Prepared;
 use crate::reflections::Reflections;
 use crate::scene::{NONE, Scene};
@@ -38,7 +38,7 @@ pub(crate) struct Shader<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) surfaces: &'a Surfaces,
     pub(crate) reflections: &'a Reflections,
-    pub(crate) lights: &'a [LightSample<'a>],
+    pub(crate) lights: &'a SceneLights<'a>,
     pub(crate) economy: Option<Economy>,
     pub(crate) ambient: Ambient<'a>,
     pub(crate) emission: bool,
@@ -93,7 +93,7 @@ impl ShadedSurface {
 impl<'a> Shader<'a> {
     pub(crate) fn new(
         prepared: &'a Prepared<'_>,
-        lights: &'a [LightSample<'a>],
+        lights: &'a SceneLights<'a>,
         view: &View,
         style: &Style<'a>,
     ) -> Self {

@@ -46,8 +46,11 @@ impl Shader<'_> {
                 lit.insert(*light, vec![0.0; tile.points().len()]);
             }
         }
-        for light in self.lights {
+        for light in &self.lights.samples {
             self.add_light(tile, light, points, direct, lit.get_mut(&light.light), monitor);
+        }
+        for light in &self.lights.whole {
+            self.add_whole_light(tile, light, points, direct, lit.get_mut(&light.light), monitor);
         }
         self.gather(tile, background, points, pixels);
         self.gather_layers(tile, layers, &lit, points, pixels);

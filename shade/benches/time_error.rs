@@ -6,6 +6,7 @@ use pointillist_shade::{
     CubeMap, Environment, Falloff, Light, Material, MerlTable, Model, coat_albedo, directional_albedo,
 };
 use std::hint::black_box;
+use std::num::NonZeroU32;
 
 /// Irradiance of the ground below the corner of a unit square one above it, in units of its radiance.
 fn rect_irradiance(samples: u32) -> f64 {
@@ -14,7 +15,7 @@ fn rect_irradiance(samples: u32) -> f64 {
         edge_u: DVec3::X,
         edge_v: DVec3::Z,
         radiance: Vec3::ONE,
-        samples,
+        samples: NonZeroU32::new(samples),
         falloff: Falloff::InverseSquare,
     };
     let cosine_law = |i| {

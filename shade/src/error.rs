@@ -57,3 +57,15 @@ pub enum ShadeError {
         index: usize,
     },
 }
+
+/// What can be wrong with a light.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LightError {
+    /// The outline of a light has too few or too many vertices.
+    #[error("a light's outline has {found} vertices; 3 to {most} are possible", most = crate::LARGEST_OUTLINE)]
+    OutlineLength {
+        /// Its vertices.
+        found: usize,
+    },
+}

@@ -21,7 +21,7 @@
 //!
 //! # Parts
 //!
-//! * [`Light`], [`Incident`]: directional, point, spot and rectangular lights in physical units, with inverse-square
+//! * [`Light`], [`Incident`]: directional, point, spot, rectangular and polygonal lights in physical units, with inverse-square
 //!   or constant/linear/quadratic attenuation.
 //! * [`Material`], [`Model`]: Lambert, Phong and Blinn-Phong (plain and energy-conserving), and GGX; [`MerlTable`]:
 //!   measured BRDFs; [`directional_albedo`]: how much any of them returns.
@@ -82,6 +82,7 @@
 //! 19. A. S. Kaplanyan, S. Hill, A. Patney, A. Lefohn, *Filtering distributions of normals for shading antialiasing*, HPG 2016.
 #![forbid(unsafe_code)]
 
+mod area;
 mod auto_uv;
 mod brdf;
 mod bump;
@@ -99,24 +100,27 @@ mod light;
 mod material;
 mod merl;
 mod normals;
+mod outline;
 mod quadrature;
 mod refraction;
 mod roughness;
 mod texture;
 
+pub use area::{Emission, Lobe, integrate_polygon};
 pub use auto_uv::AutoUv;
 pub use bump::{UvFrame, keep_visible, slope_of_heights};
 pub use creases::{CornerNormals, corner_normals};
 pub use environment::{
     CubeMap, Environment, Equirectangular, cube_direction, equirectangular_direction, equirectangular_uv,
 };
-pub use error::ShadeError;
+pub use error::{LightError, ShadeError};
 pub use ggx_table::coat_albedo;
 pub use interpolation::{Interpolation, interpolate_color, interpolate_normal};
-pub use light::{Falloff, Incident, LARGEST_IRRADIANCE, Light, Source};
+pub use light::{DEFAULT_SAMPLES, Falloff, Incident, LARGEST_IRRADIANCE, Light, Source};
 pub use material::{DIELECTRIC_REFLECTANCE, Material, Model};
 pub use merl::{MERL_DIMENSIONS, MerlTable};
 pub use normals::{Weighting, face_normal, sees_light, turn_to, vertex_normals};
+pub use outline::{LARGEST_OUTLINE, LightOutline};
 pub use quadrature::directional_albedo;
 pub use refraction::{Refraction, mirror, refract};
 pub use roughness::SMALLEST_ROUGHNESS;

@@ -1,6 +1,8 @@
 //! Lights in physical units, and what of them arrives at a point.
 
+use crate::outline::LightOutline;
 use glam::{DVec3, Vec3};
+use std::num::NonZeroU32;
 
 /// Irradiance is cut at this value, which keeps everything computed from it finite in `f32`.
 ///
@@ -33,6 +35,7 @@ impl Falloff {
 }
 
 /// A light source.
+#[expect(clippy::large_enum_variant, reason = "lights are few, and kept in lists of their own")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Light {
@@ -67,7 +70,7 @@ pub enum Light {
         /// How it weakens with distance.
         falloff: Falloff,
     },
-    /// A rectangle that radiates evenly from the side `edge_u × edge_v`, represented by sample points.
+    /// A rectangle that radiates evenly from the side `edge_u × edge_v`.
     Rect {
         /// One corner.
         corner: DVec3,
@@ -77,12 +80,28 @@ pub enum Light {
         edge_v: DVec3,
         /// Radiance of the front.
         radiance: Vec3,
-        /// How many points stand for it; 0 counts as 1.
-        samples: u32,
-        /// How each sample point weakens with distance.
+        /// How many points stand for it; `None` for the whole area, exactly.
+        samples: Option<NonZeroU32>,
+        /// How each point of it weakens with distance.
+        falloff: Falloff,
+    },
+    /// A convex polygon that radiates evenly from its front, or from both sides.
+    Polygon {
+        /// Its vertices, counter-clockwise as seen from the front.
+        outline: LightOutline,
+        /// Radiance of each side that shines.
+        radiance: Vec3,
+        /// Whether its back shines, too.
+        two_sided: bool,
+        /// How many points stand for it; `None` for the whole area, exactly.
+        samples: Option<NonZeroU32>,
+        /// How each point of it weakens with distance.
         falloff: Falloff,
     },
 }
+
+/// Points that stand for an area light without a number of its own, where points have to stand for it.
+pub const DEFAULT_SAMPLES: u32 = 16;
 
 /// Where the light comes from, for a shadow test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,12 +134,50 @@ impl Incident {
 }
 
 impl Light {
-    /// How many samples stand for this light: 1 except for a [`Light::Rect`].
+    /// How many samples stand for this light: 1 except for lights with an area, which have [`DEFAULT_SAMPLES`] if they do not say.
     #[must_use]
     pub fn samples(&self) -> u32 {
         match self {
-            Self::Rect { samples, .. } => (*samples).max(1),
+            Self::Rect { samples, .. } | Self::Polygon { samples, .. } => {
+                samples.map_or(DEFAULT_SAMPLES, NonZeroU32::get)
+            }
             _ => 1,
+        }
+    }
+
+    /// The outline of a light with an area whose samples nobody asked for: it can be taken as a whole. The flag says whether its back
+    /// shines, too.
+    #[must_use]
+    pub fn exact_area(&self) -> Option<(LightOutline, bool)> {
+        match *self {
+            Self::Rect { samples: None, .. } => Some((self.outline()?, false)),
+            Self::Polygon { samples: None, two_sided, .. } => Some((self.outline()?, two_sided)),
+            _ => None,
+        }
+    }
+
+    /// The outline of a light with an area, counter-clockwise as seen from its front.
+    #[must_use]
+    pub fn outline(&self) -> Option<LightOutline> {
+        match *self {
+            Self::Rect { corner, edge_u, edge_v, .. } => {
+                let ring = [corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v];
+                Some(LightOutline::from_quad(ring))
+            }
+            Self::Polygon { outline, .. } => Some(outline),
+            _ => None,
+        }
+    }
+
+    /// How it weakens with distance; inverse-square for a directional light, which does not.
+    #[must_use]
+    pub fn falloff(&self) -> Falloff {
+        match *self {
+            Self::Directional { .. } => Falloff::InverseSquare,
+            Self::Point { falloff, .. }
+            | Self::Spot { falloff, .. }
+            | Self::Rect { falloff, .. }
+            | Self::Polygon { falloff, .. } => falloff,
         }
     }
 
@@ -130,10 +187,12 @@ impl Light {
         match *self {
             Self::Directional { direction, .. } => Source::Direction(direction),
             Self::Point { position, .. } | Self::Spot { position, .. } => Source::Position(position),
-            Self::Rect { corner, edge_u, edge_v, samples, .. } => {
-                let count = samples.max(1);
-                let [s, t] = hammersley(sample % count, count);
+            Self::Rect { corner, edge_u, edge_v, .. } => {
+                let [s, t] = hammersley(sample % self.samples(), self.samples());
                 Source::Position(corner + edge_u * s + edge_v * t)
+            }
+            Self::Polygon { outline, .. } => {
+                Source::Position(outline.point(hammersley(sample % self.samples(), self.samples())))
             }
         }
     }
@@ -162,6 +221,12 @@ impl Light {
                 let sample_area = area / f64::from(self.samples());
                 sample_area * cos_light * falloff.at(d)
             }
+            Self::Polygon { outline, two_sided, falloff, .. } => {
+                let (front, area) = direction_and_length(outline.area_vector());
+                let cos_light = front.dot(-to_light);
+                let cos_light = if two_sided { cos_light.abs() } else { cos_light.max(0.0) };
+                area / f64::from(self.samples()) * cos_light * falloff.at(d)
+            }
         };
         Incident { to_light: to_light.as_vec3(), irradiance: scaled(self.color(), strength), source }
     }
@@ -172,7 +237,7 @@ impl Light {
         match *self {
             Self::Directional { irradiance, .. } => irradiance,
             Self::Point { intensity, .. } | Self::Spot { intensity, .. } => intensity,
-            Self::Rect { radiance, .. } => radiance,
+            Self::Rect { radiance, .. } | Self::Polygon { radiance, .. } => radiance,
         }
     }
 
@@ -211,7 +276,7 @@ fn cone(axis: DVec3, travel: DVec3, beam_rad: f64, cutoff_rad: f64) -> f64 {
     }
 }
 
-fn scaled(color: Vec3, strength: f64) -> Vec3 {
+pub(crate) fn scaled(color: Vec3, strength: f64) -> Vec3 {
     let limit = f64::from(LARGEST_IRRADIANCE);
     // An area that overflows, seen from a distance that does, is 0 · ∞: no light, rather than no number.
     let strength = if strength.is_nan() { 0.0 } else { strength.min(f64::MAX) };

@@ -1,6 +1,6 @@
 //! Materials, and the radiance that they reflect towards the eye.
 
-use crate::{Incident, LARGEST_IRRADIANCE, brdf, ggx, roughness};
+use crate::{Incident, LARGEST_IRRADIANCE, Lobe, brdf, ggx, roughness};
 use glam::Vec3;
 
 /// Reflectance of clear lacquer, plastic or glass (index 1.5) at normal incidence: ((1.5 − 1)/(1.5 + 1))².
@@ -204,6 +204,22 @@ impl Material {
             _ => self.brdf(normal, incident.to_light, to_eye),
         };
         finite(f * incident.irradiance * cos_light)
+    }
+
+    /// The lobe of the specular part, for one direction to the eye.
+    ///
+    /// Its width is that of the distribution of normals, doubled by mirroring: for the Phong models the angle at which cosᵐ is e^−½.
+    #[must_use]
+    pub fn lobe(&self, normal: Vec3, to_eye: Vec3) -> Lobe {
+        let by_power = 1.0 / self.shininess.max(1.0).sqrt();
+        let width_rad = match self.model {
+            Model::Lambert => 1.0,
+            // Seen from aside the lobe is narrower across, by the cosine.
+            Model::Ggx => 2.0 * roughness::alpha(self.roughness) * normal.dot(to_eye).clamp(0.1, 1.0),
+            Model::Phong | Model::NormalizedPhong => by_power,
+            Model::BlinnPhong | Model::NormalizedBlinnPhong => 2.0 * by_power,
+        };
+        Lobe { axis: 2.0 * normal.dot(to_eye) * normal - to_eye, width_rad }
     }
 
     /// Whether reflection depends on where the eye is; if not, one value serves all views.

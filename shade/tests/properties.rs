@@ -7,6 +7,7 @@ use pointillist_shade::{
 };
 use proptest::prelude::*;
 use std::f32::consts::TAU;
+use std::num::NonZeroU32;
 
 const MODELS: [Model; 6] = [
     Model::Lambert,
@@ -75,7 +76,7 @@ fn light() -> BoxedStrategy<Light> {
             edge_u,
             edge_v,
             radiance,
-            samples,
+            samples: NonZeroU32::new(samples),
             falloff,
         },
     );
@@ -203,7 +204,7 @@ fn a_rectangle_far_away_is_a_point() {
         edge_u: DVec3::X,
         edge_v: 2.0 * DVec3::Z,
         radiance: Vec3::splat(10.0),
-        samples: 16,
+        samples: NonZeroU32::new(16),
         falloff: Falloff::InverseSquare,
     };
     let total: f32 = (0..rect.samples()).map(|i| rect.illuminate(i, DVec3::ZERO).irradiance.x).sum();
@@ -225,7 +226,7 @@ fn a_rectangle_near_by_converges_to_the_form_factor() {
             edge_u: DVec3::X,
             edge_v: DVec3::Z,
             radiance: Vec3::ONE,
-            samples,
+            samples: NonZeroU32::new(samples),
             falloff: Falloff::InverseSquare,
         };
         let sum: f64 = (0..samples)

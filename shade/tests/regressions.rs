@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_shade::{Falloff, Light, Weighting, face_normal, vertex_normals};
+use std::num::NonZeroU32;
 
 /// The cross product of the edges overflowed, and zero times infinity became the irradiance.
 #[test]
@@ -11,7 +12,7 @@ fn a_rectangle_too_large_for_its_area_is_dark() {
         edge_u: dvec3(f64::MAX, 0.0, f64::MAX),
         edge_v: dvec3(f64::MAX, f64::MIN_POSITIVE, 7.0),
         radiance: Vec3::ZERO,
-        samples: 1,
+        samples: NonZeroU32::new(1),
         falloff: Falloff::InverseSquare,
     };
     assert!(light.illuminate(0, DVec3::ZERO).is_dark());

@@ -19,6 +19,7 @@
 //! 2. P. Atherton, K. Weiler, D. Greenberg: *Polygon shadow generation*, SIGGRAPH 1978.
 #![forbid(unsafe_code)]
 
+mod area;
 mod casters;
 mod cells;
 mod copies;
@@ -42,6 +43,7 @@ pub use glam;
 /// What the viewer sees, and what casts shadows.
 pub use pointillist_micropoint as micropoint;
 
+pub use area::{AreaLight, AreaOptions, AreaScratch, LARGEST_OUTLINE, SeenLight, check_outline};
 pub use counts::ShadowCounts;
 pub use error::ShadowError;
 pub use light::ShadowLight;

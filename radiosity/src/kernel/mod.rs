@@ -2,5 +2,4 @@
 
 pub(crate) mod edges;
 pub(crate) mod gauss;
-pub(crate) mod lambert;
 pub(crate) mod pair;

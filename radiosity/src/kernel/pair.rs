@@ -12,8 +12,9 @@ use std::borrow::Cow;
 use glam::DVec3;
 
 use super::edges::{Edge, Integral, Setting};
-use super::{gauss, lambert};
+use super::gauss;
 use crate::polygon::{Polygon, edges};
+use pointillist_dice::lambert;
 
 /// Heights over a horizon below this, relative to the pair, are on it: patches of one wall do not see each other.
 const HORIZON: f64 = 1e-14;

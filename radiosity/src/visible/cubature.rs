@@ -17,9 +17,10 @@ use glam::DVec3;
 
 use super::parts::{Pieces, Source};
 use super::shaft::Shaft;
+use crate::kernel::gauss;
 use crate::kernel::pair::{self, Mutual, Rule, facing_parts};
-use crate::kernel::{gauss, lambert};
 use crate::polygon::{Polygon, clipped};
+use pointillist_dice::lambert;
 
 /// Gauss points along each side of a cell.
 const ORDER: usize = 3;

@@ -7,9 +7,8 @@
 //! one occluder takes 1.8 times as long (bench `time_error`, `behind`), and a bake of `examples/house.toml` with `--patch 1` 42 s instead of 34 s.
 
 use glam::{DVec2, DVec3};
-use pointillist_dice::{ConvexPolygon, HalfPlane};
+use pointillist_dice::{ConvexPolygon, HalfPlane, lambert};
 
-use crate::kernel::lambert;
 use crate::polygon::{Polygon, edges};
 
 /// An occluder whose plane is nearer to the eye than this, times its radius, is seen edge on and hides nothing.

@@ -2,10 +2,12 @@
 
 use super::error::SceneError;
 use super::{
-    AmbientLight, Bump, BumpHeight, Details, Map, Material, Mesh, NONE, Scene, Surroundings, Transmission,
+    AmbientLight, Bump, BumpHeight, Details, LightSource, Map, Material, Mesh, NONE, Scene, Surroundings,
+    Transmission,
 };
 use glam::Vec3;
 use pointillist_shade::Light;
+use pointillist_shadow::check_outline;
 
 impl Scene {
     /// Whether lists fit one another, indices refer to something, and numbers are finite. Linear in the size of the scene
@@ -32,7 +34,7 @@ impl Scene {
             AmbientLight::Probes { .. } | AmbientLight::Environment | AmbientLight::Radiosity { .. } => true,
         };
         finite(ambient, || "ambient".to_owned())?;
-        self.lights.iter().try_for_each(|l| finite(is_finite(&l.light), || format!("light `{}`", l.name)))
+        self.lights.iter().try_for_each(check_light)
     }
 }
 
@@ -169,6 +171,16 @@ fn finite(is_finite: bool, what: impl FnOnce() -> String) -> Result<(), SceneErr
     if is_finite { Ok(()) } else { Err(SceneError::NotFinite { what: what() }) }
 }
 
+fn check_light(source: &LightSource) -> Result<(), SceneError> {
+    let LightSource { name, light, .. } = source;
+    finite(is_finite(light), || format!("light `{name}`"))?;
+    let Light::Polygon { outline, radiance, .. } = light else { return Ok(()) };
+    if radiance.min_element() < 0.0 {
+        return Err(SceneError::NegativeLight { name: name.clone() });
+    }
+    check_outline(outline.vertices()).map_err(|fault| SceneError::LightOutline { name: name.clone(), fault })
+}
+
 fn is_finite(light: &Light) -> bool {
     let color = light.color().is_finite();
     color
@@ -184,6 +196,7 @@ fn is_finite(light: &Light) -> bool {
             Light::Rect { corner, edge_u, edge_v, .. } => {
                 corner.is_finite() && edge_u.is_finite() && edge_v.is_finite()
             }
+            Light::Polygon { outline, .. } => outline.vertices().iter().all(|v| v.is_finite()),
             _ => true,
         }
 }

@@ -89,4 +89,18 @@ pub enum SceneError {
         /// Entries it would have.
         count: usize,
     },
+    /// A light's radiance is negative.
+    #[error("light `{name}` has a negative radiance")]
+    NegativeLight {
+        /// Its name.
+        name: String,
+    },
+    /// A polygonal light is no planar convex polygon.
+    #[error("light `{name}`: {fault}")]
+    LightOutline {
+        /// Its name.
+        name: String,
+        /// What is wrong.
+        fault: pointillist_shadow::ShadowError,
+    },
 }

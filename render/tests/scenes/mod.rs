@@ -2,13 +2,14 @@
 
 use glam::{DVec3, Vec3, dvec2, dvec3};
 use pointillist_render::sh::Sh;
-use pointillist_render::shade::{self, Falloff, Light, MerlTable};
+use pointillist_render::shade::{self, Falloff, Light, LightOutline, MerlTable};
 use pointillist_render::shprobe::Field;
 use pointillist_render::{
     AmbientLight, BakedLight, BakedSide, Bump, BumpHeight, Camera, Channel, Details, LightSource, Lightmap,
     Map, Material, MeasuredBrdf, Part, Scene, SkyLight, Surroundings, Texels, Texture, Transmission,
 };
 use proptest::prelude::*;
+use std::num::NonZeroU32;
 use std::sync::{Arc, LazyLock};
 
 fn point() -> impl Strategy<Value = DVec3> {
@@ -52,13 +53,19 @@ fn light() -> impl Strategy<Value = Light> {
             intensity,
             falloff
         }),
-        (point(), color(3.0)).prop_map(move |(corner, radiance)| Light::Rect {
+        (point(), color(3.0), 0..3u32).prop_map(move |(corner, radiance, samples)| Light::Rect {
             corner,
             edge_u: DVec3::X * 0.5,
             edge_v: DVec3::Z * 0.5,
             radiance,
-            samples: 2,
+            // 0: as a whole.
+            samples: NonZeroU32::new(samples),
             falloff,
+        }),
+        (point(), color(3.0), any::<bool>()).prop_map(move |(place, radiance, two_sided)| {
+            let vertices = [DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::new(0.2, 0.9, 0.9)];
+            let outline = LightOutline::new(&vertices.map(|v| place + v)).expect("four vertices");
+            Light::Polygon { outline, radiance, two_sided, samples: None, falloff }
         }),
     ]
 }

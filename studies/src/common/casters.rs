@@ -1,6 +1,7 @@
 //! Scenes for shadows.
 
 use std::f64::consts::TAU;
+use std::num::NonZeroU32;
 
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_render::Scene;
@@ -119,7 +120,7 @@ pub(crate) fn panes(size: u32) -> Scene {
     s.scene
 }
 
-/// Spheres and a board under a rectangular light of `samples` points.
+/// Spheres and a board under a rectangular light of `samples` points; 0 for the whole of it.
 pub(crate) fn area_light(size: u32, samples: u32) -> Scene {
     let mut s = Sketch::new(dvec3(0.5, 2.6, 5.0), dvec3(0.0, 0.4, 0.0), 36.0, size);
     let white = ground(&mut s, 6.0);
@@ -130,7 +131,7 @@ pub(crate) fn area_light(size: u32, samples: u32) -> Scene {
         edge_u: dvec3(1.2, 0.0, 0.0),
         edge_v: dvec3(0.0, 0.0, 1.2),
         radiance: Vec3::splat(10.0),
-        samples,
+        samples: NonZeroU32::new(samples),
         falloff: Falloff::InverseSquare,
     });
     s.scene

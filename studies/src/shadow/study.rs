@@ -278,12 +278,12 @@ fn area_light() -> (Vec<Row>, f64) {
     };
     let expected = draw(CONVERGED);
     let mut rows = vec![];
-    for samples in [1, 4, 16, 64] {
+    for samples in [0, 1, 4, 16, 64] {
         let (seconds, picture) = on_one_thread(|| timed(|| draw(samples)));
         rows.push(Row {
             scene: "area light".to_owned(),
             series: "correlated".to_owned(),
-            setting: format!("{samples} points"),
+            setting: if samples == 0 { "exact".to_owned() } else { format!("{samples} points") },
             seconds,
             rmse: picture.rmse(&expected),
             largest: picture.largest_error(&expected),

@@ -4,12 +4,12 @@ use crate::input_error::InputError;
 use crate::scene::Resolution;
 use crate::scene::text::Table;
 use glam::{DVec3, Vec3};
-use pointillist_shade::{Falloff, Light};
+use pointillist_render::check_outline;
+use pointillist_shade::{Falloff, Light, LightOutline};
+use std::num::NonZeroU32;
 
-/// Points that stand for a rectangular light that does not say.
-const DEFAULT_RECT_SAMPLES: u32 = 16;
-/// More points than this are a mistake: each is a shadow pass.
-const LARGEST_RECT_SAMPLES: u32 = 4096;
+/// More points than this for one light are a mistake: each is a shadow pass.
+const LARGEST_SAMPLES: u32 = 4096;
 /// More light cells per side than this cannot be numbered in a 32-bit grid with room to spare.
 const LARGEST_RESOLUTION: u32 = 1 << 20;
 
@@ -32,6 +32,7 @@ enum Kind {
     Directional,
     Spot,
     Rect,
+    Polygon,
 }
 
 pub(super) fn read_all(root: &mut Table<'_>) -> Result<Vec<LightDescription>, InputError> {
@@ -63,6 +64,7 @@ fn read(mut table: Table<'_>, name: String) -> Result<LightDescription, InputErr
         ("directional", Kind::Directional),
         ("spot", Kind::Spot),
         ("rect", Kind::Rect),
+        ("polygon", Kind::Polygon),
     ];
     let Some(kind) = table.choice("type", &kinds)? else { return Err(table.missing("type", "\"point\"")) };
     let light = match kind {
@@ -77,6 +79,7 @@ fn read(mut table: Table<'_>, name: String) -> Result<LightDescription, InputErr
         },
         Kind::Spot => read_spot(&mut table)?,
         Kind::Rect => read_rect(&mut table)?,
+        Kind::Polygon => read_polygon(&mut table)?,
     };
     let shadow = table.boolean("shadow")?.unwrap_or(true);
     let resolution = read_resolution(&mut table)?;
@@ -116,9 +119,32 @@ fn read_rect(table: &mut Table<'_>) -> Result<Light, InputError> {
         edge_u,
         edge_v,
         radiance: needed_color(table, "radiance")?,
-        samples: table.count("samples", 1, LARGEST_RECT_SAMPLES)?.unwrap_or(DEFAULT_RECT_SAMPLES),
+        samples: read_samples(table)?,
         falloff: read_falloff(table)?,
     })
+}
+
+fn read_polygon(table: &mut Table<'_>) -> Result<Light, InputError> {
+    let Some(vertices) = table.vectors("vertices")? else {
+        return Err(table.missing("vertices", "[[0, 2, 0], [1, 2, 0], [0, 2, 1]]"));
+    };
+    let wrong = |table: &Table<'_>, what: &dyn std::fmt::Display| {
+        table.error("vertices", format!("`{}`: {what}", table.name_of("vertices")))
+    };
+    let outline = LightOutline::new(&vertices).map_err(|e| wrong(table, &e))?;
+    check_outline(&vertices).map_err(|e| wrong(table, &e))?;
+    Ok(Light::Polygon {
+        outline,
+        radiance: needed_color(table, "radiance")?,
+        two_sided: table.boolean("two_sided")?.unwrap_or(false),
+        samples: read_samples(table)?,
+        falloff: read_falloff(table)?,
+    })
+}
+
+/// Nothing for a light that is taken as a whole.
+fn read_samples(table: &mut Table<'_>) -> Result<Option<NonZeroU32>, InputError> {
+    Ok(table.count("samples", 1, LARGEST_SAMPLES)?.and_then(NonZeroU32::new))
 }
 
 fn read_falloff(table: &mut Table<'_>) -> Result<Falloff, InputError> {

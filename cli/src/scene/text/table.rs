@@ -167,6 +167,10 @@ impl<'a> Table<'a> {
     /// See above.
     pub fn numbers<const N: usize>(&mut self, key: &'static str) -> Read<[f64; N]> {
         let Some(node) = self.get(key) else { return Ok(None) };
+        self.array(key, node).map(Some)
+    }
+
+    fn array<const N: usize>(&self, key: &str, node: &Node) -> Result<[f64; N], InputError> {
         let wanted = format!("a list of {N} numbers");
         let Value::Array(items) = &node.value else { return Err(self.wrong(key, node, &wanted)) };
         if items.len() != N {
@@ -177,7 +181,20 @@ impl<'a> Table<'a> {
         for (number, item) in numbers.iter_mut().zip(items) {
             *number = self.finite(key, item)?;
         }
-        Ok(Some(numbers))
+        Ok(numbers)
+    }
+
+    /// A list of points.
+    ///
+    /// # Errors
+    ///
+    /// See above.
+    pub fn vectors(&mut self, key: &'static str) -> Read<Vec<DVec3>> {
+        let Some(node) = self.get(key) else { return Ok(None) };
+        let wanted = "a list of points, each a list of 3 numbers";
+        let Value::Array(items) = &node.value else { return Err(self.wrong(key, node, wanted)) };
+        let point = |item: &Node| self.array(key, item).map(DVec3::from_array);
+        items.iter().map(point).collect::<Result<_, _>>().map(Some)
     }
 
     /// A point or direction.

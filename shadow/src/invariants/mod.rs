@@ -2,6 +2,8 @@
 //!
 //! Each takes any input at all. A scene, view or light that is refused satisfies every fact.
 
+pub mod area;
+
 use pointillist_dice::convex;
 use pointillist_micropoint::invariants::{Soup, permutation};
 use pointillist_micropoint::{Geometry, MicropointOptions, PixelRect, PlainOpacity, Renderer, Tile, View};

@@ -1,22 +1,24 @@
 //! The share of a point's cosine-weighted hemisphere that a polygon takes: Lambert's formula.
+//!
+//! F = 1/2π Σ θₖ nₖ·n over the edges, θₖ the angle under which an edge is seen and nₖ the normal of the plane through it and the
+//! point (D. Baum, H. Rushmeier, J. Winget: *Improving radiosity solutions through the use of analytically determined form-factors*,
+//! SIGGRAPH 1989, eq. 10).
 
+use crate::clip::{clip_ring, share_before_crossing};
 use glam::DVec3;
-
-use crate::polygon::crossing;
-use pointillist_dice::clip_ring;
 
 /// Form factor from a surface element to a polygon that lies in front of it and faces it, nothing between.
 ///
-/// F = 1/2π Σ θₖ nₖ·n over the edges, θₖ the angle under which an edge is seen and nₖ the normal of the plane through it and the
-/// point (\[1\], eq. 10). Positive if the polygon's front faces `point`. Exact up to rounding, which grows
-/// with the distance over the polygon's size.
-pub(crate) fn share(point: DVec3, normal: DVec3, ring: &[DVec3]) -> f64 {
+/// `normal` is that of the element, a unit vector. Positive if the polygon's front, from which it is counter-clockwise, faces `point`.
+/// Exact up to rounding, which grows with the distance over the polygon's size. About 15 ns an edge.
+#[must_use]
+pub fn share(point: DVec3, normal: DVec3, ring: &[DVec3]) -> f64 {
     share_of_ring(normal, ring.iter().map(|&v| v - point))
 }
 
 /// As [`share`], of vertices relative to the point.
 #[inline]
-pub(crate) fn share_of_ring(normal: DVec3, mut ring: impl Iterator<Item = DVec3>) -> f64 {
+pub fn share_of_ring(normal: DVec3, mut ring: impl Iterator<Item = DVec3>) -> f64 {
     let Some(first) = ring.next() else { return 0.0 };
     let (mut sum, mut last) = (0.0, first);
     for v in ring {
@@ -58,7 +60,8 @@ fn arctangent_over(tangent2: f64) -> f64 {
 }
 
 /// As [`share`] of a polygon that may reach below the horizon of `normal`, and be seen from behind (then negative).
-pub(crate) fn share_above_horizon(point: DVec3, normal: DVec3, ring: &[DVec3]) -> f64 {
+#[must_use]
+pub fn share_above_horizon(point: DVec3, normal: DVec3, ring: &[DVec3]) -> f64 {
     let side = |v: DVec3| normal.dot(v - point);
     if ring.iter().all(|&v| side(v) >= 0.0) {
         return share(point, normal, ring);
@@ -77,6 +80,11 @@ pub(crate) fn share_above_horizon(point: DVec3, normal: DVec3, ring: &[DVec3]) -
         sum += edge(last - point, first - point, normal);
     }
     -sum * (0.5 / std::f64::consts::PI)
+}
+
+/// Where the edge from `a` to `b` meets a plane, by heights over it.
+fn crossing((a, value_a): (DVec3, f64), (b, value_b): (DVec3, f64)) -> DVec3 {
+    a + (b - a) * share_before_crossing(value_a, value_b)
 }
 
 #[cfg(test)]

@@ -1,0 +1,233 @@
+//! Casters that let light through: they divide what is visible of a light, and weaken it.
+
+use super::light::{AreaLight, SeenLight};
+use super::outline::{highest_caster, projected};
+use super::shaft::Shaft;
+use super::sheets::{Sheet, Sheets, at_height};
+use glam::{DVec2, DVec3};
+use pointillist_dice::hide::{Blocker, Occluders, Regions};
+use pointillist_dice::{ConvexPolygon, convex};
+use pointillist_micropoint::{ClusterFace, SurfacePoint};
+use std::cmp::Ordering;
+
+/// Overlaps with an area below this, times that of the part of the light, are taken for rounding.
+const NEGLIGIBLE: f64 = 1e-9;
+
+/// A translucent caster as a point sees it.
+#[derive(Clone, Copy, Debug)]
+struct Pane {
+    /// Its projection onto the light's plane.
+    polygon: ConvexPolygon,
+    /// `None` if it depends on the place.
+    opacity: Option<f64>,
+    face: ClusterFace,
+}
+
+/// The translucent sheets of a group, and memory.
+#[derive(Debug, Default)]
+pub(crate) struct Glass {
+    sheets: Vec<u32>,
+    panes: Vec<Pane>,
+    blockers: Vec<Blocker>,
+    regions: Regions,
+    dimmed: SeenLight,
+}
+
+/// The panes before one point.
+struct View<'a> {
+    light: &'a AreaLight<'a>,
+    point: DVec3,
+    panes: &'a [Pane],
+}
+
+impl Glass {
+    /// Takes the translucent ones among the sheets of a group.
+    pub(crate) fn take(&mut self, sheets: &Sheets, group: &[u32]) {
+        self.sheets.clear();
+        self.sheets.extend(group.iter().filter(|&&s| sheets.list[s as usize].glass.is_some()));
+    }
+
+    /// Divides what a point sees by the panes in front of it. Returns the largest factor by which a pane's outline within `shaft` moves
+    /// when the point moves.
+    pub(crate) fn dim(
+        &mut self,
+        light: &AreaLight<'_>,
+        sheets: &Sheets,
+        normal: DVec3,
+        shaft: &Shaft,
+        seen: &mut SeenLight,
+    ) -> f64 {
+        if self.sheets.is_empty() {
+            return 0.0;
+        }
+        let factor = self.collect(light, sheets, normal, shaft, seen);
+        if self.panes.is_empty() {
+            return factor;
+        }
+        let Self { panes, blockers, regions, dimmed, .. } = self;
+        panes.sort_unstable_by(compare);
+        let view = View { light, point: seen.point, panes };
+        dimmed.clear();
+        for (part, transmittance) in seen.plane_parts() {
+            blockers.clear();
+            let apart = |pane: &Pane| convex::are_disjoint(part, pane.polygon.vertices());
+            let before = (0..panes.len()).filter(|&i| !apart(&panes[i]));
+            blockers.extend(before.map(|i| Blocker { number: i as u32, front: None }));
+            if blockers.is_empty() {
+                dimmed.push(part.iter().copied(), transmittance);
+                continue;
+            }
+            let negligible = NEGLIGIBLE * convex::area(part);
+            regions.hide(ConvexPolygon::from_vertices(part), negligible, blockers, &view);
+            for r in regions.list() {
+                dimmed.push(r.polygon.vertices().iter().copied(), transmittance * r.transmittance);
+            }
+        }
+        seen.take_parts(dimmed);
+        factor
+    }
+
+    /// The panes that overlap the visible parts' rectangle.
+    fn collect(
+        &mut self,
+        light: &AreaLight<'_>,
+        sheets: &Sheets,
+        normal: DVec3,
+        shaft: &Shaft,
+        seen: &SeenLight,
+    ) -> f64 {
+        self.panes.clear();
+        let (low, high) = seen.bounds();
+        let mut factor = 0.0_f64;
+        for &s in &self.sheets {
+            let sheet = &sheets.list[s as usize];
+            let Some(face) = sheets.glass(sheet) else { continue };
+            let distance = sheet.normal.dot(seen.point) - sheet.offset;
+            if distance.abs() <= light.coincident {
+                continue;
+            }
+            factor = factor.max(factor_of(light, sheets, sheet, (seen.point, normal), shaft));
+            let polygon = projection(sheets, sheet, seen.point, distance > 0.0);
+            let (least, most) = polygon.bounds();
+            let overlaps = least.cmplt(high).all() && most.cmpgt(low).all();
+            if polygon.vertices().len() < 3 || !overlaps {
+                continue;
+            }
+            let surface = &light.geometry.surfaces()[face.surface as usize];
+            let opacity = (!surface.textured_opacity).then_some(f64::from(surface.opacity));
+            self.panes.push(Pane { polygon, opacity, face });
+        }
+        factor
+    }
+}
+
+/// As `Outline::cast` has it, of one sheet.
+fn factor_of(
+    light: &AreaLight<'_>,
+    sheets: &Sheets,
+    sheet: &Sheet,
+    (point, normal): (DVec3, DVec3),
+    shaft: &Shaft,
+) -> f64 {
+    let top = highest_caster(point.z);
+    let mut factor = 0.0_f64;
+    for e in sheet.edges() {
+        let [a, b] = sheets.ends(e.edge());
+        let below = |p: DVec3| normal.dot(p - point) <= light.coincident;
+        if (a.z > top && b.z > top) || (below(a) && below(b)) {
+            continue;
+        }
+        let cut = |p: DVec3| if p.z > top { at_height(a, b, top) } else { p };
+        if let Some(nearest) = shaft.highest_within(cut(a), cut(b)) {
+            factor = factor.max(nearest / (point.z - nearest));
+        }
+    }
+    factor
+}
+
+/// The projection of what of a sheet is below a point, in positive order; `front`: the point is on the side of the sheet's normal.
+fn projection(sheets: &Sheets, sheet: &Sheet, point: DVec3, front: bool) -> ConvexPolygon {
+    let top = highest_caster(point.z);
+    let mut ring = [DVec2::ZERO; 8];
+    let mut count = 0;
+    for e in sheet.edges() {
+        let [a, b] = sheets.ends(e.edge());
+        let (from, to) = if e.turn() > 0 { (a, b) } else { (b, a) };
+        if from.z <= top {
+            ring[count] = projected(point, from);
+            count += 1;
+        }
+        if (from.z <= top) != (to.z <= top) {
+            ring[count] = projected(point, at_height(a, b, top));
+            count += 1;
+        }
+    }
+    let ring = &mut ring[..count];
+    // A point in front of the light looks down on its plane: what it sees the front of is counter-clockwise there.
+    if !front {
+        ring.reverse();
+    }
+    ConvexPolygon::from_vertices(ring)
+}
+
+/// An order that does not depend on that of triangles: masks last, which need not be asked where others hide all; then by place.
+fn compare(a: &Pane, b: &Pane) -> Ordering {
+    let textured = a.opacity.is_none().cmp(&b.opacity.is_none());
+    let opacity = |p: &Pane| p.opacity.unwrap_or(1.0);
+    let places = |p: &Pane| p.polygon.bounds();
+    let ((la, ha), (lb, hb)) = (places(a), places(b));
+    let numbers = [(la.x, lb.x), (la.y, lb.y), (ha.x, hb.x), (ha.y, hb.y), (opacity(a), opacity(b))];
+    let by_place = numbers.into_iter().map(|(a, b)| a.total_cmp(&b)).fold(Ordering::Equal, Ordering::then);
+    let sum = |p: &Pane| p.polygon.vertices().iter().fold(DVec2::ZERO, |s, &v| s + v);
+    let (sa, sb) = (sum(a), sum(b));
+    let by_corners = sa.x.total_cmp(&sb.x).then(sa.y.total_cmp(&sb.y));
+    textured
+        .then(by_place)
+        .then(by_corners)
+        .then((a.face.surface, a.face.id).cmp(&(b.face.surface, b.face.id)))
+}
+
+impl Occluders for View<'_> {
+    fn outline(&self, number: u32) -> &[DVec2] {
+        self.panes[number as usize].polygon.vertices()
+    }
+
+    fn is_opaque(&self, number: u32) -> bool {
+        self.panes[number as usize].opacity == Some(1.0)
+    }
+
+    fn opacity(&self, number: u32, over: &ConvexPolygon) -> f64 {
+        let pane = &self.panes[number as usize];
+        pane.opacity.unwrap_or_else(|| self.mask(&pane.face, over.vertices()))
+    }
+}
+
+impl View<'_> {
+    /// Mean opacity of a mask where it is in front of a polygon of the light's plane.
+    fn mask(&self, face: &ClusterFace, polygon: &[DVec2]) -> f64 {
+        let AreaLight { geometry, frame, opacity, .. } = self.light;
+        let [a, b, c] = geometry.corners(face.source).map(|p| frame.local(p) - self.point);
+        let normal = (b - a).cross(c - a);
+        let at = |&grid: &DVec2| {
+            // a + t·(b − a) + s·(c − a) on the line to the polygon's corner, by Cramer's rule; a common factor cancels.
+            let towards = grid.extend(0.0) - self.point;
+            let weights =
+                DVec3::new(towards.dot(b.cross(c)), towards.dot(c.cross(a)), towards.dot(a.cross(b)));
+            let sum = weights.element_sum();
+            let kept = if sum < 0.0 { -weights } else { weights }.max(DVec3::ZERO);
+            let total = kept.element_sum();
+            let barycentric = if total > 0.0 { kept / total } else { DVec3::splat(1.0 / 3.0) };
+            let along = normal.dot(a) / normal.dot(towards);
+            // Depth along the light's axis: a corner of the polygon is at the point's height over the light.
+            let depth = (along * self.point.z).abs().max(f64::MIN_POSITIVE);
+            SurfacePoint { grid, nearness: 1.0 / depth, rational: 1.0 / depth, barycentric }
+        };
+        let zero = SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO };
+        let mut points = [zero; convex::MAX_VERTICES];
+        for (to, v) in points.iter_mut().zip(polygon) {
+            *to = at(v);
+        }
+        let mean = opacity.mean_opacity(face.id, &points[..polygon.len()]);
+        f64::from(geometry.surfaces()[face.surface as usize].behind_mask(mean))
+    }
+}

@@ -1,0 +1,194 @@
+//! Facts about lights with an area.
+
+use super::check;
+use crate::{AreaLight, AreaOptions, AreaScratch, Receivers, Viewer};
+use glam::DVec3;
+use pointillist_micropoint::invariants::{Soup, permutation};
+use pointillist_micropoint::{Geometry, MicropointOptions, PixelRect, PlainOpacity, Renderer, Tile, View};
+
+/// What a point of a visible surface sees of a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenPoint {
+    /// Position of its triangle in the caller's array.
+    pub triangle: u32,
+    /// Its surface.
+    pub surface: u32,
+    /// Where it is.
+    pub position: DVec3,
+    /// Unit normal of its surface on the side that is seen.
+    pub normal: DVec3,
+    /// The share of its receiver that it stands for.
+    pub weight: f64,
+    /// The visible share of the light's area.
+    pub area: f64,
+    /// The form factor of what is visible.
+    pub share: f64,
+}
+
+/// What each pixel sees, row by row.
+pub type SeenPicture = Vec<Vec<SeenPoint>>;
+
+fn picture_of(
+    renderer: &Renderer<'_>,
+    geometry: &Geometry,
+    light: &AreaLight<'_>,
+    rects: impl IntoIterator<Item = PixelRect>,
+) -> SeenPicture {
+    let (width, height) = (renderer.view().width(), renderer.view().height());
+    let mut picture = vec![vec![]; (width * height) as usize];
+    let (mut tile, mut scratch, mut receivers) =
+        (Tile::default(), AreaScratch::default(), Receivers::default());
+    for rect in rects {
+        renderer.render(rect, &mut tile);
+        receivers.clear();
+        receivers.push_tile(&tile);
+        let fragments = |p| tile.fragments(p).iter().map(move |_| p);
+        let owners: Vec<_> = tile.points().iter().flat_map(fragments).collect();
+        let mut seen = vec![vec![]; owners.len()];
+        let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
+        light.visit(viewer, &receivers, &mut scratch, |receiver, weight, part| {
+            let face = &tile.faces()[owners[receiver].face as usize];
+            let [a, b, c] = geometry.corners(face.source);
+            let front = (b - a).cross(c - a).normalize_or_zero();
+            let normal = if face.front { front } else { -front };
+            seen[receiver].push(SeenPoint {
+                triangle: face.id,
+                surface: face.surface,
+                position: part.position(),
+                normal,
+                weight,
+                area: part.area() / light.area(),
+                share: part.share(normal),
+            });
+        });
+        for (owner, points) in owners.iter().zip(seen) {
+            picture[(owner.y * width + owner.x) as usize].extend(points);
+        }
+    }
+    picture
+}
+
+fn with_light<T>(
+    soup: &Soup,
+    view: View,
+    (outline, options): (&[DVec3], AreaOptions),
+    visit: impl FnOnce(&Renderer<'_>, &Geometry, &AreaLight<'_>) -> T,
+) -> Option<T> {
+    let geometry = soup.geometry().ok()?;
+    let renderer = Renderer::new(&geometry, &PlainOpacity, view, MicropointOptions::DEFAULT).ok()?;
+    let light = AreaLight::new(&geometry, &PlainOpacity, outline, options).ok()?;
+    Some(visit(&renderer, &geometry, &light))
+}
+
+/// Renders a scene whole; `None` if something is refused.
+#[must_use]
+pub fn seen_picture(soup: &Soup, view: View, outline: &[DVec3]) -> Option<SeenPicture> {
+    seen_picture_with(soup, view, outline, AreaOptions::DEFAULT)
+}
+
+/// As [`seen_picture`], with these options.
+#[must_use]
+pub fn seen_picture_with(
+    soup: &Soup,
+    view: View,
+    outline: &[DVec3],
+    options: AreaOptions,
+) -> Option<SeenPicture> {
+    with_light(soup, view, (outline, options), |r, g, l| picture_of(r, g, l, [r.picture()]))
+}
+
+/// Per pixel and surface, what arrives of the light at a picture's points: Σ weight × share.
+#[must_use]
+pub fn shares_on(picture: &SeenPicture, surface: u32) -> Vec<f64> {
+    let own = |pixel: &Vec<SeenPoint>| {
+        pixel.iter().filter(|p| p.surface == surface).map(|p| p.weight * p.share).sum()
+    };
+    picture.iter().map(own).collect()
+}
+
+fn are_identical(a: &SeenPicture, b: &SeenPicture) -> Result<(), String> {
+    let bits = |p: &SeenPoint| {
+        (p.triangle, p.position.to_array().map(f64::to_bits), [p.weight, p.area, p.share].map(f64::to_bits))
+    };
+    for (i, (pa, pb)) in a.iter().zip(b).enumerate() {
+        let same = pa.len() == pb.len() && pa.iter().map(bits).eq(pb.iter().map(bits));
+        check(same, || format!("pixel {i}: {pa:?} and {pb:?}"))?;
+    }
+    Ok(())
+}
+
+/// What is seen of a light does not depend on the rectangles in which a picture is rendered, bit for bit.
+///
+/// # Errors
+/// The first pixel that differs.
+pub fn tiles_do_not_matter(soup: &Soup, view: View, outline: &[DVec3]) -> Result<(), String> {
+    let result = with_light(soup, view, (outline, AreaOptions::DEFAULT), |r, g, l| {
+        let expected = picture_of(r, g, l, [r.picture()]);
+        for size in [16, 3, 1] {
+            let tiled = picture_of(r, g, l, r.picture().tiles(size));
+            are_identical(&expected, &tiled).map_err(|e| format!("tiles of {size}: {e}"))?;
+        }
+        Ok(())
+    });
+    result.unwrap_or(Ok(()))
+}
+
+/// What is seen of a light does not depend on the order of triangles, bit for bit.
+///
+/// # Errors
+/// The first pixel that differs.
+pub fn triangle_order_does_not_matter(
+    soup: &Soup,
+    view: View,
+    outline: &[DVec3],
+    seed: u64,
+) -> Result<(), String> {
+    let order = permutation(soup.triangles.len(), seed);
+    let expected = seen_picture(soup, view, outline);
+    let got = seen_picture(&soup.reordered(&order), view, outline);
+    let (Some(expected), Some(mut got)) = (expected, got) else { return Ok(()) };
+    got.iter_mut().flatten().for_each(|p| p.triangle = order[p.triangle as usize]);
+    are_identical(&expected, &got)
+}
+
+/// What is seen of a parallelogram agrees with rays to `n`² points of it, each in the middle of its cell, to within `tolerance` of its area.
+///
+/// # Errors
+/// The first point at which it does not.
+pub fn agrees_with_rays(
+    soup: &Soup,
+    view: View,
+    [corner, u, v]: [DVec3; 3],
+    n: u32,
+    tolerance: f64,
+) -> Result<(), String> {
+    let outline = [corner, corner + u, corner + u + v, corner + v];
+    let Some(picture) = seen_picture(soup, view, &outline) else { return Ok(()) };
+    let place = |k: u32| (f64::from(k) + 0.5) / f64::from(n);
+    for p in picture.iter().flatten() {
+        let targets = (0..n * n).map(|k| corner + u * place(k % n) + v * place(k / n));
+        let above = targets.filter(|t| p.normal.dot(*t - p.position) > 0.0);
+        let area = above.map(|t| transmittance(soup, p.position, t)).sum::<f64>() / f64::from(n * n);
+        check((area - p.area).abs() <= tolerance, || format!("{p:?}: {area} by rays"))?;
+    }
+    Ok(())
+}
+
+/// What passes through all triangles between two points; those that the first lies on do not count.
+fn transmittance(soup: &Soup, from: DVec3, to: DVec3) -> f64 {
+    let mut passed = 1.0;
+    for (triangle, &surface) in soup.triangles.iter().zip(&soup.surface_of) {
+        let [a, b, c] = triangle.map(|i| soup.positions[i as usize] - from);
+        let normal = (b - a).cross(c - a);
+        let towards = to - from;
+        let (height, slope) = (normal.dot(a), normal.dot(towards));
+        if height.abs() <= 1e-9 * normal.length() || slope == 0.0 || !(0.0..1.0).contains(&(height / slope)) {
+            continue;
+        }
+        let sides = [b.cross(c), c.cross(a), a.cross(b)].map(|s| s.dot(towards) * slope.signum());
+        if sides.iter().all(|&s| s > 0.0) {
+            passed *= 1.0 - f64::from(soup.surfaces[surface as usize].opacity);
+        }
+    }
+    passed
+}
