@@ -5,13 +5,13 @@
 //! a mean of normals is the normal of what they cover together. How far slopes are spread about their mean widens the highlight: the
 //! means of their products say so (LEAN mapping, M. Olano, D. Baker, I3D 2010).
 
-use crate::scene::{Details, Map, Scene, Texels, Texture, unit_of_byte};
+use crate::scene::{Details, Map, Material, Scene, Texels, Texture, unit_of_byte};
 use crate::texel_sums::{Lazy, color_sums, values, when_needed};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec2, Vec3, Vec4, vec3};
 use pointillist_micropoint::{MicropointError, SurfacePoint, TexelSums};
 use pointillist_parallel as parallel;
-use pointillist_shade::slope_of_heights;
+use pointillist_shade::{Model, slope_of_heights};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -71,28 +71,34 @@ impl DetailTable {
         let maps = |of: fn(&Details) -> [Option<Map>; 4]| -> HashSet<Map> {
             scene.materials.iter().flat_map(|m| of(&m.details)).flatten().collect()
         };
+        let in_highlights = |of: fn(&Details) -> Option<Map>| -> HashSet<Map> {
+            scene.materials.iter().filter(|m| has_highlight(m)).filter_map(|m| of(&m.details)).collect()
+        };
         let numbers =
             maps(|d| [d.shininess_map, d.roughness_map, d.metallic_map, d.occlusion.map(|(map, _)| map)]);
         let colors = maps(|d| [d.specular_map, d.emission_map, None, None]);
         // Heights that are all the same have no slope.
         let mut slopes = maps(|d| [d.bump.map(|bump| bump.map), None, None, None]);
         slopes.retain(|map| !scene.textures[map.texture].is_constant());
+        let mut widening = in_highlights(|d| d.bump.map(|bump| bump.map));
+        widening.retain(|map| slopes.contains(map));
         let normals = maps(|d| [d.normal.map(|(map, _)| map), None, None, None]);
         Ok(Self {
             numbers: all(&numbers, scene, number_sums)?,
             colors: all(&colors, scene, |map, t| color_sums(t, texel_wrap(map.wrap)))?,
             slopes: all(&slopes, scene, slope_sums)?,
-            slope_products: all(&slopes, scene, slope_product_sums)?,
+            slope_products: all(&widening, scene, slope_product_sums)?,
             normals: all(&normals, scene, normal_sums)?,
-            normal_slopes: all(&normals, scene, normal_slope_sums)?,
+            normal_slopes: all(&in_highlights(|d| d.normal.map(|(map, _)| map)), scene, normal_slope_sums)?,
         })
     }
 
-    /// `highlight`: whether the material has one.
-    pub(crate) fn maps(&self, details: &Details, highlight: bool) -> DetailMaps {
+    /// The maps of a material.
+    pub(crate) fn maps(&self, material: &Material) -> DetailMaps {
+        let details = &material.details;
         let bump = details.bump.map(|bump| bump.map);
         let normal = details.normal.map(|(map, _)| map);
-        let in_highlight = |map: Option<Map>| map.filter(|_| highlight);
+        let in_highlight = |map: Option<Map>| map.filter(|_| has_highlight(material));
         let number = |map: Option<Map>| map.and_then(|map| self.numbers.get(&map).cloned());
         let color = |map: Option<Map>| map.and_then(|map| self.colors.get(&map).cloned());
         DetailMaps {
@@ -108,6 +114,11 @@ impl DetailTable {
             normal_slopes: in_highlight(normal).and_then(|map| self.normal_slopes.get(&map).cloned()),
         }
     }
+}
+
+/// Whether a material has a highlight. A metallic map may give a GGX surface the reflectance that it lacks.
+fn has_highlight(material: &Material) -> bool {
+    material.surface.model == Model::Ggx || material.surface.depends_on_view()
 }
 
 fn all<const N: usize>(

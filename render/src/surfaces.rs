@@ -246,9 +246,7 @@ fn details_by_material(scene: &Scene) -> Result<Vec<Option<DetailMaps>>, Micropo
     let table = DetailTable::new(scene)?;
     let maps = |m: &Material| {
         let beyond = m.details != Details::default() || m.surface.model == Model::Ggx;
-        // A metallic map may give a GGX surface the reflectance that it lacks.
-        let highlight = m.surface.model == Model::Ggx || m.surface.depends_on_view();
-        beyond.then(|| table.maps(&m.details, highlight))
+        beyond.then(|| table.maps(m))
     };
     Ok(scene.materials.iter().map(maps).collect())
 }
