@@ -204,3 +204,29 @@ fn set_overrides_show_themselves() {
         "render.occlusion=paper",
     ]);
 }
+
+#[test]
+fn lights_with_an_area_are_checked() {
+    const LAMP: &str = "type = \"point\"\nposition = [1, 2, 3]\nintensity = [30, 30, 30]\n";
+    let polygon = |vertices: &str, rest: &str| {
+        format!("type = \"polygon\"\nvertices = {vertices}\nradiance = [1, 1, 1]\n{rest}")
+    };
+    let square = "[[0, 2, 0], [1, 2, 0], [1, 2, 1], [0, 2, 1]]";
+    let wrong = |light: String, pieces: &[&str]| scene_error(LAMP, &light, pieces);
+    wrong(
+        polygon("[[0, 2, 0], [1, 2, 0]]", ""),
+        &["scene.toml:12", "`light[0].vertices`", "2 vertices", "3 to 12"],
+    );
+    wrong(
+        polygon("[[0, 2, 0], [1, 2, 0], [1, 3, 1], [0, 2, 1]]", ""),
+        &["`light[0].vertices`", "not in the plane"],
+    );
+    let dent = "[[0, 2, 0], [1, 2, 0], [0.2, 2, 0.2], [0, 2, 1]]";
+    wrong(polygon(dent, ""), &["`light[0].vertices`", "not convex at vertex 2"]);
+    wrong(polygon("[[0, 2, 0], [1, 2, 0], [1, 2]]", ""), &["`light[0].vertices`", "3 numbers"]);
+    wrong(polygon(square, "samples = 0\n"), &["`light[0].samples`", "1"]);
+    wrong(polygon(square, "").replace("[1, 1, 1]\n", "[1, -1, 1]\n"), &["`light[0].radiance`", "negative"]);
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE.replacen(LAMP, &polygon(square, "two_sided = true\n"), 1));
+    folder.prints(&["check", "scene.toml"]);
+}

@@ -1,7 +1,7 @@
 //! Scenes that do not fit together are refused with the element that is wrong, before anything is drawn.
 
 use glam::{DVec3, Vec3};
-use pointillist_render::shade::{self, Light};
+use pointillist_render::shade::{self, Falloff, Light, LightOutline};
 use pointillist_render::{
     Camera, DrawOptions, LayerKind, LightSource, Material, NONE, Part, RenderError, Scene, SceneError,
     Surroundings, Texels, Texture, Watch, render,
@@ -147,4 +147,25 @@ fn progress_ends_at_the_total_and_a_flag_ends_the_work() {
     // Threads end what they have begun: of 625 tiles one each.
     let done = done.load(Ordering::Relaxed);
     assert!((1..300).contains(&done), "{done}");
+}
+
+#[test]
+fn polygons_that_cannot_shine_are_named() {
+    let add = |vertices: &[DVec3], radiance: f32| {
+        let light = Light::Polygon {
+            outline: LightOutline::new(vertices).unwrap(),
+            radiance: Vec3::splat(radiance),
+            two_sided: false,
+            samples: None,
+            falloff: Falloff::InverseSquare,
+        };
+        refusal(|s| s.lights.push(LightSource::new("panel", light)))
+    };
+    let square = [DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];
+    assert_eq!(add(&square, -1.0).to_string(), "light `panel` has a negative radiance");
+    let mut bent = square;
+    bent[2].z = 0.5;
+    assert!(add(&bent, 1.0).to_string().contains("light `panel`: vertex"));
+    let dent = [DVec3::ZERO, DVec3::X, (DVec3::X + DVec3::Y) * 0.2, DVec3::Y];
+    assert!(add(&dent, 1.0).to_string().contains("not convex at vertex 2"));
 }

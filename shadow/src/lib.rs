@@ -10,6 +10,11 @@
 //! never darken each other. Cost: one projection per receiver, and a cut per receiver on a shadow edge;
 //! groups of receivers without casters, and groups behind one large caster, are settled as a whole.
 //!
+//! What a point sees of a light with an area ([`AreaLight`]) is exact up to rounding, but for casters nearer to the point than 10⁻⁶ of its
+//! distance from the light's plane, along the light's normal, and for masks, which weaken light by their mean over each part. A receiver
+//! is asked at its middle, or at those of its pieces ([`AreaOptions`]). Cost: a microsecond or two for each point in a penumbra, less
+//! elsewhere; masks cost a cut of the light for each of them.
+//!
 //! # Features
 //! `rayon` (default) is passed on to `pointillist-micropoint`. `invariants`: facts for property tests
 //! and fuzzing.

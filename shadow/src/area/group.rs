@@ -1,7 +1,7 @@
 //! Receivers in groups, each with the casters that may matter to it.
 
-use super::glass::Glass;
 use super::light::{AreaLight, SeenLight, above_horizon};
+use super::masks::Masks;
 use super::outline::Outline;
 use super::shaft::Shaft;
 use super::sheets::Sheets;
@@ -45,7 +45,7 @@ pub struct AreaScratch {
 #[derive(Debug, Default)]
 struct PointScratch {
     outline: Outline,
-    glass: Glass,
+    masks: Masks,
     sweep: Sweep,
     polygon: Vec<DVec2>,
     seen: SeenLight,
@@ -165,9 +165,9 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
     /// Asks the points of a group one by one.
     fn settle(&mut self, targets: &[Target], first: usize, around: Box3) {
         let group = &self.stack[first..];
-        let opaque = |&&s: &&u32| self.sheets.list[s as usize].glass.is_none();
+        let opaque = |&&s: &&u32| self.sheets.list[s as usize].mask.is_none();
         self.point.outline.take(self.sheets, group.iter().filter(opaque).copied(), around);
-        self.point.glass.take(self.sheets, group);
+        self.point.masks.take(self.sheets, group);
         for target in targets {
             let corners = &self.corners[target.first_corner as usize..][..target.corner_count as usize];
             self.ask(target, corners, 1.0, 0);
@@ -200,7 +200,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
 
     /// What a point of a surface sees. Returns the factor of [`Outline::cast`].
     fn cast(&mut self, (point, normal): (DVec3, DVec3), shaft: &Shaft) -> f64 {
-        let PointScratch { outline, glass, sweep, polygon, seen } = &mut *self.point;
+        let PointScratch { outline, masks, sweep, polygon, seen } = &mut *self.point;
         seen.clear();
         seen.point = point;
         if point.z <= self.light.coincident {
@@ -212,8 +212,9 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         }
         sweep.start(polygon);
         let factor = outline.cast(self.sheets, (point, normal), shaft, sweep);
-        sweep.finish(polygon, seen);
-        factor.max(glass.dim(self.light, self.sheets, normal, shaft, seen))
+        sweep.finish(polygon, self.sheets, seen);
+        masks.dim(self.light, self.sheets, seen);
+        factor
     }
 }
 

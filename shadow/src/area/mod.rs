@@ -9,14 +9,15 @@
 //! 3. From each point, a caster is seen from one side or the other; an edge between two casters seen from the same side is inside of the
 //!    shadow and drops out ([`outline`]). What is left of the edges is the shadow's outline, with winding numbers.
 //! 4. A sweep along the light's plane finds where the winding number is 0 ([`sweep`]): the visible parts, as trapezoids.
-//! 5. Translucent casters divide these parts further ([`glass`]).
+//!    Sheets of one opacity are counted together: a winding number of n is n layers of them.
+//! 5. Masked casters divide these parts further ([`masks`]).
 //!
 //! Grouping only ever leaves out casters whose projections lie outside the light's bounding rectangle. Their edges add up to a winding number
 //! of 0 there, exactly (step 4), so that what a point sees depends neither on its companions nor on the order of triangles.
 
-mod glass;
 mod group;
 mod light;
+mod masks;
 mod outline;
 mod shaft;
 mod sheets;

@@ -4,7 +4,7 @@
 //! that wind the same way is passed once in each direction: inside of the shadow. The others count by the sum over their sheets.
 
 use super::shaft::Shaft;
-use super::sheets::{Sheet, Sheets, at_height};
+use super::sheets::{Kind, Sheet, Sheets, at_height};
 use super::sweep::Sweep;
 use glam::{DVec2, DVec3};
 
@@ -19,6 +19,7 @@ const SURE: f64 = 2.0;
 #[derive(Clone, Copy, Debug)]
 struct OutlineEdge {
     ends: [DVec3; 2],
+    kind: Kind,
     /// Sum over the sheets whose side is the same for all points of the group.
     sure: i32,
     /// Sum over all sheets, for the point at hand.
@@ -90,7 +91,13 @@ impl Outline {
             if *position == NONE {
                 *position = self.edges.len() as u32;
                 self.numbers.push(e.edge());
-                self.edges.push(OutlineEdge { ends: sheets.ends(e.edge()), sure: 0, now: 0, open: false });
+                self.edges.push(OutlineEdge {
+                    ends: sheets.ends(e.edge()),
+                    kind: sheets.kind_of(e.edge()),
+                    sure: 0,
+                    now: 0,
+                    open: false,
+                });
             }
             act(&mut self.edges[*position as usize], e.turn());
         }
@@ -121,13 +128,13 @@ impl Outline {
         }
         let mut factor = 0.0_f64;
         for &i in &self.live {
-            let OutlineEdge { ends: [a, b], now, .. } = self.edges[i as usize];
+            let OutlineEdge { ends: [a, b], now, kind, .. } = self.edges[i as usize];
             if now == 0 || (a.z > top && b.z > top) {
                 continue;
             }
             let cut = |p: DVec3| if p.z > top { at_height(a, b, top) } else { p };
             let (a, b) = (cut(a), cut(b));
-            sweep.add(projected(point, a), projected(point, b), now);
+            sweep.add(projected(point, a), projected(point, b), now, kind);
             let below = |p: DVec3| normal.dot(p - point) <= self.coincident;
             if below(a) && below(b) {
                 continue;
@@ -141,9 +148,11 @@ impl Outline {
 
     /// The edge along which a sheet is cut off at height `top`.
     fn cast_cut(&self, sheet: &Sheet, point: DVec3, top: f64, side: i32, sweep: &mut Sweep) {
-        let (mut leaves, mut returns) = (None, None);
+        let (mut leaves, mut returns, mut kind) = (None, None, 0);
         for e in sheet.edges() {
-            let [a, b] = self.edges[self.position[e.edge() as usize] as usize].ends;
+            let OutlineEdge { ends: [a, b], kind: own, .. } =
+                self.edges[self.position[e.edge() as usize] as usize];
+            kind = own;
             if (a.z > top) != (b.z > top) {
                 let at = Some(at_height(a, b, top));
                 // Upward as the sheet goes along it.
@@ -152,7 +161,7 @@ impl Outline {
             }
         }
         if let (Some(from), Some(to)) = (leaves, returns) {
-            sweep.add(projected(point, from), projected(point, to), side);
+            sweep.add(projected(point, from), projected(point, to), side, kind);
         }
     }
 }

@@ -17,8 +17,8 @@ pub(crate) struct Sheet {
     corners: [u32; 4],
     edges: [SheetEdge; 4],
     count: u8,
-    /// Number of its triangle, if light may pass through it.
-    pub(crate) glass: Option<NonZeroU32>,
+    /// Number of its triangle, if its opacity depends on the place.
+    pub(crate) mask: Option<NonZeroU32>,
 }
 
 /// An edge as a sheet goes along it: twice its number, plus 1 if against its direction.
@@ -42,16 +42,22 @@ impl Sheet {
     }
 }
 
+/// Sheets that hide alike: 0 for opaque ones, the bits of their opacity for translucent ones, whose order is that of opacities. Edges of
+/// different kinds do not cancel.
+pub(crate) type Kind = u32;
+
 /// Casters that may stand between a batch of receivers and a light. Vertices and edges at the same place are one.
 #[derive(Debug, Default)]
 pub(crate) struct Sheets {
     pub(crate) list: Vec<Sheet>,
     vertices: Vec<DVec3>,
-    edges: Vec<[u32; 2]>,
+    /// Ends and kind.
+    edges: Vec<([u32; 2], Kind)>,
+    kinds: Vec<Kind>,
     number_of_vertex: HashMap<[u64; 3], u32, BuildHasherDefault<Mixer>>,
-    number_of_edge: HashMap<u64, u32, BuildHasherDefault<Mixer>>,
-    /// Triangles of translucent sheets; the first has number 1.
-    glass: Vec<ClusterFace>,
+    number_of_edge: HashMap<(u64, u32), u32, BuildHasherDefault<Mixer>>,
+    /// Triangles of masked sheets; the first has number 1.
+    masks: Vec<ClusterFace>,
     /// Vertices of the cluster at hand, and their numbers or `NONE`.
     local: Vec<DVec3>,
     numbers: Vec<u32>,
@@ -67,7 +73,8 @@ impl Sheets {
         self.edges.clear();
         self.number_of_vertex.clear();
         self.number_of_edge.clear();
-        self.glass.clear();
+        self.masks.clear();
+        self.kinds.clear();
     }
 
     /// Adds what a shaft does not miss, where it is higher than `lowest` over the light.
@@ -98,18 +105,45 @@ impl Sheets {
             if surface.opacity <= 0.0 || shaft.misses(corners.into_iter()) {
                 continue;
             }
-            let opaque = surface.opacity >= 1.0 && !surface.textured_opacity;
-            let glass = if opaque {
-                None
-            } else {
-                self.glass.push(face);
-                NonZeroU32::new(self.glass.len() as u32)
-            };
-            self.add(corners, face.corners, lowest, glass);
+            let mut mask = None;
+            let mut kind = 0;
+            if surface.textured_opacity {
+                self.masks.push(face);
+                mask = NonZeroU32::new(self.masks.len() as u32);
+            } else if surface.opacity < 1.0 {
+                kind = self.kind(surface.opacity);
+            }
+            self.add(corners, face.corners, lowest, (kind, mask));
         }
     }
 
-    fn add(&mut self, corners: [DVec3; 3], places: [usize; 3], lowest: f64, glass: Option<NonZeroU32>) {
+    /// The kind of translucent sheets of this opacity.
+    fn kind(&mut self, opacity: f32) -> Kind {
+        let kind = opacity.to_bits();
+        if let Err(place) = self.kinds.binary_search(&kind) {
+            self.kinds.insert(place, kind);
+        }
+        kind
+    }
+
+    /// The translucent kinds, by opacity.
+    pub(crate) fn kinds(&self) -> &[Kind] {
+        &self.kinds
+    }
+
+    /// The share of light that passes through so many sheets of each translucent kind.
+    pub(crate) fn passed(&self, layers: &[i32]) -> f64 {
+        let of = |(&kind, &count): (&Kind, &i32)| (1.0 - f64::from(f32::from_bits(kind))).powi(count.abs());
+        self.kinds.iter().zip(layers).map(of).product()
+    }
+
+    fn add(
+        &mut self,
+        corners: [DVec3; 3],
+        places: [usize; 3],
+        lowest: f64,
+        (kind, mask): (Kind, Option<NonZeroU32>),
+    ) {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let mut numbers = [0; 4];
@@ -133,10 +167,10 @@ impl Sheets {
         }
         let mut edges = [SheetEdge::default(); 4];
         for i in 0..count {
-            edges[i] = self.edge(numbers[i], numbers[(i + 1) % count]);
+            edges[i] = self.edge(numbers[i], numbers[(i + 1) % count], kind);
         }
         let offset = normal.dot(a);
-        self.list.push(Sheet { normal, offset, corners: numbers, edges, count: count as u8, glass });
+        self.list.push(Sheet { normal, offset, corners: numbers, edges, count: count as u8, mask });
     }
 
     fn vertex(&mut self, p: DVec3) -> u32 {
@@ -151,15 +185,15 @@ impl Sheets {
     }
 
     /// An edge, whose direction follows from the places of its ends: what is computed along it is the same for all its sheets.
-    fn edge(&mut self, from: u32, to: u32) -> SheetEdge {
+    fn edge(&mut self, from: u32, to: u32, kind: Kind) -> SheetEdge {
         let key = |v: u32| self.vertices[v as usize].to_array();
         let along = key(from) < key(to);
         let ends = if along { [from, to] } else { [to, from] };
         let next = self.edges.len() as u32;
         let both = u64::from(ends[0]) << 32 | u64::from(ends[1]);
-        let edge = *self.number_of_edge.entry(both).or_insert(next);
+        let edge = *self.number_of_edge.entry((both, kind)).or_insert(next);
         if edge == next {
-            self.edges.push(ends);
+            self.edges.push((ends, kind));
         }
         SheetEdge(edge << 1 | u32::from(!along))
     }
@@ -171,12 +205,16 @@ impl Sheets {
 
     /// The ends of an edge.
     pub(crate) fn ends(&self, edge: u32) -> [DVec3; 2] {
-        self.edges[edge as usize].map(|v| self.vertices[v as usize])
+        self.edges[edge as usize].0.map(|v| self.vertices[v as usize])
     }
 
-    /// The triangle of a translucent sheet.
-    pub(crate) fn glass(&self, sheet: &Sheet) -> Option<ClusterFace> {
-        sheet.glass.map(|number| self.glass[number.get() as usize - 1])
+    pub(crate) fn kind_of(&self, edge: u32) -> Kind {
+        self.edges[edge as usize].1
+    }
+
+    /// The triangle of a masked sheet.
+    pub(crate) fn mask(&self, sheet: &Sheet) -> Option<ClusterFace> {
+        sheet.mask.map(|number| self.masks[number.get() as usize - 1])
     }
 
     pub(crate) fn edge_count(&self) -> usize {

@@ -7,6 +7,7 @@
 //! 4. Trapezoids between the same two edges are joined over slabs.
 
 use super::light::SeenLight;
+use super::sheets::{Kind, Sheets};
 use glam::{DVec2, dvec2};
 use std::cmp::Ordering;
 
@@ -17,8 +18,16 @@ struct Side {
     high: DVec2,
     /// What it adds to the winding number from left to right.
     winding: i32,
-    /// It belongs to the polygon.
-    light: bool,
+    what: Border,
+}
+
+/// What a side is the border of. The order of these decides between sides at one place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Border {
+    /// What hides or dims: sheets of one kind.
+    Sheet(Kind),
+    /// The polygon.
+    Light,
 }
 
 impl Side {
@@ -48,7 +57,7 @@ impl Side {
         let key = |s: &Self| [s.low.x, s.low.y, s.high.x, s.high.y];
         let places = key(self).into_iter().zip(key(other)).map(|(a, b)| a.total_cmp(&b));
         let by_place = places.fold(Ordering::Equal, Ordering::then);
-        by_place.then(self.light.cmp(&other.light)).then(self.winding.cmp(&other.winding))
+        by_place.then(self.what.cmp(&other.what)).then(self.winding.cmp(&other.winding))
     }
 }
 
@@ -66,6 +75,7 @@ struct Open {
     left: u32,
     right: u32,
     from: f64,
+    transmittance: f64,
 }
 
 /// The sweep and its memory.
@@ -74,8 +84,10 @@ pub(crate) struct Sweep {
     low: DVec2,
     high: DVec2,
     sides: Vec<Side>,
-    /// Steps of the winding number along the left side: height, and what is added from there on.
-    steps: Vec<(f64, i32)>,
+    /// Steps of the winding numbers along the left side: kind, height, and what is added from there on.
+    steps: Vec<(Kind, f64, i32)>,
+    /// For each translucent kind, the winding number at hand.
+    layers: Vec<i32>,
     heights: Vec<f64>,
     active: Vec<Active>,
     open: Vec<Open>,
@@ -91,52 +103,52 @@ impl Sweep {
         for (i, &a) in polygon.iter().enumerate() {
             let b = polygon[(i + 1) % polygon.len()];
             if a.y < b.y {
-                self.sides.push(Side { low: a, high: b, winding: -1, light: true });
+                self.sides.push(Side { low: a, high: b, winding: -1, what: Border::Light });
             } else if b.y < a.y {
-                self.sides.push(Side { low: b, high: a, winding: 1, light: true });
+                self.sides.push(Side { low: b, high: a, winding: 1, what: Border::Light });
             }
         }
     }
 
     /// Adds an edge of what hides the polygon: step 1.
     #[inline]
-    pub(crate) fn add(&mut self, a: DVec2, b: DVec2, winding: i32) {
+    pub(crate) fn add(&mut self, a: DVec2, b: DVec2, winding: i32, kind: Kind) {
         let up = a.y < b.y;
         let (low, high, winding) = if up { (a, b, winding) } else { (b, a, -winding) };
         if high.y <= self.low.y || low.y >= self.high.y || low.x.min(high.x) >= self.high.x || low.y == high.y
         {
             return;
         }
-        let side = Side { low, high, winding, light: false };
+        let side = Side { low, high, winding, what: Border::Sheet(kind) };
         let (from, to) = (low.y.max(self.low.y), high.y.min(self.high.y));
         if low.x.max(high.x) <= self.low.x {
-            return self.add_steps(from, to, winding);
+            return self.add_steps(from, to, winding, kind);
         }
-        self.add_clipped(side.between(from, to));
+        self.add_clipped(side.between(from, to), kind);
     }
 
-    fn add_steps(&mut self, from: f64, to: f64, winding: i32) {
+    fn add_steps(&mut self, from: f64, to: f64, winding: i32, kind: Kind) {
         if from < to {
-            self.steps.push((from, winding));
-            self.steps.push((to, -winding));
+            self.steps.push((kind, from, winding));
+            self.steps.push((kind, to, -winding));
         }
     }
 
     /// Adds a side whose heights are within the rectangle's.
-    fn add_clipped(&mut self, side: Side) {
+    fn add_clipped(&mut self, side: Side, kind: Kind) {
         let Side { low, high, winding, .. } = side;
         let (mut from, mut to) = (low.y, high.y);
         let (left, right) = (self.low.x, self.high.x);
         if low.x.max(high.x) <= left {
-            return self.add_steps(from, to, winding);
+            return self.add_steps(from, to, winding, kind);
         }
         if low.x < left {
             let y = side.y_at(left);
-            self.add_steps(from, y, winding);
+            self.add_steps(from, y, winding, kind);
             from = y;
         } else if high.x < left {
             let y = side.y_at(left);
-            self.add_steps(y, to, winding);
+            self.add_steps(y, to, winding, kind);
             to = y;
         }
         if low.x > right {
@@ -151,15 +163,16 @@ impl Sweep {
 
     /// Steps along the left side as vertical sides there, joined where the winding number does not change.
     fn close_steps(&mut self) {
-        self.steps.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        self.steps.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        // Of each kind the steps add up to 0, so that the next one begins with no winding.
         let (mut winding, mut from) = (0, self.low.y);
         let mut first = 0;
         while first < self.steps.len() {
-            let y = self.steps[first].0;
-            let same = self.steps[first..].iter().take_while(|s| s.0 == y);
-            let (count, change) = same.fold((0, 0), |(n, sum), s| (n + 1, sum + s.1));
+            let (kind, y, _) = self.steps[first];
+            let same = self.steps[first..].iter().take_while(|s| s.0 == kind && s.1 == y);
+            let (count, change) = same.fold((0, 0), |(n, sum), s| (n + 1, sum + s.2));
             if change != 0 {
-                self.push_left(winding, from, y);
+                self.push_left(winding, from, y, kind);
                 winding += change;
                 from = y;
             }
@@ -167,17 +180,17 @@ impl Sweep {
         }
     }
 
-    fn push_left(&mut self, winding: i32, from: f64, to: f64) {
+    fn push_left(&mut self, winding: i32, from: f64, to: f64, kind: Kind) {
         if winding != 0 && from < to {
             let (low, high) = (dvec2(self.low.x, from), dvec2(self.low.x, to));
-            self.sides.push(Side { low, high, winding, light: false });
+            self.sides.push(Side { low, high, winding, what: Border::Sheet(kind) });
         }
     }
 
     /// Appends the visible parts to `seen`: steps 2 to 4.
-    pub(crate) fn finish(&mut self, polygon: &[DVec2], seen: &mut SeenLight) {
+    pub(crate) fn finish(&mut self, polygon: &[DVec2], sheets: &Sheets, seen: &mut SeenLight) {
         self.close_steps();
-        if self.sides.iter().all(|s| s.light) {
+        if self.sides.iter().all(|s| s.what == Border::Light) {
             return seen.push(polygon.iter().copied(), 1.0);
         }
         self.sides.sort_unstable_by(|a, b| a.low.y.total_cmp(&b.low.y).then_with(|| a.compare(b)));
@@ -196,14 +209,14 @@ impl Sweep {
                 self.active.push(Active { side: waiting as u32, x: [0.0; 2] });
                 waiting += 1;
             }
-            self.divide(from, to, seen);
+            self.divide(from, to, sheets, seen);
         }
         self.found.clear();
         self.close(f64::INFINITY, seen);
     }
 
     /// A slab, divided where neighbours cross.
-    fn divide(&mut self, from: f64, to: f64, seen: &mut SeenLight) {
+    fn divide(&mut self, from: f64, to: f64, sheets: &Sheets, seen: &mut SeenLight) {
         let mut from = from;
         // Each crossing of two sides ends a part; the limit only guards against rounding that never ends.
         let limit = self.active.len() * self.active.len() + 1;
@@ -212,14 +225,14 @@ impl Sweep {
             while let Some(crossing) = self.sort(from, end) {
                 end = crossing;
             }
-            self.count(from, seen);
+            self.count(from, sheets, seen);
             if end >= to {
                 return;
             }
             from = end;
         }
         self.sort(from, to);
-        self.count(from, seen);
+        self.count(from, sheets, seen);
     }
 
     /// Sorts the active sides by their places half way between two heights. Returns the lowest height strictly between at which
@@ -255,25 +268,35 @@ impl Sweep {
     }
 
     /// Counts winding numbers through a slab that begins at `from`: step 3.
-    fn count(&mut self, from: f64, seen: &mut SeenLight) {
+    fn count(&mut self, from: f64, sheets: &Sheets, seen: &mut SeenLight) {
         let (mut light, mut hidden) = (0, 0);
+        self.layers.clear();
+        self.layers.resize(sheets.kinds().len(), 0);
         self.found.clear();
         let mut left = None;
         for a in &self.active {
             let side = &self.sides[a.side as usize];
-            if side.light {
-                light += side.winding;
-            } else {
-                hidden += side.winding;
+            let mut dims = false;
+            match side.what {
+                Border::Light => light += side.winding,
+                Border::Sheet(0) => hidden += side.winding,
+                Border::Sheet(kind) => {
+                    if let Ok(place) = sheets.kinds().binary_search(&kind) {
+                        self.layers[place] += side.winding;
+                    }
+                    dims = true;
+                }
             }
             let visible = light != 0 && hidden == 0;
-            match (left, visible) {
-                (None, true) => left = Some(a.side),
-                (Some(l), false) => {
-                    self.found.push(Open { left: l, right: a.side, from });
-                    left = None;
-                }
-                _ => {}
+            if let Some((l, transmittance)) = left
+                && (dims || !visible)
+            {
+                self.found.push(Open { left: l, right: a.side, from, transmittance });
+                left = None;
+            }
+            if visible && left.is_none() {
+                let passed = sheets.passed(&self.layers);
+                left = (passed > 0.0).then_some((a.side, passed));
             }
         }
         self.close(from, seen);
@@ -282,7 +305,11 @@ impl Sweep {
     /// Ends at height `to` what does not go on in `found`, which becomes what is open.
     fn close(&mut self, to: f64, seen: &mut SeenLight) {
         for o in &self.open {
-            if let Some(f) = self.found.iter_mut().find(|f| f.left == o.left && f.right == o.right) {
+            if let Some(f) = self
+                .found
+                .iter_mut()
+                .find(|f| f.left == o.left && f.right == o.right && f.transmittance == o.transmittance)
+            {
                 f.from = o.from;
                 continue;
             }
@@ -291,7 +318,7 @@ impl Sweep {
             let at = |s: &Side, y: f64| dvec2(s.x_at(y), y);
             // Rounding may put the ends of two sides that meet on each other's other side.
             let right = |y: f64| dvec2(r.x_at(y).max(l.x_at(y)), y);
-            seen.push([at(l, o.from), right(o.from), right(to), at(l, to)].into_iter(), 1.0);
+            seen.push([at(l, o.from), right(o.from), right(to), at(l, to)].into_iter(), o.transmittance);
         }
         std::mem::swap(&mut self.open, &mut self.found);
     }

@@ -1,8 +1,9 @@
-//! Casters that let light through: they divide what is visible of a light, and weaken it.
+//! Casters whose opacity depends on the place: they divide what is visible of a light, and weaken it by the mean of their masks.
+//!
+//! They do not decide how finely a receiver is divided: foliage has outlines everywhere.
 
 use super::light::{AreaLight, SeenLight};
 use super::outline::{highest_caster, projected};
-use super::shaft::Shaft;
 use super::sheets::{Sheet, Sheets, at_height};
 use glam::{DVec2, DVec3};
 use pointillist_dice::hide::{Blocker, Occluders, Regions};
@@ -13,19 +14,17 @@ use std::cmp::Ordering;
 /// Overlaps with an area below this, times that of the part of the light, are taken for rounding.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// A translucent caster as a point sees it.
+/// A masked caster as a point sees it.
 #[derive(Clone, Copy, Debug)]
 struct Pane {
     /// Its projection onto the light's plane.
     polygon: ConvexPolygon,
-    /// `None` if it depends on the place.
-    opacity: Option<f64>,
     face: ClusterFace,
 }
 
-/// The translucent sheets of a group, and memory.
+/// The masked sheets of a group, and memory.
 #[derive(Debug, Default)]
-pub(crate) struct Glass {
+pub(crate) struct Masks {
     sheets: Vec<u32>,
     panes: Vec<Pane>,
     blockers: Vec<Blocker>,
@@ -40,29 +39,21 @@ struct View<'a> {
     panes: &'a [Pane],
 }
 
-impl Glass {
-    /// Takes the translucent ones among the sheets of a group.
+impl Masks {
+    /// Takes the masked ones among the sheets of a group.
     pub(crate) fn take(&mut self, sheets: &Sheets, group: &[u32]) {
         self.sheets.clear();
-        self.sheets.extend(group.iter().filter(|&&s| sheets.list[s as usize].glass.is_some()));
+        self.sheets.extend(group.iter().filter(|&&s| sheets.list[s as usize].mask.is_some()));
     }
 
-    /// Divides what a point sees by the panes in front of it. Returns the largest factor by which a pane's outline within `shaft` moves
-    /// when the point moves.
-    pub(crate) fn dim(
-        &mut self,
-        light: &AreaLight<'_>,
-        sheets: &Sheets,
-        normal: DVec3,
-        shaft: &Shaft,
-        seen: &mut SeenLight,
-    ) -> f64 {
-        if self.sheets.is_empty() {
-            return 0.0;
+    /// Divides what a point sees by the panes in front of it.
+    pub(crate) fn dim(&mut self, light: &AreaLight<'_>, sheets: &Sheets, seen: &mut SeenLight) {
+        if self.sheets.is_empty() || seen.is_empty() {
+            return;
         }
-        let factor = self.collect(light, sheets, normal, shaft, seen);
+        self.collect(light, sheets, seen);
         if self.panes.is_empty() {
-            return factor;
+            return;
         }
         let Self { panes, blockers, regions, dimmed, .. } = self;
         panes.sort_unstable_by(compare);
@@ -84,65 +75,28 @@ impl Glass {
             }
         }
         seen.take_parts(dimmed);
-        factor
     }
 
     /// The panes that overlap the visible parts' rectangle.
-    fn collect(
-        &mut self,
-        light: &AreaLight<'_>,
-        sheets: &Sheets,
-        normal: DVec3,
-        shaft: &Shaft,
-        seen: &SeenLight,
-    ) -> f64 {
+    fn collect(&mut self, light: &AreaLight<'_>, sheets: &Sheets, seen: &SeenLight) {
         self.panes.clear();
         let (low, high) = seen.bounds();
-        let mut factor = 0.0_f64;
         for &s in &self.sheets {
             let sheet = &sheets.list[s as usize];
-            let Some(face) = sheets.glass(sheet) else { continue };
+            let Some(face) = sheets.mask(sheet) else { continue };
             let distance = sheet.normal.dot(seen.point) - sheet.offset;
             if distance.abs() <= light.coincident {
                 continue;
             }
-            factor = factor.max(factor_of(light, sheets, sheet, (seen.point, normal), shaft));
             let polygon = projection(sheets, sheet, seen.point, distance > 0.0);
             let (least, most) = polygon.bounds();
             let overlaps = least.cmplt(high).all() && most.cmpgt(low).all();
             if polygon.vertices().len() < 3 || !overlaps {
                 continue;
             }
-            let surface = &light.geometry.surfaces()[face.surface as usize];
-            let opacity = (!surface.textured_opacity).then_some(f64::from(surface.opacity));
-            self.panes.push(Pane { polygon, opacity, face });
-        }
-        factor
-    }
-}
-
-/// As `Outline::cast` has it, of one sheet.
-fn factor_of(
-    light: &AreaLight<'_>,
-    sheets: &Sheets,
-    sheet: &Sheet,
-    (point, normal): (DVec3, DVec3),
-    shaft: &Shaft,
-) -> f64 {
-    let top = highest_caster(point.z);
-    let mut factor = 0.0_f64;
-    for e in sheet.edges() {
-        let [a, b] = sheets.ends(e.edge());
-        let below = |p: DVec3| normal.dot(p - point) <= light.coincident;
-        if (a.z > top && b.z > top) || (below(a) && below(b)) {
-            continue;
-        }
-        let cut = |p: DVec3| if p.z > top { at_height(a, b, top) } else { p };
-        if let Some(nearest) = shaft.highest_within(cut(a), cut(b)) {
-            factor = factor.max(nearest / (point.z - nearest));
+            self.panes.push(Pane { polygon, face });
         }
     }
-    factor
 }
 
 /// The projection of what of a sheet is below a point, in positive order; `front`: the point is on the side of the sheet's normal.
@@ -170,21 +124,14 @@ fn projection(sheets: &Sheets, sheet: &Sheet, point: DVec3, front: bool) -> Conv
     ConvexPolygon::from_vertices(ring)
 }
 
-/// An order that does not depend on that of triangles: masks last, which need not be asked where others hide all; then by place.
+/// An order by place, which does not depend on that of triangles.
 fn compare(a: &Pane, b: &Pane) -> Ordering {
-    let textured = a.opacity.is_none().cmp(&b.opacity.is_none());
-    let opacity = |p: &Pane| p.opacity.unwrap_or(1.0);
-    let places = |p: &Pane| p.polygon.bounds();
-    let ((la, ha), (lb, hb)) = (places(a), places(b));
-    let numbers = [(la.x, lb.x), (la.y, lb.y), (ha.x, hb.x), (ha.y, hb.y), (opacity(a), opacity(b))];
-    let by_place = numbers.into_iter().map(|(a, b)| a.total_cmp(&b)).fold(Ordering::Equal, Ordering::then);
+    let ((la, ha), (lb, hb)) = (a.polygon.bounds(), b.polygon.bounds());
     let sum = |p: &Pane| p.polygon.vertices().iter().fold(DVec2::ZERO, |s, &v| s + v);
     let (sa, sb) = (sum(a), sum(b));
-    let by_corners = sa.x.total_cmp(&sb.x).then(sa.y.total_cmp(&sb.y));
-    textured
-        .then(by_place)
-        .then(by_corners)
-        .then((a.face.surface, a.face.id).cmp(&(b.face.surface, b.face.id)))
+    let numbers = [(la.x, lb.x), (la.y, lb.y), (ha.x, hb.x), (ha.y, hb.y), (sa.x, sb.x), (sa.y, sb.y)];
+    let by_place = numbers.into_iter().map(|(a, b)| a.total_cmp(&b)).fold(Ordering::Equal, Ordering::then);
+    by_place.then((a.face.surface, a.face.id).cmp(&(b.face.surface, b.face.id)))
 }
 
 impl Occluders for View<'_> {
@@ -192,13 +139,12 @@ impl Occluders for View<'_> {
         self.panes[number as usize].polygon.vertices()
     }
 
-    fn is_opaque(&self, number: u32) -> bool {
-        self.panes[number as usize].opacity == Some(1.0)
+    fn is_opaque(&self, _: u32) -> bool {
+        false
     }
 
     fn opacity(&self, number: u32, over: &ConvexPolygon) -> f64 {
-        let pane = &self.panes[number as usize];
-        pane.opacity.unwrap_or_else(|| self.mask(&pane.face, over.vertices()))
+        self.mask(&self.panes[number as usize].face, over.vertices())
     }
 }
 
