@@ -149,6 +149,32 @@ impl Geometry {
         Ok(geometry)
     }
 
+    /// The same triangles in the same clusters, with other opacities of the surfaces, which `opacity` gives by number. A closed component that
+    /// is not opaque any more counts as open.
+    ///
+    /// # Errors
+    /// [`MicropointError::BadOpacity`] for an opacity that is not from 0 to 1.
+    pub fn with_opacities(&self, opacity: impl Fn(usize) -> f32) -> Result<Self, MicropointError> {
+        let mut geometry = self.clone();
+        for (i, surface) in geometry.surfaces.iter_mut().enumerate() {
+            surface.opacity = opacity(i);
+        }
+        check_opacities(&geometry.surfaces)?;
+        let mut opened = vec![false; geometry.solids.len()];
+        for t in geometry.triangles.iter().filter(|t| t.solid != OPEN) {
+            opened[t.solid as usize] |= !geometry.surfaces[t.surface as usize].is_opaque();
+        }
+        for triangle in geometry.triangles.iter_mut().filter(|t| t.solid != OPEN) {
+            if opened[triangle.solid as usize] {
+                triangle.solid = OPEN;
+            }
+        }
+        for cluster in &mut geometry.clusters {
+            cluster.facing = cluster.facing.filter(|facing| !opened[facing.solid as usize]);
+        }
+        Ok(geometry)
+    }
+
     fn push_cluster(
         &mut self,
         ids: &[u32],
@@ -462,12 +488,12 @@ fn check(
             return Err(MicropointError::SurfaceOutOfRange { triangle, surface, count: surfaces.len() });
         }
     }
-    for (index, s) in surfaces.iter().enumerate() {
-        if !(0.0..=1.0).contains(&s.opacity) {
-            return Err(MicropointError::BadOpacity { index, opacity: s.opacity });
-        }
-    }
-    Ok(())
+    check_opacities(surfaces)
+}
+
+fn check_opacities(surfaces: &[SurfaceOpacity]) -> Result<(), MicropointError> {
+    let bad = surfaces.iter().position(|s| !(0.0..=1.0).contains(&s.opacity));
+    bad.map_or(Ok(()), |index| Err(MicropointError::BadOpacity { index, opacity: surfaces[index].opacity }))
 }
 
 /// Last cell per axis of the lattice that orders triangles: codes of 3 · 10 bits leave 32 for the number of the

@@ -1,6 +1,6 @@
 //! Light that comes straight from the lights, asked for only where it can matter.
 
-use crate::lights::LightSample;
+use crate::lights::{LightSample, share};
 use crate::lit_parts::LitParts;
 use crate::monitor::Monitor;
 use crate::scene::MeasuredBrdf;
@@ -72,6 +72,7 @@ impl Shader<'_> {
             monitor.lap("shadow");
         }
         let samples = f64::from(self.scene.lights[light.light].light.samples());
+        let share = share(light.channels) / samples;
         for a in &direct.arrivals {
             let p = &mut points[a.point as usize];
             p.direct += a.radiance * a.fraction as f32;
@@ -79,7 +80,7 @@ impl Shader<'_> {
                 let to_light =
                     self.scene.lights[light.light].light.illuminate(light.sample, p.place.position).to_light;
                 layer[a.point as usize] +=
-                    if sees_light(p.place.face_normal, to_light) { a.fraction / samples } else { 0.0 };
+                    if sees_light(p.place.face_normal, to_light) { a.fraction * share } else { 0.0 };
             }
         }
     }
@@ -96,7 +97,12 @@ impl Shader<'_> {
         if self.is_black(p, face.id) {
             return Vec3::ZERO;
         }
-        let incident = source.illuminate(light.sample, p.place.position);
+        let arrives = |position: DVec3| {
+            let mut incident = source.illuminate(light.sample, position);
+            incident.irradiance *= light.channels;
+            incident
+        };
+        let incident = arrives(p.place.position);
         if incident.is_dark() || !sees_light(p.place.face_normal, incident.to_light) {
             return Vec3::ZERO;
         }
@@ -106,7 +112,7 @@ impl Shader<'_> {
             let corners = self.scene.corners(face.id);
             let at = |k: usize| {
                 let to_eye = (self.eye - corners[k]).normalize_or_zero().as_vec3();
-                let incident = source.illuminate(light.sample, corners[k]);
+                let incident = arrives(corners[k]);
                 self.reflect(p, face.id, &incident, turn_to(normals[k], p.place.face_normal), to_eye)
             };
             return interpolate_color([at(0), at(1), at(2)], p.place.barycentric);

@@ -92,7 +92,7 @@ impl Prepared<'_> {
         let lights = if style.lights {
             // Pictures that are only summed up have points in the place of areas.
             let sampled = style.economy.is_some();
-            scene_lights(self.scene, &self.geometry, &self.surfaces, renderer.lens(), sampled)?
+            scene_lights(self, renderer.lens(), sampled)?
         } else {
             SceneLights::default()
         };

@@ -62,6 +62,7 @@ mod bake;
 mod bake_options;
 mod canvas;
 mod capture;
+mod casters;
 mod choose;
 mod copies;
 mod detail;

@@ -1,9 +1,10 @@
 //! The scene's lights as the points and directions that shadows are cast from.
 
 use crate::error::RenderError;
-use crate::scene::{LightSource, Scene};
+use crate::prepared::Prepared;
+use crate::scene::LightSource;
 use crate::surfaces::Surfaces;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Geometry, Lens};
 use pointillist_shade::{Emission, Light, LightOutline, Source};
 use pointillist_shadow::{AreaLight, AreaOptions, Emitter, ShadowError, ShadowLight, ShadowOptions};
@@ -13,6 +14,8 @@ pub(crate) struct LightSample<'a> {
     /// Index into [`Scene::lights`].
     pub(crate) light: usize,
     pub(crate) sample: u32,
+    /// 1 for the channels of the light that it brings, 0 for the others.
+    pub(crate) channels: Vec3,
     /// `None`: casts no shadow.
     pub(crate) shadow: Option<ShadowLight<'a>>,
 }
@@ -21,6 +24,8 @@ pub(crate) struct LightSample<'a> {
 pub(crate) struct WholeLight<'a> {
     /// Index into [`Scene::lights`].
     pub(crate) light: usize,
+    /// 1 for the channels of the light that it brings, 0 for the others.
+    pub(crate) channels: Vec3,
     pub(crate) side: AreaLight<'a>,
     /// What the side sends out.
     pub(crate) emission: Emission,
@@ -33,42 +38,52 @@ pub(crate) struct SceneLights<'a> {
     pub(crate) whole: Vec<WholeLight<'a>>,
 }
 
-/// All lights, for receivers that `lens` sees. Lights with an area are taken as a whole unless they ask for samples, or `sampled` does.
+/// All lights, for receivers that `lens` sees. Lights with an area are taken as a whole unless they ask for samples, or `sampled` does. Where
+/// something clear lets colours pass differently, a light comes once for each.
 pub(crate) fn scene_lights<'a>(
-    scene: &Scene,
-    geometry: &'a Geometry,
-    surfaces: &'a Surfaces,
+    prepared: &'a Prepared<'_>,
     lens: &Lens,
     sampled: bool,
 ) -> Result<SceneLights<'a>, RenderError> {
+    let (scene, surfaces) = (prepared.scene, &*prepared.surfaces);
     let mut lights = SceneLights::default();
     for (light, source) in scene.lights.iter().enumerate() {
-        if !sampled && let Some((outline, two_sided)) = source.light.exact_area() {
-            lights.whole.extend(whole_light(light, source, (outline, two_sided), geometry, surfaces)?);
-            continue;
-        }
-        let options = ShadowOptions::default()
-            .with_occlusion(scene.render.occlusion())
-            .with_resolution(source.resolution);
-        for sample in 0..source.light.samples() {
-            let shadow = if source.shadow {
-                let emitter = emitter(&source.light, sample);
-                let named = |e| RenderError::Shadow { name: source.name.clone(), source: e };
-                Some(ShadowLight::new(geometry, surfaces, emitter, options).map_err(named)?.seen_from(lens))
-            } else {
-                None
-            };
-            lights.samples.push(LightSample { light, sample, shadow });
+        let unhindered = (!source.shadow).then_some((Vec3::ONE, &prepared.geometry));
+        let casters = unhindered.into_iter().chain(prepared.casters().filter(|_| source.shadow));
+        for (channels, geometry) in casters {
+            if !sampled && let Some(area) = source.light.exact_area() {
+                lights.whole.extend(whole_light((light, source), area, channels, geometry, surfaces)?);
+                continue;
+            }
+            for sample in 0..source.light.samples() {
+                let shadow = if source.shadow {
+                    let options = ShadowOptions::default()
+                        .with_occlusion(scene.render.occlusion())
+                        .with_resolution(source.resolution);
+                    let named = |e| RenderError::Shadow { name: source.name.clone(), source: e };
+                    let shadow =
+                        ShadowLight::new(geometry, surfaces, emitter(&source.light, sample), options);
+                    Some(shadow.map_err(named)?.seen_from(lens))
+                } else {
+                    None
+                };
+                lights.samples.push(LightSample { light, sample, channels, shadow });
+            }
         }
     }
     Ok(lights)
 }
 
+/// The share of a light that these channels are.
+pub(crate) fn share(channels: Vec3) -> f64 {
+    f64::from(channels.element_sum()) / 3.0
+}
+
 /// The sides of a light that shine; none of a rectangle without area.
 fn whole_light<'a>(
-    light: usize,
-    source: &LightSource,
+    (light, source): (usize, &LightSource),
     (outline, two_sided): (LightOutline, bool),
+    channels: Vec3,
     geometry: &'a Geometry,
     surfaces: &'a Surfaces,
 ) -> Result<Vec<WholeLight<'a>>, RenderError> {
@@ -81,9 +96,9 @@ fn whole_light<'a>(
             side => side.map_err(|e| RenderError::Shadow { name: source.name.clone(), source: e })?,
         };
         let side = if source.shadow { side } else { side.without_shadows() };
-        let emission =
-            Emission { front: side.front(), radiance: source.light.color(), falloff: source.light.falloff() };
-        found.push(WholeLight { light, side, emission });
+        let radiance = source.light.color() * channels;
+        let emission = Emission { front: side.front(), radiance, falloff: source.light.falloff() };
+        found.push(WholeLight { light, channels, side, emission });
     }
     Ok(found)
 }

@@ -63,7 +63,7 @@ impl<'a> Prepared<'a> {
         let mut captured = Reflections::clone(&self.reflections);
         for ((object, material), (low, high)) in found {
             let geometry = self.surfaces.geometry_without(self.scene, object)?;
-            let others = self.with_geometry(geometry);
+            let others = self.with_geometry(geometry)?;
             let options =
                 CaptureOptions { resolution: RESOLUTION, emission: true, lights: true, thorough: true };
             let middle = low + 0.5 * (high - low);

@@ -2,11 +2,13 @@
 
 use crate::ambient::Ambient;
 use crate::background::sum_up_environment;
+use crate::casters::{Casters, clear_casters};
 use crate::error::RenderError;
 use crate::monitor::{Monitor, go_on, stage};
 use crate::reflections::Reflections;
 use crate::scene::{AmbientLight, Scene};
 use crate::surfaces::Surfaces;
+use glam::Vec3;
 use pointillist_micropoint::{Geometry, TexelSums};
 use std::sync::Arc;
 
@@ -15,6 +17,8 @@ pub struct Prepared<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) surfaces: Arc<Surfaces>,
     pub(crate) geometry: Geometry,
+    /// What casts shadows in the place of `geometry`, if anything is clear.
+    pub(crate) clear_casters: Vec<Casters>,
     pub(crate) environment: Arc<Option<TexelSums<3>>>,
     pub(crate) reflections: Arc<Reflections>,
 }
@@ -28,26 +32,35 @@ impl<'a> Prepared<'a> {
         let geometry = stage(monitor, "build", || surfaces.geometry(scene))?;
         go_on(monitor)?;
         let environment = stage(monitor, "textures", || sum_up_environment(scene))?;
+        let clear_casters = clear_casters(scene, &geometry)?;
         monitor.count("triangles", geometry.triangle_count() as u64);
         monitor.count("triangles_of_solids", geometry.solid_triangle_count() as u64);
         Ok(Self {
             scene,
             surfaces: Arc::new(surfaces),
             geometry,
+            clear_casters,
             environment: Arc::new(environment),
             reflections: Arc::new(Reflections::new(scene, monitor)?),
         })
     }
 
     /// The same scene with other triangles in view.
-    pub(crate) fn with_geometry(&self, geometry: Geometry) -> Self {
-        Self {
+    pub(crate) fn with_geometry(&self, geometry: Geometry) -> Result<Self, RenderError> {
+        Ok(Self {
             scene: self.scene,
             surfaces: self.surfaces.clone(),
+            clear_casters: clear_casters(self.scene, &geometry)?,
             geometry,
             environment: self.environment.clone(),
             reflections: self.reflections.clone(),
-        }
+        })
+    }
+
+    /// What casts shadows, and the channels of light for which it does.
+    pub(crate) fn casters(&self) -> impl Iterator<Item = (Vec3, &Geometry)> {
+        let all = self.clear_casters.is_empty().then_some((Vec3::ONE, &self.geometry));
+        all.into_iter().chain(self.clear_casters.iter().map(|c| (c.channels, &c.geometry)))
     }
 
     /// The triangles.

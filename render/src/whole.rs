@@ -3,7 +3,7 @@
 //! The constant part of a BRDF has a closed form, Lambert's formula; the rest is integrated by quadrature over what is seen of the light.
 
 use crate::direct::{DirectScratch, corners};
-use crate::lights::WholeLight;
+use crate::lights::{WholeLight, share};
 use crate::monitor::Monitor;
 use crate::shader::{Point, Shader};
 use glam::Vec3;
@@ -60,7 +60,7 @@ impl Shader<'_> {
             }
             points[owner as usize].direct += radiance;
             if let Some(layer) = lit_layer.as_deref_mut() {
-                layer[owner as usize] += lit / light.side.area();
+                layer[owner as usize] += lit / light.side.area() * share(light.channels);
             }
             next += fragments.len().max(1);
         }

@@ -31,7 +31,8 @@ pub struct Details {
     pub measured: Option<MeasuredBrdf>,
     /// The share of its surroundings that it mirrors; for GGX a factor on what its roughness and reflectance say.
     pub reflection: Option<Vec3>,
-    /// What passes of the light from behind, by refraction.
+    /// What passes of the light from behind, by refraction. Direct light passes straight, in its colour at each surface; to `radiosity` the
+    /// material is opaque.
     pub transmission: Option<Transmission>,
     /// What is mirrored and seen through the surface.
     pub surroundings: Surroundings,
