@@ -14,6 +14,13 @@ use std::cmp::Ordering;
 /// Overlaps with an area below this, times that of the part of the light, are taken for rounding.
 const NEGLIGIBLE: f64 = 1e-9;
 
+/// Most panes that divide a part of a light. Behind more, as in foliage, its light is weakened by each pane's share of it times the mean of its
+/// mask there, as if they were independent: dividing takes hundreds of regions, each with a mean for every pane.
+const MOST_DIVIDING: usize = 4;
+
+/// Light of less than this share of a part counts as none.
+const FAINT: f64 = 1e-3;
+
 /// A masked caster as a point sees it.
 #[derive(Clone, Copy, Debug)]
 struct Pane {
@@ -68,8 +75,16 @@ impl Masks {
                 dimmed.push(part.iter().copied(), transmittance);
                 continue;
             }
+            let polygon = ConvexPolygon::from_vertices(part);
+            if blockers.len() > MOST_DIVIDING {
+                let passed = view.passes(&polygon, blockers);
+                if passed > 0.0 {
+                    dimmed.push(part.iter().copied(), transmittance * passed);
+                }
+                continue;
+            }
             let negligible = NEGLIGIBLE * convex::area(part);
-            regions.hide(ConvexPolygon::from_vertices(part), negligible, blockers, &view);
+            regions.hide(polygon, negligible, blockers, &view);
             for r in regions.list() {
                 dimmed.push(r.polygon.vertices().iter().copied(), transmittance * r.transmittance);
             }
@@ -149,6 +164,26 @@ impl Occluders for View<'_> {
 }
 
 impl View<'_> {
+    /// The share of a part's light that passes all of these panes, each taken by itself.
+    fn passes(&self, part: &ConvexPolygon, blockers: &[Blocker]) -> f64 {
+        let area = part.area();
+        let mut passed = 1.0;
+        for b in blockers {
+            let pane = &self.panes[b.number as usize];
+            let overlap =
+                convex::half_planes(pane.polygon.vertices()).fold(*part, |rest, half| rest.clipped(&half));
+            if overlap.is_empty() {
+                continue;
+            }
+            let covered = (overlap.area() / area).min(1.0);
+            passed *= 1.0 - covered * self.mask(&pane.face, overlap.vertices());
+            if passed < FAINT {
+                return 0.0;
+            }
+        }
+        passed
+    }
+
     /// Mean opacity of a mask where it is in front of a polygon of the light's plane.
     fn mask(&self, face: &ClusterFace, polygon: &[DVec2]) -> f64 {
         let AreaLight { geometry, frame, opacity, .. } = self.light;
@@ -173,7 +208,7 @@ impl View<'_> {
         for (to, v) in points.iter_mut().zip(polygon) {
             *to = at(v);
         }
-        let mean = opacity.mean_opacity(face.id, &points[..polygon.len()]);
+        let mean = opacity.rough_opacity(face.id, &points[..polygon.len()]);
         f64::from(geometry.surfaces()[face.surface as usize].behind_mask(mean))
     }
 }
