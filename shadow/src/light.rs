@@ -6,7 +6,7 @@ use crate::error::ShadowError;
 use crate::grid::LightGrid;
 use crate::lit_regions::LitRegions;
 use crate::options::{Resolution, ShadowOptions};
-use crate::query::{Measure, Query};
+use crate::query::{Measure, Query, is_edge_on};
 use crate::receiver::{Receivers, Viewer};
 use crate::scratch::{RuleMemory, ShadowScratch, Side, Sum};
 use crate::screen::{Emitter, Screens};
@@ -234,7 +234,7 @@ impl<'a> ShadowLight<'a> {
                         let measure = Measure { lens: query.lens, viewer: viewer.lens, face };
                         let outline = targets.outline(target);
                         let total = if target.shared { measure.area(outline) } else { 1.0 };
-                        let mut regions = self.wanted(receivers, target).then_some(&mut *lit_regions);
+                        let mut regions = self.wanted(viewer, receivers, target).then_some(&mut *lit_regions);
                         if let (Some(regions), Some(1.0)) = (&mut regions, settled) {
                             // What another screen sees of the same receiver may be dark.
                             regions.push(target.receiver, outline, total, &measure);
@@ -254,9 +254,10 @@ impl<'a> ShadowLight<'a> {
     }
 
     /// Whether the lit regions of a target are asked for, and known.
-    fn wanted(&self, receivers: &Receivers, target: &Target) -> bool {
+    fn wanted(&self, viewer: Viewer<'_>, receivers: &Receivers, target: &Target) -> bool {
         self.options.occlusion == Occlusion::Correlated
             && receivers.list[target.receiver as usize].wants_regions
+            && !is_edge_on(viewer.lens, &viewer.faces[target.face as usize])
     }
 
     fn query<'q>(&'q self, screen: usize, casters: &'q [Caster], nearby: &'q [Nearby]) -> Query<'q> {

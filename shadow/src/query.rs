@@ -24,6 +24,21 @@ impl Query<'_> {
     }
 }
 
+/// Distance of a face's plane from the eye over the face's own, up to which the face is edge-on: where a region of it is in the picture
+/// is known to the rounding of its corners over this.
+const EDGE_ON: f64 = 1e-9;
+
+/// Whether the viewer sees a face edge-on, up to rounding.
+pub(crate) fn is_edge_on(viewer: &Lens, face: &Face) -> bool {
+    let [a, b, c] = face.corners;
+    let normal = (b - a).cross(c - a);
+    let (towards, length) = match viewer.kind {
+        LensKind::Perspective => (a, a.length().max(b.length()).max(c.length())),
+        LensKind::Orthographic => (DVec3::Z, 1.0),
+    };
+    normal.dot(towards).abs() <= EDGE_ON * normal.length() * length
+}
+
 /// Areas in the viewer's picture of polygons of the light grid, up to a factor that is constant on a face.
 ///
 /// Positions in the picture are a projective map of positions in the light grid, whose denominator is the viewer's

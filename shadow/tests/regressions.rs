@@ -3,7 +3,9 @@
 use glam::{DVec3, dvec3};
 use pointillist_micropoint::invariants::Soup;
 use pointillist_micropoint::{Projection, View};
-use pointillist_shadow::invariants::{light_on, lit_picture, tiles_do_not_matter};
+use pointillist_shadow::invariants::{
+    light_on, lit_picture, lit_regions_make_up_the_fraction, tiles_do_not_matter,
+};
 use pointillist_shadow::{Emitter, ShadowOptions};
 
 /// Only faces turned away from the light cast the shadow of a solid, so that what is in a closed room was lit from outside.
@@ -130,4 +132,16 @@ fn copies_of_a_translucent_caster_shade_as_one() {
         shaded += usize::from(*o < 0.999);
     }
     assert!(shaded > 4, "{shaded} pixels are in the shadow");
+}
+
+/// The eye is in the plane of the box's lower face: what the viewer sees of it has no area, and a region of it no place in the picture.
+#[test]
+fn a_face_seen_edge_on_has_no_lit_regions() {
+    let mut s = Soup::default();
+    let (low, surface) = (dvec3(0.0, 0.0, 3.0 / 64.0), s.surface(1.0));
+    s.cuboid(low, low + 0.5, surface);
+    let camera = Projection::Perspective { fov_y_rad: 1.0 };
+    let view = View::look_at(DVec3::ZERO, dvec3(45.0, 24.0, 24.0) / 64.0, DVec3::Y, camera, 5, 4).unwrap();
+    let emitter = Emitter::Point { position: dvec3(0.0, -1.0, -1.0) / 64.0, axis: DVec3::NEG_Y };
+    lit_regions_make_up_the_fraction(&s, view, emitter, 1e-6).unwrap();
 }

@@ -8,6 +8,7 @@ use pointillist_dice::convex;
 use pointillist_micropoint::invariants::{Soup, permutation};
 use pointillist_micropoint::{Geometry, MicropointOptions, PixelRect, PlainOpacity, Renderer, Tile, View};
 
+use crate::query::is_edge_on;
 use crate::{Emitter, Receivers, ShadowLight, ShadowOptions, ShadowScratch, Viewer};
 
 /// A piece of a surface that the viewer sees, and how much of a light reaches it.
@@ -166,7 +167,7 @@ pub fn triangle_order_does_not_matter(
 }
 
 /// Behind opaque casters, the lit regions of a receiver make up its lit fraction of its area in the picture, to `tolerance` cells; a receiver
-/// without regions is wholly lit or wholly dark.
+/// without regions is wholly lit, wholly dark or edge-on to the viewer.
 ///
 /// # Errors
 /// The first receiver for which that does not hold.
@@ -188,16 +189,16 @@ pub fn lit_regions_make_up_the_fraction(
                 let outline = tile.outline(fragment);
                 let corner = |&v: &glam::DVec2| tile.position(v, face.nearness_at(v));
                 receivers.push_with_regions(point.face, outline.iter().map(corner));
-                areas.push(convex::area(outline));
+                areas.push((convex::area(outline), is_edge_on(tile.lens(), face)));
             }
         }
         light.lit(Viewer { lens: tile.lens(), faces: tile.faces() }, &receivers, &mut scratch, &mut lit);
-        for (i, (area, lit)) in areas.iter().zip(&lit).enumerate() {
+        for (i, (&(area, edge_on), lit)) in areas.iter().zip(&lit).enumerate() {
             let regions: Vec<f64> =
                 scratch.lit_regions(i as u32).map(|region| convex::area(region.outline).abs()).collect();
             let sum: f64 = regions.iter().sum();
             let holds = match regions.is_empty() {
-                true => *lit == 0.0 || *lit == 1.0,
+                true => *lit == 0.0 || *lit == 1.0 || edge_on,
                 false => (sum - lit * area).abs() <= tolerance,
             };
             check(holds, || format!("receiver {i}: {lit} of {area} in regions {regions:?}"))?;
