@@ -133,14 +133,24 @@ impl<const N: usize> Rows<N> {
         })
     }
 
-    /// A texture with half as many texels on a side, each the mean of four, times `unit`.
-    pub(super) fn means_of_four(&self, width: usize, height: usize, unit: f64) -> Vec<[f32; N]> {
-        let mut means = Vec::with_capacity(width / 2 * (height / 2));
-        with_rows!(self, all => for (y, x) in (0..height / 2).flat_map(|y| (0..width / 2).map(move |x| (y, x))) {
-            let [upper, lower] = [2 * y, 2 * y + 1].map(|row| (all.before(row, 2 * x), all.before(row, 2 * x + 2)));
-            let pair = |(before, after): ([f64; N], [f64; N]), c: usize| after[c] - before[c];
-            means.push(std::array::from_fn(|c| ((pair(upper, c) + pair(lower, c)) * unit / 4.0) as f32));
-        });
-        means
+    /// The sums of a texture with half as many texels on a side, each the mean of four, and the unit they are in if these are in `unit`.
+    pub(super) fn means_of_four(&self, width: usize, height: usize, unit: f64) -> (Self, f64) {
+        let (stride, half_height) = (width / 2 + 1, height / 2);
+        if let Self::Unsigned(_) | Self::Bytes(_) = self {
+            let mut sums = Vec::with_capacity(stride * half_height);
+            with_rows!(self, all => for y in 0..half_height {
+                sums.extend((0..stride).map(|x| {
+                    let pair: [[f64; N]; 2] = [all.before(2 * y, 2 * x), all.before(2 * y + 1, 2 * x)];
+                    std::array::from_fn(|c| (0.25 * (pair[0][c] + pair[1][c]) + 0.5) as u32)
+                }));
+            });
+            return (Self::Unsigned(Whole { stride, sums }), unit);
+        }
+        signed_whole(half_height, stride, |y, sums| {
+            with_rows!(self, all => for (x, sum) in sums.iter_mut().enumerate() {
+                let pair: [[f64; N]; 2] = [all.before(2 * y, 2 * x), all.before(2 * y + 1, 2 * x)];
+                *sum = std::array::from_fn(|c| 0.25 * unit * (pair[0][c] + pair[1][c]));
+            });
+        })
     }
 }
