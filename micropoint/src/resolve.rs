@@ -214,7 +214,7 @@ impl Occluders for Parts<'_> {
     /// A mask's own mean over the polygon: holes of the part may lie elsewhere.
     fn opacity(&self, number: u32, over: &ConvexPolygon) -> f64 {
         let part = self.dicer.part(number);
-        if self.is_masked(number) {
+        if self.is_masked(number) && over.vertices() != self.outline(number) {
             let face = &self.dicer.faces[part.face as usize];
             return f64::from(mean_opacity(self.job, face, self.corner, over.vertices()));
         }
@@ -245,9 +245,10 @@ impl ResolveScratch {
 }
 
 impl Cut {
-    /// What is seen of part `p` in the regions that were found last.
+    /// What is seen of part `p` in the regions that were found last. Where it and all in front of it are masks, the outlines of those do not
+    /// bound what is seen: it stays in one piece.
     fn in_pieces(&mut self, parts: &Parts<'_>, p: u32) -> Visible<'_> {
-        let Self { regions, masked, .. } = self;
+        let Self { regions, masked, blockers } = self;
         let (list, scale) = if parts.is_masked(p) {
             masked.clear();
             masked.extend(regions.list().iter().map(|region| {
@@ -266,7 +267,9 @@ impl Cut {
             moment += centroid * (area * r.transmittance * scale);
         }
         let centroid = if weight > 0.0 { moment / weight } else { DVec2::ZERO };
-        Visible { part: p, weight, centroid, pieces: Some(list), scale }
+        let one_piece = parts.is_masked(p) && blockers.iter().all(|b| parts.is_masked(b.number));
+        let pieces = (!one_piece).then_some(list);
+        Visible { part: p, weight, centroid, pieces, scale }
     }
 
     /// What is seen of part `p` behind those of `others` that are in front of it.

@@ -12,6 +12,7 @@ use pointillist_micropoint::{
 use pointillist_parallel as parallel;
 use pointillist_shade::Model;
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -45,20 +46,23 @@ impl MaskedColor {
     fn new(color: &Texture, mask: &Texture, wrap: TexelWrap) -> Result<Self, MicropointError> {
         let (width, height) = (color.width.max(mask.width), color.height.max(mask.height));
         let at = |t: &Texture, x: u32, y: u32| {
-            let scale = |v: u32, from: u32, to: u32| (u64::from(v) * u64::from(to) / u64::from(from)) as u32;
+            let scale = |v: u32, from: u32, to: u32| match from == to {
+                true => v,
+                false => (u64::from(v) * u64::from(to) / u64::from(from)) as u32,
+            };
             t.texel(scale(x, width, t.width), scale(y, height, t.height))
         };
-        let mut range = (Vec3::INFINITY, Vec3::ZERO);
-        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-            if at(mask, x, y).w > 0.0 {
-                let color = at(color, x, y).truncate();
-                range = (range.0.min(color), range.1.max(color));
-            }
-        }
+        let range = Cell::new((Vec3::INFINITY, Vec3::ZERO));
         let premultiplied = TexelSums::new(width, height, wrap, |x, y| {
             let alpha = at(mask, x, y).w;
-            (at(color, x, y).truncate() * alpha).extend(alpha).to_array()
+            if alpha == 0.0 {
+                return [0.0; 4];
+            }
+            let color = at(color, x, y).truncate();
+            range.set((range.get().0.min(color), range.get().1.max(color)));
+            (color * alpha).extend(alpha).to_array()
         })?;
+        let range = range.get();
         let whole = Vec4::from_array(premultiplied.whole_mean().map(|v| v as f32));
         let mean = if whole.w > 0.0 { whole.truncate() / whole.w } else { Vec3::ZERO };
         Ok(Self { premultiplied, range, mean })
