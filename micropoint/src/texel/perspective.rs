@@ -1,11 +1,9 @@
 //! Means over polygons whose depths differ: texels count by their area in the grid.
 
+use super::Precision;
 use super::corner::TexelCorner;
 use glam::{DVec2, DVec3};
 use pointillist_dice::{CellWindow, ConvexPolygon, Cut, clip_ring, convex, cut, share_before_crossing};
-
-/// Most strips: reached where one cell sees depths in a ratio of 13 and 1.01 is one strip.
-const MOST_STRIPS: f64 = 256.0;
 
 /// Extent in texels that is followed texel by texel; time grows with what is seen of it, not with this.
 const MOST_CELLS: i32 = 1 << 12;
@@ -44,16 +42,17 @@ pub(super) fn mean_by_texels<const N: usize>(
     (total > 0.0).then(|| sum.map(|s| s / total))
 }
 
-/// Perspective, many texels: strips between which depth grows by the factor `strip` at most. `least` and `most` bound the corners'
+/// Perspective, many texels: strips between which depth grows by the factor of `precision`, if there are not too many. `least` and `most` bound the corners'
 /// `rational`; `mean_of` gives the mean of a strip whose texels count alike.
 pub(super) fn mean_by_strips<const N: usize>(
     corners: &[TexelCorner],
     (least, most): (f64, f64),
-    strip: f64,
+    precision: &Precision,
     mean_of: impl Fn(&[TexelCorner]) -> [f64; N],
 ) -> [f64; N] {
     let (mut sum, mut total) = ([0.0; N], 0.0);
-    let count = ((most / least).ln() / strip.ln()).ceil().clamp(1.0, MOST_STRIPS);
+    let count =
+        ((most / least).ln() / precision.strip.ln()).ceil().clamp(1.0, f64::from(precision.most_strips));
     let border = |i: f64| most * (least / most).powf(i / count);
     let mut rest = corners.to_vec();
     for i in 0..count as usize {
