@@ -22,8 +22,8 @@ type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
 
 const STUDIES: [Study; 10] = [
     ("dice", "areas of a triangle in the cells of a grid", run_dice),
-    ("micropoint", "pictures against point sampling", micropoint::run),
-    ("shadow", "shadows against a shadow map", shadow::run),
+    ("micropoint", "pictures against point sampling; foliage; shadows across texels", micropoint::run),
+    ("shadow", "shadows against a shadow map, area lights against samples", shadow::run),
     ("shade", "energy, reciprocity and time of every reflection model; fails if one makes light", shade::run),
     ("ibpr", "raw range scans against the surface that they measured", ibpr::run),
     ("surfel", "point clouds against rays through a lens; fails if order or threads show", surfel::run),
@@ -47,7 +47,7 @@ fn usage() -> String {
     for (name, what, _) in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n\n`micropoint quick` prints a trial of a minute; `surfel quick` and `shprobe quick` take as long and write elsewhere. `shprobe --pictures DIR` draws, too.\n"
+    text + "  all         all of these\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`micropoint quick` prints a trial of a minute; `surfel quick` and `shprobe quick` take as long and write elsewhere. `shprobe --pictures DIR` draws, too.\n"
 }
 
 fn main() -> ExitCode {
@@ -66,6 +66,9 @@ fn main() -> ExitCode {
         }
         ["surfel", "quick"] => return code(surfel::run_quick()),
         ["micropoint", "quick"] => return code(micropoint::run_quick()),
+        ["micropoint", "foliage"] => return code(micropoint::foliage::run(&out_dir)),
+        ["micropoint", "checker"] => return code(micropoint::checker::run(&out_dir)),
+        ["shadow", "area"] => return code(shadow::area::run(&out_dir)),
         ["shprobe", _, ..] => return code(shprobe::run_with(&out_dir, &arguments[1..])),
         [name] if name == "all" || STUDIES.iter().any(|s| s.0 == name) => name,
         _ => {

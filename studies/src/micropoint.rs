@@ -1,7 +1,10 @@
 //! `micropoint`: run time against error of pictures, beside plain point sampling.
 
 mod bumps;
+pub(crate) mod checker;
+pub(crate) mod foliage;
 mod growth;
+mod leaves;
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -41,7 +44,7 @@ struct Case {
     solid: bool,
 }
 
-/// Measures and writes `micropoint.csv`, `micropoint.md` and `micropoint.svg`.
+/// Measures and writes `micropoint.csv`, `micropoint.md` and `micropoint.svg`, and the tables of the parts.
 pub(crate) fn run(out_dir: &Path) -> Outcome {
     let cases = cases(LINES);
     let mut rows = vec![];
@@ -55,7 +58,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     write_csv(out_dir, "micropoint", &[], &rows)?;
     chart(out_dir, "micropoint", &rows)?;
     write(out_dir, "micropoint.md", &(markdown(&rows) + &growth::section() + &bumps::section()))?;
-    Ok(true)
+    Ok(foliage::run(out_dir)? && checker::run(out_dir)?)
 }
 
 /// A trial of a minute: pictures by the default rule alone, printed and not written.

@@ -5,9 +5,12 @@ use std::num::NonZeroU32;
 
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_render::Scene;
-use pointillist_shade::{Falloff, Light};
+use pointillist_shade::{self as shade, Falloff, Light};
 
 use crate::common::scenes::Sketch;
+
+/// GGX roughness of the glossy material of [`area_light`].
+const GLOSSY_ROUGHNESS: f32 = 0.35;
 
 /// Where the casting half-plane of [`half_plane`] ends: x = this, any z, one unit above the ground.
 const EDGE: f64 = 0.4;
@@ -120,17 +123,22 @@ pub(crate) fn panes(size: u32) -> Scene {
     s.scene
 }
 
-/// Spheres and a board under a rectangular light of `samples` points; 0 for the whole of it.
-pub(crate) fn area_light(size: u32, samples: u32) -> Scene {
+/// Spheres and a board under a rectangular light of `samples` points; 0 for the whole of it. Everything is matt, or glossy.
+pub(crate) fn area_light(size: u32, samples: u32, glossy: bool) -> Scene {
     let mut s = Sketch::new(dvec3(0.5, 2.6, 5.0), dvec3(0.0, 0.4, 0.0), 36.0, size);
     let white = ground(&mut s, 6.0);
+    if glossy {
+        s.scene.materials[white as usize].surface =
+            shade::Material::ggx(Vec3::splat(0.4), Vec3::splat(0.3), GLOSSY_ROUGHNESS);
+    }
     s.sphere(dvec3(0.6, 0.5, 0.2), 0.5, 4, white);
+    s.sphere(dvec3(-0.2, 0.25, 1.1), 0.25, 4, white);
     s.cuboid(dvec3(-1.3, 0.0, -0.2), dvec3(-0.3, 1.1, -0.15), white);
     s.light(Light::Rect {
         corner: dvec3(-0.6, 4.0, -0.6),
         edge_u: dvec3(1.2, 0.0, 0.0),
         edge_v: dvec3(0.0, 0.0, 1.2),
-        radiance: Vec3::splat(10.0),
+        radiance: Vec3::splat(30.0),
         samples: NonZeroU32::new(samples),
         falloff: Falloff::InverseSquare,
     });

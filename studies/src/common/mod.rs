@@ -1,5 +1,6 @@
 //! What several studies share: data, scenes, references, pictures, tables.
 
+pub(crate) mod against_samples;
 pub(crate) mod casters;
 pub(crate) mod closed_form;
 pub(crate) mod data;
@@ -8,6 +9,7 @@ pub(crate) mod frame_error;
 pub(crate) mod layers;
 pub(crate) mod line_reference;
 pub(crate) mod loop_subdivision;
+pub(crate) mod opacities;
 pub(crate) mod picture;
 pub(crate) mod picture_layers;
 pub(crate) mod point_sampling;

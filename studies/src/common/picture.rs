@@ -46,6 +46,17 @@ impl Picture {
         differences.fold(0.0, |m: f64, d| if d.is_finite() { m.max(d) } else { f64::INFINITY })
     }
 
+    /// How much brighter it is than another as a whole, as a share of that one's light.
+    pub(crate) fn bias(&self, other: &Self) -> f64 {
+        self.total() / other.total() - 1.0
+    }
+
+    /// The mean of two pictures of one size.
+    pub(crate) fn mean(&self, other: &Self) -> Self {
+        let pixels = self.pixels.iter().zip(&other.pixels).map(|(a, b)| 0.5 * (*a + *b)).collect();
+        Self { width: self.width, pixels }
+    }
+
     /// Sum of all pixels and channels.
     pub(crate) fn total(&self) -> f64 {
         self.pixels.iter().map(|p| p.element_sum()).sum()

@@ -5,17 +5,17 @@ use pointillist_render::Scene;
 use pointillist_shade::Source;
 use rayon::prelude::*;
 
+use crate::common::opacities::Opacities;
 use crate::common::picture::Picture;
 use crate::common::point_sampling::Pinhole;
-use crate::common::scenes::{SurfaceSample, corners, opacity, radiance};
+use crate::common::scenes::{SurfaceSample, corners, radiance};
 
 /// A tree of boxes over triangles, split at the median.
 pub(crate) struct Tree {
     nodes: Vec<Node>,
     triangles: Vec<[DVec3; 3]>,
     ids: Vec<u32>,
-    opacity: Vec<f64>,
-    opaque: bool,
+    opacities: Opacities,
 }
 
 struct Node {
@@ -38,6 +38,16 @@ struct Ray {
     end: f64,
 }
 
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy)]
+struct Hit {
+    triangle: u32,
+    /// In lengths of the ray's direction.
+    t: f64,
+    /// Barycentric coordinates of the second and the third corner.
+    shares: [f64; 2],
+}
+
 /// Triangles in a leaf.
 const LEAF: usize = 4;
 
@@ -52,14 +62,12 @@ impl Tree {
         if count > 0 {
             build(&mut nodes, &mut items, 0);
         }
-        let opacity: Vec<f64> = (0..count).map(|t| opacity(scene, t)).collect();
-        let opaque = opacity.iter().all(|&o| o >= 1.0);
         let (ids, triangles) = items.into_iter().unzip();
-        Self { nodes, triangles, ids, opacity, opaque }
+        Self { nodes, triangles, ids, opacities: Opacities::new(scene) }
     }
 
     /// All hits of a ray; `visit` says up to where to go on.
-    fn hits(&self, mut ray: Ray, mut visit: impl FnMut(u32, f64) -> f64) {
+    fn hits(&self, mut ray: Ray, mut visit: impl FnMut(Hit) -> f64) {
         let mut stack = [0_u32; 64];
         let mut depth = usize::from(!self.nodes.is_empty());
         while depth > 0 {
@@ -82,8 +90,8 @@ impl Tree {
                 continue;
             }
             for i in node.first as usize..(node.first + node.count) as usize {
-                if let Some(t) = hit(&ray, &self.triangles[i]) {
-                    ray.end = visit(self.ids[i], t);
+                if let Some((t, shares)) = hit(&ray, &self.triangles[i]) {
+                    ray.end = visit(Hit { triangle: self.ids[i], t, shares });
                 }
             }
         }
@@ -91,12 +99,16 @@ impl Tree {
 
     /// The nearest triangle and how far it is, in lengths of `direction`.
     pub(crate) fn nearest(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<(u32, f64)> {
+        self.nearest_hit(origin, direction, beyond).map(|hit| (hit.triangle, hit.t))
+    }
+
+    fn nearest_hit(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<Hit> {
         let mut best = None;
         let ray = Ray { origin, direction, inverse: direction.recip(), end: f64::INFINITY };
         let mut end = f64::INFINITY;
-        self.hits(ray, |id, t| {
-            if t > beyond && t < end {
-                (best, end) = (Some((id, t)), t);
+        self.hits(ray, |hit| {
+            if hit.t > beyond && hit.t < end {
+                (best, end) = (Some(hit), hit.t);
             }
             end
         });
@@ -116,9 +128,9 @@ impl Tree {
         };
         let mut left = 1.0;
         let ray = Ray { origin: at.position, direction, inverse: direction.recip(), end };
-        self.hits(ray, |id, t| {
-            if id != at.triangle && t > start && t < end {
-                left *= 1.0 - self.opacity[id as usize];
+        self.hits(ray, |hit| {
+            if hit.triangle != at.triangle && hit.t > start && hit.t < end {
+                left *= 1.0 - self.opacities.at(hit.triangle, hit.shares);
             }
             if left > 0.0 { end } else { -1.0 }
         });
@@ -150,7 +162,7 @@ fn build(nodes: &mut Vec<Node>, items: &mut [(u32, [DVec3; 3])], base: u32) {
 }
 
 /// Möller and Trumbore's test.
-fn hit(ray: &Ray, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
+fn hit(ray: &Ray, [a, b, c]: &[DVec3; 3]) -> Option<(f64, [f64; 2])> {
     let (u, v) = (*b - *a, *c - *a);
     let p = ray.direction.cross(v);
     let det = u.dot(p);
@@ -168,7 +180,7 @@ fn hit(ray: &Ray, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
         return None;
     }
     let t = v.dot(q) / det;
-    (t > 0.0 && t < ray.end).then_some(t)
+    (t > 0.0 && t < ray.end).then_some((t, [x, y]))
 }
 
 /// What a sample of the picture shows.
@@ -224,6 +236,24 @@ pub(crate) fn render(scene: &Scene, tree: &Tree, show: &Show<'_>, fine: u32, see
     picture
 }
 
+/// A picture of `n` × `n` stratified samples in every pixel; `seed` moves the samples.
+pub(crate) fn sampled(scene: &Scene, tree: &Tree, show: &Show<'_>, n: u32, seed: u64) -> Picture {
+    let camera = Pinhole::new(scene);
+    let mut picture = Picture::black(scene.image.width, scene.image.height);
+    let width = picture.width;
+    picture.pixels.par_iter_mut().enumerate().for_each(|(i, pixel)| {
+        let colors = stratified(i, width, n, seed).map(|at| color(scene, tree, &camera, at, show));
+        *pixel = colors.sum::<DVec3>() / f64::from(n * n);
+    });
+    picture
+}
+
+/// A scene with shadows by `n` × `n` samples in every pixel, its tree included.
+pub(crate) fn sampled_with_shadows(scene: &Scene, n: u32, seed: u64) -> Picture {
+    let tree = Tree::new(scene);
+    sampled(scene, &tree, &with_shadows(scene, &tree), n, seed)
+}
+
 /// `n` × `n` positions in a pixel, one in each stratum.
 fn stratified(i: usize, width: usize, n: u32, seed: u64) -> impl Iterator<Item = DVec2> {
     let corner = dvec2((i % width) as f64, (i / width) as f64);
@@ -246,13 +276,16 @@ fn color(scene: &Scene, tree: &Tree, camera: &Pinhole, pixel: DVec2, show: &Show
     let ray = camera.direction(pixel);
     let (mut sum, mut left, mut beyond) = (DVec3::ZERO, 1.0, 0.0);
     while left > 0.0 {
-        let Some((triangle, t)) = tree.nearest(camera.eye, ray, beyond) else {
+        let Some(Hit { triangle, t, shares }) = tree.nearest_hit(camera.eye, ray, beyond) else {
             return sum + left * scene.image.background.as_dvec3();
         };
-        let opacity = tree.opacity[triangle as usize];
+        let opacity = tree.opacities.at(triangle, shares);
         let at = SurfaceSample { triangle, position: camera.eye + ray * t, to_eye: -ray };
-        sum += left * opacity * show(&at);
-        left *= if tree.opaque { 0.0 } else { 1.0 - opacity };
+        // What shows through a hole needs no light.
+        if opacity > 0.0 {
+            sum += left * opacity * show(&at);
+        }
+        left *= if tree.opacities.all_opaque { 0.0 } else { 1.0 - opacity };
         beyond = t * (1.0 + 1e-12);
     }
     sum

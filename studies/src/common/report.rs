@@ -35,13 +35,19 @@ pub(crate) fn machine() -> String {
 }
 
 /// Median time of three runs, or the time of one that takes seconds, and the result of the last.
-pub(crate) fn timed<T>(mut work: impl FnMut() -> T) -> (f64, T) {
+pub(crate) fn timed<T>(work: impl FnMut() -> T) -> (f64, T) {
+    timed_by(Clock::Wall, work)
+}
+
+/// [`timed`] by another clock.
+pub(crate) fn timed_by<T>(clock: Clock, mut work: impl FnMut() -> T) -> (f64, T) {
     /// Seconds beyond which one run has to do.
     const LONG: f64 = 1.0;
+    let now = clock.start();
     let mut once = || {
-        let start = Instant::now();
+        let begin = now();
         let result = work();
-        (start.elapsed().as_secs_f64(), result)
+        (now() - begin, result)
     };
     let (first, result) = once();
     if first > LONG {
@@ -62,6 +68,17 @@ pub(crate) enum Clock {
     Wall,
 }
 
+impl Clock {
+    /// A function that says how many seconds this clock has run.
+    fn start(self) -> impl Fn() -> f64 {
+        let start = Instant::now();
+        move || match self {
+            Self::Processor => ThreadTime::now().as_duration().as_secs_f64(),
+            Self::Wall => start.elapsed().as_secs_f64(),
+        }
+    }
+}
+
 /// Seconds of the fastest of several runs, because the machine has other work: at least `runs`, and more while they take no
 /// longer than `together` seconds.
 pub(crate) fn least_seconds<E>(
@@ -71,10 +88,7 @@ pub(crate) fn least_seconds<E>(
     mut work: impl FnMut() -> Result<(), E>,
 ) -> Result<f64, E> {
     let start = Instant::now();
-    let now = || match clock {
-        Clock::Processor => ThreadTime::now().as_duration().as_secs_f64(),
-        Clock::Wall => start.elapsed().as_secs_f64(),
-    };
+    let now = clock.start();
     let (mut least, mut done) = (f64::INFINITY, 0);
     while done < runs || start.elapsed().as_secs_f64() < together {
         let begin = now();

@@ -8,6 +8,9 @@ use pointillist_render::{
 };
 use pointillist_shade::{self as shade, Falloff, Light, face_normal, sees_light};
 
+/// The two linear greys of a checker, in 255ths.
+pub(crate) const CHECKER: [u8; 2] = [230, 25];
+
 /// A scene in the making.
 pub(crate) struct Sketch {
     pub(crate) scene: Scene,
@@ -95,11 +98,42 @@ impl Sketch {
         self.scene.lights.push(LightSource::new(name, light));
     }
 
-    /// A texture of black and white texels: `size` × `size`, alternating.
+    /// A texture of light and dark texels: `size` × `size`, alternating.
     pub(crate) fn checker(&mut self, size: u32) -> usize {
-        let texel = |i: u32| if (i % size + i / size).is_multiple_of(2) { 230 } else { 25 };
+        let [light, dark] = CHECKER;
+        let texel = |i: u32| if (i % size + i / size).is_multiple_of(2) { light } else { dark };
         let texels = Texels::from_grays((0..size * size).map(texel).collect());
         self.scene.add_texture(Texture::new("checker", [size, size], texels))
+    }
+
+    /// The back of a [`Sketch::textured_quad`]: the same corners with the same texture coordinates, the other way round.
+    pub(crate) fn textured_back(&mut self, corners: &[DVec3; 4], material: u32) {
+        let [a, b, c, d] = *corners;
+        // From the same corner, so that the triangles are the same, too.
+        self.polygon(&[a, d, c, b], material);
+        let uv = [dvec2(0.0, 0.0), dvec2(0.0, 1.0), dvec2(1.0, 1.0), dvec2(1.0, 0.0)];
+        self.texture_coordinates(&[[uv[0], uv[1], uv[2]], [uv[0], uv[2], uv[3]]]);
+    }
+
+    /// [`Sketch::checker`] on the ground, `2 · half` wide, with a quad for every texel.
+    pub(crate) fn checker_of_quads(&mut self, size: u32, half: f64, [light, dark]: [u32; 2]) {
+        let at = |i: u32, j: u32| {
+            let f = |k: u32| (f64::from(k) / f64::from(size) - 0.5) * 2.0 * half;
+            dvec3(f(i), 0.0, -f(j))
+        };
+        for (j, i) in (0..size).flat_map(|j| (0..size).map(move |i| (j, i))) {
+            // Row 0 of a texture is the top, that is the last j.
+            let even = (i + (size - 1 - j)).is_multiple_of(2);
+            let ring = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            self.polygon(&ring, if even { light } else { dark });
+        }
+    }
+
+    /// A convex polygon with four corners that a texture covers: (0, 0), (1, 0), (1, 1) and (0, 1) in its coordinates.
+    pub(crate) fn textured_quad(&mut self, corners: &[DVec3; 4], material: u32) {
+        self.polygon(corners, material);
+        let uv = [dvec2(0.0, 0.0), dvec2(1.0, 0.0), dvec2(1.0, 1.0), dvec2(0.0, 1.0)];
+        self.texture_coordinates(&[[uv[0], uv[1], uv[2]], [uv[0], uv[2], uv[3]]]);
     }
 
     /// Gives the latest `count` triangles these texture coordinates.
@@ -332,28 +366,14 @@ pub(crate) fn checker_ground(size: u32, as_quads: bool) -> Scene {
     let mut s = Sketch::new(dvec3(0.0, 1.2, 31.0), dvec3(4.0, 0.0, 20.0), 40.0, size);
     s.scene.camera.up = dvec3(0.5, 1.0, 0.0);
     if as_quads {
-        let value = |v: f32| Vec3::splat(v / 255.0);
-        let (light, dark) = (s.emissive(value(230.0), 1.0), s.emissive(value(25.0), 1.0));
-        let at = |i: u32, j: u32| {
-            let f = |k: u32| (f64::from(k) / f64::from(TEXELS) - 0.5) * GROUND;
-            dvec3(f(i), 0.0, -f(j))
-        };
-        for j in 0..TEXELS {
-            for i in 0..TEXELS {
-                // Row 0 of a texture is the top, that is j = 511.
-                let even = (i + (TEXELS - 1 - j)).is_multiple_of(2);
-                let ring = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-                s.polygon(&ring, if even { light } else { dark });
-            }
-        }
+        let [light, dark] = CHECKER.map(|v| s.emissive(Vec3::splat(f32::from(v) / 255.0), 1.0));
+        s.checker_of_quads(TEXELS, 0.5 * GROUND, [light, dark]);
         return s.scene;
     }
     let map = s.checker(TEXELS);
     let ground = s.material(shade::Material::lambert(Vec3::ONE), Some(map));
     let h = 0.5 * GROUND;
-    s.polygon(&[dvec3(-h, 0.0, h), dvec3(h, 0.0, h), dvec3(h, 0.0, -h), dvec3(-h, 0.0, -h)], ground);
-    let uv = [dvec2(0.0, 0.0), dvec2(1.0, 0.0), dvec2(1.0, 1.0), dvec2(0.0, 1.0)];
-    s.texture_coordinates(&[[uv[0], uv[1], uv[2]], [uv[0], uv[2], uv[3]]]);
+    s.textured_quad(&[dvec3(-h, 0.0, h), dvec3(h, 0.0, h), dvec3(h, 0.0, -h), dvec3(-h, 0.0, -h)], ground);
     s.scene.ambient = AmbientLight::Color(Vec3::ONE);
     s.scene
 }

@@ -7,7 +7,7 @@ use std::time::Instant;
 use glam::DVec3;
 use pointillist_micropoint::{MicropointOptions, Occlusion, PlainOpacity, Renderer, Tile};
 use pointillist_render::Scene;
-use pointillist_shade::{Source, sees_light};
+use pointillist_shade::Source;
 use pointillist_shadow::{Emitter, Receivers, Resolution, ShadowLight, ShadowOptions, ShadowScratch, Viewer};
 
 use crate::common::casters;
@@ -18,7 +18,7 @@ use crate::common::ray_reference::{self, Tree, with_shadows};
 use crate::common::report::{
     Outcome, Row, chart, machine, on_one_thread, table, time_ratio, timed, write, write_csv,
 };
-use crate::common::scenes::{SurfaceSample, normal_towards, radiance};
+use crate::common::scenes::{SurfaceSample, radiance};
 use crate::shadow::shadow_map::ShadowMap;
 
 /// Pixels on a side.
@@ -26,9 +26,6 @@ const SIZE: u32 = 192;
 
 /// Rays a side of a pixel at an edge in reference pictures.
 const FINE: u32 = 24;
-
-/// Points that stand for the area light in its converged picture.
-const CONVERGED: u32 = 512;
 
 /// A scene with one light and what it must look like.
 struct Case {
@@ -56,12 +53,9 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
             }
         });
     }
-    eprintln!("shadow: area light");
-    let (area, agreement) = area_light();
-    rows.extend(area);
     write_csv(out_dir, "shadow", &MORE, &rows)?;
     chart(out_dir, "shadow", &rows)?;
-    write(out_dir, "shadow.md", &markdown(&cases, &rows, agreement))?;
+    write(out_dir, "shadow.md", &markdown(&cases, &rows))?;
     Ok(true)
 }
 
@@ -81,8 +75,7 @@ fn cases() -> Vec<Case> {
         let [a, b] = [1, 2].map(|seed| ray_reference::render(&scene, &tree, &show, FINE, seed));
         // Two independent halves: their mean is off by half of what they differ.
         let floor = 0.5 * a.rmse(&b);
-        let pixels = a.pixels.iter().zip(&b.pixels).map(|(a, b)| 0.5 * (*a + *b)).collect();
-        let expected = Picture { width: a.width, pixels };
+        let expected = a.mean(&b);
         let bright = without_shadow(&scene);
         Case { name, scene: scene.clone(), expected, floor, bright, opaque }
     };
@@ -268,60 +261,7 @@ fn wrong_pixels(case: &Case, picture: &Picture) -> (usize, usize) {
     (acne, leak)
 }
 
-/// Points that stand for an area light, against very many; and how far these are from rays.
-fn area_light() -> (Vec<Row>, f64) {
-    /// Smaller than the others: the converged picture takes hundreds of lights.
-    const AREA_SIZE: u32 = 64;
-    let draw = |samples| {
-        let scene = casters::area_light(AREA_SIZE, samples);
-        draw::with_pipeline(&scene).expect("the scene is valid")
-    };
-    let expected = draw(CONVERGED);
-    let mut rows = vec![];
-    for samples in [0, 1, 4, 16, 64] {
-        let (seconds, picture) = on_one_thread(|| timed(|| draw(samples)));
-        rows.push(Row {
-            scene: "area light".to_owned(),
-            series: "correlated".to_owned(),
-            setting: if samples == 0 { "exact".to_owned() } else { format!("{samples} points") },
-            seconds,
-            rmse: picture.rmse(&expected),
-            largest: picture.largest_error(&expected),
-            more: vec![String::new(), String::new()],
-        });
-    }
-    let scene = casters::area_light(AREA_SIZE, CONVERGED);
-    let tree = Tree::new(&scene);
-    let rays = ray_reference::render(&scene, &tree, &|at| one_light_point(&scene, &tree, at), 20, 3);
-    (rows, expected.rmse(&rays))
-}
-
-/// An estimate of the area light's radiance from a few of its points, chosen by the position.
-fn one_light_point(scene: &Scene, tree: &Tree, at: &SurfaceSample) -> DVec3 {
-    const POINTS: u32 = 8;
-    let bits = at.position.x.to_bits()
-        ^ at.position.y.to_bits().rotate_left(21)
-        ^ at.position.z.to_bits().rotate_left(42);
-    let mut state = bits.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-    ray_reference::random(&mut state);
-    let stride = CONVERGED / POINTS;
-    let first = (ray_reference::random(&mut state) * f64::from(stride)) as u32;
-    let t = at.triangle as usize;
-    let surface = scene.materials[scene.mesh.material_of[t] as usize].surface;
-    let normal = normal_towards(scene, t, at.to_eye).as_vec3();
-    let light = &scene.lights[0].light;
-    let of_point = |sample: u32| {
-        let incident = light.illuminate(sample, at.position);
-        if incident.is_dark() || !sees_light(normal, incident.to_light) {
-            return DVec3::ZERO;
-        }
-        let reflected = surface.reflect(&incident, normal, at.to_eye.normalize().as_vec3()).as_dvec3();
-        reflected * tree.transmittance(at, incident.source)
-    };
-    (0..POINTS).map(|k| of_point(first + k * stride)).sum::<DVec3>() * f64::from(stride)
-}
-
-fn markdown(cases: &[Case], rows: &[Row], agreement: f64) -> String {
+fn markdown(cases: &[Case], rows: &[Row]) -> String {
     let mut text = format!(
         "# Shadows: time against error\n\n`cargo run --release -p studies -- shadow` made this, on one thread ({}). \
          {SIZE}×{SIZE} pixels. Seconds are those of the shadow pass alone: everybody sees the same micropoints. Median \
@@ -358,12 +298,6 @@ fn markdown(cases: &[Case], rows: &[Row], agreement: f64) -> String {
             }
         }
     }
-    let _ = write!(
-        text,
-        "\nThe area light is compared with {CONVERGED} points of the same light, times are of whole pictures; rays to \
-         randomly chosen points differ from that converged picture by {agreement:.1e}, most of it noise of the rays.\n\n\
-         ## All settings\n\n{}",
-        table(&MORE, rows)
-    );
+    let _ = write!(text, "\n## All settings\n\n{}", table(&MORE, rows));
     text
 }

@@ -1,0 +1,102 @@
+//! Lights with an area: as a whole, by points of it, and by samples with a random point each.
+
+use std::path::Path;
+
+use glam::DVec3;
+use pointillist_render::Scene;
+use pointillist_shade::sees_light;
+
+use crate::common::against_samples::{MORE, Subject, conditions, draw_cells, summary};
+use crate::common::casters;
+use crate::common::draw;
+use crate::common::picture::Picture;
+use crate::common::ray_reference::{Tree, random, sampled};
+use crate::common::report::{Outcome, Row, table, write, write_csv};
+use crate::common::scenes::{SurfaceSample, normal_towards};
+
+/// Pixels on a side: few, because the expected picture takes thousands of lights.
+const SIZE: u32 = 64;
+
+/// Points of the light in the expected picture: 64 × 64.
+const CONVERGED: u32 = 4096;
+
+/// Cells along a side of a pixel in the expected picture.
+const CONVERGED_CELLS: u32 = 4;
+
+/// Samples along a side of a pixel that the expected picture is compared with.
+const CHECK: u32 = 64;
+
+/// Measures and writes `shadow-area.csv` and `shadow-area.md`.
+pub(crate) fn run(out_dir: &Path) -> Outcome {
+    let (mut subjects, mut rows, mut checks) = (vec![], vec![], String::new());
+    for (name, glossy) in [("matt", false), ("glossy", true)] {
+        eprintln!("shadow: area light, {name}");
+        let converged = casters::area_light(SIZE, CONVERGED, glossy);
+        let tree = Tree::new(&converged);
+        let rays = sampled(&converged, &tree, &|at| by_one_point(&converged, &tree, at), CHECK, 3);
+        let expected = draw_cells(&converged, CONVERGED_CELLS)?;
+        checks += &format!(
+            " {name}: RMSE {:.1e}, bias {:+.3} %;",
+            rays.rmse(&expected),
+            100.0 * rays.bias(&expected)
+        );
+        // What a quarter as many points differ by is more than what is still missing.
+        let fewer = casters::area_light(SIZE, CONVERGED / 4, glossy);
+        let floor = draw_cells(&fewer, CONVERGED_CELLS)?.rmse(&expected);
+        let subject = Subject { name: name.to_owned(), expected, floor };
+        rows.extend(of_scene(&subject, glossy));
+        subjects.push(subject);
+    }
+    write_csv(out_dir, "shadow-area", &MORE, &rows)?;
+    write(out_dir, "shadow-area.md", &markdown(&subjects, &rows, checks.trim_matches([' ', ';'])))?;
+    Ok(true)
+}
+
+fn of_scene(subject: &Subject, glossy: bool) -> Vec<Row> {
+    let exact = casters::area_light(SIZE, 0, glossy);
+    let mut rows = subject.cells("exact", &exact);
+    for points in [1, 4, 16, 64, 256] {
+        let scene = casters::area_light(SIZE, points, glossy);
+        let draw = || draw::with_pipeline(&scene).expect("the scene is valid");
+        rows.push(subject.row("points of the light", format!("{points} points"), draw));
+    }
+    let scene = casters::area_light(SIZE, CONVERGED, glossy);
+    rows.extend(subject.samples(|n| by_samples(&scene, n)));
+    rows
+}
+
+fn by_samples(scene: &Scene, n: u32) -> Picture {
+    let tree = Tree::new(scene);
+    sampled(scene, &tree, &|at| by_one_point(scene, &tree, at), n, 1)
+}
+
+/// The light of the area, estimated from one of its points that the position picks at random.
+fn by_one_point(scene: &Scene, tree: &Tree, at: &SurfaceSample) -> DVec3 {
+    let [x, y, z] = at.position.to_array().map(f64::to_bits);
+    let mut state = (x ^ y.rotate_left(21) ^ z.rotate_left(42)).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    random(&mut state);
+    let light = &scene.lights[0].light;
+    let count = f64::from(light.samples());
+    let incident = light.illuminate((random(&mut state) * count) as u32, at.position);
+    let triangle = at.triangle as usize;
+    let normal = normal_towards(scene, triangle, at.to_eye).as_vec3();
+    if incident.is_dark() || !sees_light(normal, incident.to_light) {
+        return DVec3::ZERO;
+    }
+    let surface = scene.materials[scene.mesh.material_of[triangle] as usize].surface;
+    let reflected = surface.reflect(&incident, normal, at.to_eye.normalize().as_vec3()).as_dvec3();
+    reflected * (count * tree.transmittance(at, incident.source))
+}
+
+fn markdown(subjects: &[Subject], rows: &[Row], checks: &str) -> String {
+    format!(
+        "# Lights with an area: time against error\n\n{}\n\nTwo spheres and a board under a rectangular light, {SIZE}×{SIZE} pixels, all matt or all \
+         glossy (GGX). *Exact* takes the light as a whole, *points of the light* are as many shadow passes, *samples* send one shadow \
+         ray each to a point of the light chosen at random. The expected picture has {CONVERGED} points of the light and \
+         {CONVERGED_CELLS}×{CONVERGED_CELLS} cells a pixel; its own error is less than what a quarter as many points differ by, which is given. Pictures of {CHECK}×{CHECK} samples differ from \
+         it by ({checks}), most of it noise of the samples.\n\n## Beside samples\n\n{}\n## All settings\n\n{}",
+        conditions("shadow area"),
+        summary(subjects, rows),
+        table(&MORE, rows)
+    )
+}
