@@ -36,6 +36,13 @@ pub(crate) struct Part {
     pub(crate) opacity: f32,
 }
 
+impl Part {
+    /// Whether it is the whole cell.
+    pub(crate) fn fills_cell(&self) -> bool {
+        self.vertex_count == 0
+    }
+}
+
 /// Bounds of a part within its cell, in f32 and rounded outward.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
@@ -190,6 +197,8 @@ pub(crate) struct DiceJob<'a> {
     pub(crate) rect: &'a GridRect,
     pub(crate) hidden: &'a HiddenSides,
     pub(crate) opacity: &'a dyn TexturedOpacity,
+    /// Side, in cells, of the smallest squares that cells with masks are divided into.
+    pub(crate) smallest_square: f64,
 }
 
 /// Dices the faces that it is handed.
@@ -546,6 +555,43 @@ impl Dicer {
 
     pub(crate) fn part(&self, index: u32) -> &Part {
         &self.parts[index as usize]
+    }
+
+    /// Adds a piece of a part, of no cell's list. Returns its number.
+    pub(crate) fn add_piece_of(
+        &mut self,
+        part: Part,
+        outline: &[DVec2],
+        (area, centroid): (f64, DVec2),
+        nearness: Interval,
+        opacity: f32,
+    ) -> u32 {
+        let first_vertex = self.vertices.len() as u32;
+        self.vertices.extend_from_slice(outline);
+        let (vertex_count, bounds) = (outline.len() as u32, Extent::of(outline));
+        self.parts.push(Part {
+            next: NONE,
+            first_vertex,
+            vertex_count,
+            area,
+            centroid,
+            bounds,
+            nearness,
+            opacity,
+            ..part
+        });
+        self.parts.len() as u32 - 1
+    }
+
+    /// How much is stored of parts, for [`Dicer::forget_since`].
+    pub(crate) fn stored(&self) -> (usize, usize) {
+        (self.parts.len(), self.vertices.len())
+    }
+
+    /// Forgets the parts that were added since.
+    pub(crate) fn forget_since(&mut self, (parts, vertices): (usize, usize)) {
+        self.parts.truncate(parts);
+        self.vertices.truncate(vertices);
     }
 
     /// Whether two parts of a cell are the same piece of two copies of one triangle.

@@ -61,6 +61,9 @@ pub enum MicropointError {
     /// Cells per pixel side must be 1, 2 or 4.
     #[error("{0} cells per pixel side; 1, 2 and 4 are possible")]
     BadCellsPerPixel(u32),
+    /// Cells per pixel side under masks must be 1, 2 or 4.
+    #[error("{0} cells per pixel side under masks; 1, 2 and 4 are possible")]
+    BadCellsUnderMasks(u32),
     /// Tiles must be 4 to 64 pixels on a side.
     #[error("tiles of {0} pixels; 4 to 64 are possible")]
     BadTileSize(u32),

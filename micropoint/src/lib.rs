@@ -41,6 +41,7 @@
 mod bounds;
 mod closed;
 mod dicer;
+mod divide;
 mod error;
 mod face;
 mod front;

@@ -18,6 +18,9 @@ pub struct MicropointOptions {
     /// Cells per pixel side: 1, 2 or 4. Default: 1; with exact occlusion coverage does not need more,
     /// only shading that varies within a pixel does.
     pub cells_per_pixel: u32,
+    /// Cells per pixel side where a mask is partly open: 1, 2 or 4; without effect if it is no more than `cells_per_pixel`. Default: 4. What
+    /// is seen through a mask, how it is lit and what it hides vary together, and are taken to be independent within a cell.
+    pub cells_under_masks: u32,
     /// How parts in one cell hide one another. Default: correlated.
     pub occlusion: Occlusion,
     /// Skip the back faces of closed opaque components. Default: true. Never changes a correlated
@@ -27,13 +30,24 @@ pub struct MicropointOptions {
 
 impl MicropointOptions {
     /// The defaults, as a constant.
-    pub const DEFAULT: Self =
-        Self { cells_per_pixel: 1, occlusion: Occlusion::Correlated, cull_solids: true };
+    pub const DEFAULT: Self = Self {
+        cells_per_pixel: 1,
+        cells_under_masks: 4,
+        occlusion: Occlusion::Correlated,
+        cull_solids: true,
+    };
 
     /// Sets the number of cells per pixel side.
     #[must_use]
     pub const fn with_cells_per_pixel(mut self, cells: u32) -> Self {
         self.cells_per_pixel = cells;
+        self
+    }
+
+    /// Sets the number of cells per pixel side where a mask is partly open.
+    #[must_use]
+    pub const fn with_cells_under_masks(mut self, cells: u32) -> Self {
+        self.cells_under_masks = cells;
         self
     }
 
@@ -73,7 +87,7 @@ impl<'a> Renderer<'a> {
     /// Prepares a view.
     ///
     /// # Errors
-    /// [`MicropointError::BadCellsPerPixel`].
+    /// [`MicropointError::BadCellsPerPixel`], [`MicropointError::BadCellsUnderMasks`].
     pub fn new(
         geometry: &'a Geometry,
         opacity: &'a dyn TexturedOpacity,
@@ -83,6 +97,9 @@ impl<'a> Renderer<'a> {
         let cells = options.cells_per_pixel;
         if !matches!(cells, 1 | 2 | 4) {
             return Err(MicropointError::BadCellsPerPixel(cells));
+        }
+        if !matches!(options.cells_under_masks, 1 | 2 | 4) {
+            return Err(MicropointError::BadCellsUnderMasks(options.cells_under_masks));
         }
         let mut lens = Lens::of_view(&view, cells);
         let bounds = geometry.bounds();
@@ -169,7 +186,9 @@ impl<'a> Renderer<'a> {
         let mut dicer = std::mem::take(&mut tile.dicer);
         let mut resolve = std::mem::take(&mut tile.resolve);
         let (geometry, lens, opacity) = (self.geometry, &self.lens, self.opacity);
-        let job = DiceJob { geometry, lens, rect: &self.rect, hidden: &self.hidden, opacity };
+        let smallest_square = f64::from(cells) / f64::from(self.options.cells_under_masks);
+        let job =
+            DiceJob { geometry, lens, rect: &self.rect, hidden: &self.hidden, opacity, smallest_square };
         dicer.dice(&job, window);
         let columns = (window.x1 - window.x0) as usize;
         let share = 1.0 / f64::from(cells * cells);

@@ -1,6 +1,7 @@
 //! From the parts in a cell to what is seen of them.
 
 use crate::dicer::{DiceJob, Dicer, mean_opacity};
+use crate::divide::Square;
 use crate::front::{Front, Layer, in_front};
 use crate::neighbours::{self, Neighbours};
 use glam::DVec2;
@@ -33,6 +34,13 @@ pub(crate) struct Visible<'a> {
 }
 
 impl Visible<'_> {
+    /// All of a part.
+    fn whole(dicer: &Dicer, number: u32) -> Self {
+        let part = dicer.part(number);
+        let weight = part.area * f64::from(part.opacity);
+        Visible { part: number, weight, centroid: part.centroid, pieces: None, scale: 1.0 }
+    }
+
     /// Lets the part fill what is left of its cell at most. Where dozens of translucent parts cross one another, some dim the
     /// rest by their mean (see [`Regions`]), and what is seen of all of them may add up to more than the cell.
     fn fit_into(mut self, room: f64) -> Self {
@@ -64,54 +72,80 @@ pub(crate) fn resolve_exactly(
     mut emit: impl FnMut(&Dicer, Visible<'_>),
 ) {
     let order = dicer.sorted_parts(cell);
-    let whole = |dicer: &Dicer, index: u32| {
-        let part = dicer.part(index);
-        let weight = part.area * f64::from(part.opacity);
-        Visible { part: index, weight, centroid: part.centroid, pieces: None, scale: 1.0 }
-    };
-    if let Some(count) = dicer.tiling(cell).or((order.len() == 1).then_some(1)) {
+    if let Some(count) = dicer.tiling(cell) {
         for &p in &order[..count] {
-            emit(dicer, whole(dicer, p));
+            emit(dicer, Visible::whole(dicer, p));
         }
         dicer.counts.cells_single += u64::from(count == 1);
         dicer.counts.cells_tiled += u64::from(count > 1);
     } else if order.is_empty() {
         dicer.counts.cells_empty += 1;
     } else {
-        let mut seen = 0.0;
-        let mut compared = false;
-        scratch.others.start(dicer, &order);
-        let mut sight = Sight::Hidden;
-        for (i, &p) in order.iter().enumerate() {
-            sight = match i.checked_sub(1).map(|before| order[before]) {
-                Some(before) if dicer.is_copy(before, p) => {
-                    behind_a_copy(sight, dicer, before, &mut scratch.cut.regions)
-                }
-                _ => scratch.hide(&Parts { dicer, job, corner }, &order, i),
-            };
-            compared |= sight != Sight::Whole;
-            if sight == Sight::Hidden {
-                continue;
-            }
-            scratch.others.stand(i);
-            let visible = match sight {
-                Sight::Whole => whole(dicer, p),
-                _ => scratch.cut.in_pieces(&Parts { dicer, job, corner }, p),
-            };
-            let visible = visible.fit_into(1.0 - seen);
-            if visible.weight <= 0.0 {
-                continue;
-            }
-            seen += visible.weight;
-            emit(dicer, visible);
-            if seen >= 1.0 - FINISHED {
-                break;
-            }
-        }
+        let stored = dicer.stored();
+        let compared = resolve_square(dicer, scratch, job, (corner, Square::CELL), &order, &mut emit);
+        dicer.forget_since(stored);
+        dicer.counts.cells_single += u64::from(!compared && order.len() == 1);
         dicer.counts.cells_compared += u64::from(compared);
-        dicer.counts.cells_apart += u64::from(!compared);
+        dicer.counts.cells_apart += u64::from(!compared && order.len() > 1);
     }
     dicer.recycle(order);
+}
+
+/// Resolves a square of a cell in which these parts are, nearest first. Returns whether parts touch one another.
+fn resolve_square(
+    dicer: &mut Dicer,
+    scratch: &mut ResolveScratch,
+    job: &DiceJob<'_>,
+    (corner, square): (DVec2, Square),
+    order: &[u32],
+    emit: &mut impl FnMut(&Dicer, Visible<'_>),
+) -> bool {
+    let masked = |dicer: &Dicer| order.iter().any(|&p| Parts { dicer, job, corner }.is_masked(p));
+    if square.side() > job.smallest_square && masked(dicer) {
+        let mut within = vec![];
+        let mut compared = false;
+        for quarter in square.quarters() {
+            let stored = dicer.stored();
+            quarter.parts_within(dicer, job, corner, order, &mut within);
+            compared |= resolve_square(dicer, scratch, job, (corner, quarter), &within, emit);
+            dicer.forget_since(stored);
+        }
+        return compared;
+    }
+    if let [only] = *order {
+        emit(dicer, Visible::whole(dicer, only));
+        return false;
+    }
+    let (mut seen, mut compared) = (0.0, false);
+    scratch.others.start(dicer, order);
+    let mut sight = Sight::Hidden;
+    for (i, &p) in order.iter().enumerate() {
+        sight = match i.checked_sub(1).map(|before| order[before]) {
+            Some(before) if dicer.is_copy(before, p) => {
+                behind_a_copy(sight, dicer, before, &mut scratch.cut.regions)
+            }
+            _ => scratch.hide(&Parts { dicer, job, corner }, order, i),
+        };
+        compared |= sight != Sight::Whole;
+        if sight == Sight::Hidden {
+            continue;
+        }
+        scratch.others.stand(i);
+        let visible = match sight {
+            Sight::Whole => Visible::whole(dicer, p),
+            _ => scratch.cut.in_pieces(&Parts { dicer, job, corner }, p),
+        };
+        let visible = visible.fit_into(square.area() - seen);
+        if visible.weight <= 0.0 {
+            continue;
+        }
+        seen += visible.weight;
+        emit(dicer, visible);
+        if seen >= square.area() - FINISHED {
+            break;
+        }
+    }
+    compared
 }
 
 /// How much of a part can be seen.

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use pointillist_micropoint::invariants::{Soup, picture_of};
 use pointillist_micropoint::{
-    MicropointOptions, PixelRect, Projection, Renderer, SurfacePoint, TexturedOpacity, View,
+    MicropointError, MicropointOptions, PixelRect, Projection, Renderer, SurfacePoint, TexturedOpacity, View,
 };
 
 /// Opaque left of the middle of the only pixel, empty right of it.
@@ -71,4 +71,42 @@ fn of_a_mask_whose_opaque_half_is_hidden_nothing_is_seen() {
     let (mask, right, left) = (card([-1.0, 1.0], 0.0), card([0.0, 1.0], 1.0), card([-1.0, 0.0], 1.0));
     close(&weights(&[(mask, true), (left, false)]), &[0.0, 0.5]);
     close(&weights(&[(mask, true), (right, false)]), &[0.5, 0.5]);
+}
+
+#[test]
+fn masks_with_their_holes_in_one_place_hide_like_one() {
+    let mask = |z: f64| (card([-1.0, 1.0], z), true);
+    // As independent masks, the second would add a quarter.
+    close(&weights(&[mask(1.0), mask(0.0)]), &[0.5, 0.0]);
+    close(&weights(&[mask(1.0), mask(0.0), (card([-1.0, 1.0], -1.0), false)]), &[0.5, 0.0, 0.5]);
+}
+
+#[test]
+fn a_pixel_is_divided_where_a_mask_is_partly_open_only() {
+    let mut soup = Soup::default();
+    let surface = soup.surface(1.0);
+    soup.surfaces[surface as usize].textured_opacity = true;
+    soup.polygon(
+        &[dvec3(-2.0, -1.0, 0.0), dvec3(2.0, -1.0, 0.0), dvec3(2.0, 1.0, 0.0), dvec3(-2.0, 1.0, 0.0)],
+        surface,
+    );
+    let geometry = soup.geometry().unwrap();
+    let camera = Projection::Orthographic { height: 1.0 };
+    let view = View::look_at(DVec3::Z * 9.0, DVec3::ZERO, DVec3::Y, camera, 3, 1).unwrap();
+    for (cells, expected) in [(1, 1), (2, 2), (4, 2)] {
+        // The mask is closed left of the middle of the first pixel: no square of a half is partly open.
+        let options = MicropointOptions::DEFAULT.with_cells_under_masks(cells);
+        let renderer = Renderer::new(&geometry, &LeftHalf, view, options).unwrap();
+        let picture = picture_of(&renderer, [PixelRect { x0: 0, y0: 0, x1: 3, y1: 1 }]);
+        assert!(picture[1].is_empty() && picture[2].is_empty());
+        let weight: f64 = picture[0].iter().map(|seen| seen.weight).sum();
+        assert!(
+            (weight - 0.5).abs() < 1e-6 && picture[0].len() == expected,
+            "{weight}, {} pieces",
+            picture[0].len()
+        );
+    }
+    let refused =
+        Renderer::new(&geometry, &LeftHalf, view, MicropointOptions::DEFAULT.with_cells_under_masks(3));
+    assert_eq!(refused.err(), Some(MicropointError::BadCellsUnderMasks(3)));
 }

@@ -87,7 +87,11 @@ impl Prepared<'_> {
         self.check_layers(layers)?;
         let window = options.window.unwrap_or(view.picture()).intersection(&view.picture());
         monitor.begin(window.tiles(TILE_SIZE).count() as u64);
-        let renderer = Renderer::new(&self.geometry, &*self.surfaces, view, self.scene.render.micropoints())?;
+        let mut micropoints = self.scene.render.micropoints();
+        if style.economy.is_some() {
+            micropoints = micropoints.with_cells_under_masks(1);
+        }
+        let renderer = Renderer::new(&self.geometry, &*self.surfaces, view, micropoints)?;
         monitor.start_lap();
         let lights = if style.lights {
             // Pictures that are only summed up have points in the place of areas.
