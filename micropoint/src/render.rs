@@ -171,7 +171,7 @@ impl<'a> Renderer<'a> {
     /// Pixels outside the picture do not exist and see nothing.
     pub fn render(&self, rect: PixelRect, tile: &mut Tile) {
         let rect = rect.intersection(&self.picture());
-        tile.start(rect, self.lens);
+        tile.start(rect, self.lens, self.options.cells_per_pixel);
         if rect.width() == 0 || rect.height() == 0 {
             tile.dicer.counts = TileCounts::default();
             return;

@@ -6,6 +6,7 @@ use crate::interval::Interval;
 use crate::lens::Lens;
 use crate::resolve::{ResolveScratch, Visible};
 use glam::{DVec2, DVec3};
+use pointillist_dice::convex;
 use pointillist_view::PixelRect;
 
 /// A visible piece of a surface: what a shader shades, once.
@@ -46,6 +47,7 @@ pub struct Tile {
     pub(crate) resolve: ResolveScratch,
     rect: Option<PixelRect>,
     lens: Option<Lens>,
+    cells_per_pixel: u32,
     points: Vec<Micropoint>,
     fragments: Vec<Fragment>,
     vertices: Vec<DVec2>,
@@ -53,7 +55,8 @@ pub struct Tile {
 
 impl Tile {
     /// Empties the tile for these pixels of the view with this lens; keeps the memory.
-    pub(crate) fn start(&mut self, rect: PixelRect, lens: Lens) {
+    pub(crate) fn start(&mut self, rect: PixelRect, lens: Lens, cells_per_pixel: u32) {
+        self.cells_per_pixel = cells_per_pixel;
         self.rect = Some(rect);
         self.lens = Some(lens);
         self.points.clear();
@@ -108,6 +111,18 @@ impl Tile {
     pub fn position(&self, grid: DVec2, nearness: f64) -> DVec3 {
         let lens = self.lens();
         lens.to_world_axes(lens.unproject(grid, nearness))
+    }
+
+    /// What a micropoint gives to the picture over what it would give if it were opaque with nothing in front: the mean of transmittance
+    /// in front × opacity over its fragments, 0..=1. 1 for one without an area.
+    #[must_use]
+    pub fn visibility(&self, point: &Micropoint) -> f64 {
+        let fragments = self.fragments(point).iter();
+        let (weight, area) = fragments.fold((0.0, 0.0), |(weight, area), fragment| {
+            (weight + fragment.weight, area + convex::area(self.outline(fragment)))
+        });
+        let cells = f64::from(self.cells_per_pixel).powi(2);
+        if area > 0.0 { (weight * cells / area).min(1.0) } else { 1.0 }
     }
 
     /// The lens of the view.

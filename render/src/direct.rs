@@ -24,7 +24,7 @@ pub(crate) struct Arrival {
 pub(crate) struct DirectScratch {
     pub(crate) shadow: ShadowScratch,
     pub(crate) area: AreaScratch,
-    /// What each receiver sends to the eye because of a whole light, and the lit share of it.
+    /// For each micropoint, at its first receiver: what it sends to the eye because of a whole light, and the lit area of the light.
     pub(crate) seen: Vec<(Vec3, f64)>,
     /// The micropoint of each receiver.
     pub(crate) owners: Vec<u32>,

@@ -2,7 +2,7 @@
 //!
 //! The constant part of a BRDF has a closed form, Lambert's formula; the rest is integrated by quadrature over what is seen of the light.
 
-use crate::direct::{DirectScratch, corners};
+use crate::direct::DirectScratch;
 use crate::lights::{WholeLight, share};
 use crate::monitor::Monitor;
 use crate::shader::{Point, Shader};
@@ -31,10 +31,8 @@ impl Shader<'_> {
         for (i, p) in points.iter().enumerate() {
             let m = &tile.points()[i];
             if lit_layer.is_some() || !self.is_black(p, tile.faces()[m.face as usize].id) {
-                for fragment in tile.fragments(m) {
-                    receivers.push(m.face, corners(tile, m, fragment));
-                    owners.push(i as u32);
-                }
+                receivers.push_point(tile, m);
+                owners.resize(receivers.len(), i as u32);
             }
         }
         // Summed up by receiver first: they come in an order that depends on the tile.
@@ -48,21 +46,12 @@ impl Shader<'_> {
             sum.0 += self.reflect_whole(light, &points[owner], face, part) * share as f32;
             sum.1 += share * part.area();
         });
-        let mut next = 0;
-        while let Some(&owner) = owners.get(next) {
-            let fragments = tile.fragments(&tile.points()[owner as usize]);
-            let total: f64 = fragments.iter().map(|f| f.weight).sum();
-            let (mut radiance, mut lit) = (Vec3::ZERO, 0.0);
-            for (f, s) in fragments.iter().zip(&seen[next..]) {
-                let share = if total > 0.0 { f.weight / total } else { 0.0 };
-                radiance += s.0 * share as f32;
-                lit += s.1 * share;
-            }
-            points[owner as usize].direct += radiance;
+        // All of a micropoint is at its first piece.
+        for (&owner, (radiance, lit)) in owners.iter().zip(&*seen) {
+            points[owner as usize].direct += *radiance;
             if let Some(layer) = lit_layer.as_deref_mut() {
                 layer[owner as usize] += lit / light.side.area() * share(light.channels);
             }
-            next += fragments.len().max(1);
         }
         monitor.lap("shadow");
     }

@@ -1,7 +1,7 @@
 //! What light falls on: convex pieces of surfaces, as a viewer sees them.
 
 use glam::DVec3;
-use pointillist_micropoint::{Face, Lens, Tile};
+use pointillist_micropoint::{Face, Fragment, Lens, Micropoint, Tile};
 
 /// Convex planar pieces that may be lit. Corners are relative to the viewer's lens, in world axes.
 #[derive(Debug, Default)]
@@ -15,6 +15,12 @@ pub(crate) struct Receiver {
     pub(crate) face: u32,
     pub(crate) first_vertex: u32,
     pub(crate) vertex_count: u32,
+    /// It is a piece of the same receiver as the one before, for lights with an area.
+    pub(crate) joins: bool,
+    /// Its share of that receiver.
+    pub(crate) weight: f64,
+    /// What it gives to the picture over what it would give with nothing in front.
+    pub(crate) visibility: f64,
     /// Its lit regions are kept, too.
     pub(crate) wants_regions: bool,
 }
@@ -53,18 +59,44 @@ impl Receivers {
         let first_vertex = self.vertices.len() as u32;
         self.vertices.extend(corners);
         let vertex_count = self.vertices.len() as u32 - first_vertex;
-        self.list.push(Receiver { face, first_vertex, vertex_count, wants_regions });
+        self.list.push(Receiver {
+            face,
+            first_vertex,
+            vertex_count,
+            joins: false,
+            weight: 1.0,
+            visibility: 1.0,
+            wants_regions,
+        });
     }
 
-    /// Adds every fragment of a tile's micropoints, in order.
+    /// Adds every fragment of a tile's micropoints, in order, as receivers of their own.
     pub fn push_tile(&mut self, tile: &Tile) {
         for point in tile.points() {
-            let face: &Face = &tile.faces()[point.face as usize];
             for fragment in tile.fragments(point) {
-                let corners = tile.outline(fragment).iter();
-                self.push(point.face, corners.map(|&v| tile.position(v, face.nearness_at(v))));
+                self.push_fragment(tile, point, fragment);
             }
         }
+    }
+
+    /// Adds a micropoint of a tile: its fragments, in order.
+    ///
+    /// [`AreaLight::visit`](crate::AreaLight::visit) takes them as one receiver, with the first one's position in the list. For other lights
+    /// each is a receiver of its own. The less is seen of it, the coarser it is asked: see [`AreaOptions`](crate::AreaOptions).
+    pub fn push_point(&mut self, tile: &Tile, point: &Micropoint) {
+        let visibility = tile.visibility(point);
+        for (i, fragment) in tile.fragments(point).iter().enumerate() {
+            self.push_fragment(tile, point, fragment);
+            if let Some(piece) = self.list.last_mut() {
+                (piece.weight, piece.joins, piece.visibility) = (fragment.weight, i > 0, visibility);
+            }
+        }
+    }
+
+    fn push_fragment(&mut self, tile: &Tile, point: &Micropoint, fragment: &Fragment) {
+        let face: &Face = &tile.faces()[point.face as usize];
+        let corners = tile.outline(fragment).iter();
+        self.push(point.face, corners.map(|&v| tile.position(v, face.nearness_at(v))));
     }
 
     pub(crate) fn corners(&self, r: &Receiver) -> &[DVec3] {

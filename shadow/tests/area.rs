@@ -57,7 +57,7 @@ fn soup() -> BoxedStrategy<Soup> {
     let coarse = || point().prop_map(|p| (p * 2.0).round() * 0.5);
     let corner = move || prop_oneof![coarse().boxed(), point()];
     let loose = prop::collection::vec(([corner(), corner(), corner()], opacity()), 0..6);
-    let solids = prop::collection::vec((point(), 0.1..0.6f64, 3..5u32, any::<bool>()), 0..3);
+    let solids = prop::collection::vec((point(), 0.1..0.6f64, 3..5u32, any::<bool>(), opacity()), 0..3);
     (loose, solids)
         .prop_map(|(loose, solids)| {
             let mut soup = ground().moved(|p| p - DVec3::Y);
@@ -65,8 +65,8 @@ fn soup() -> BoxedStrategy<Soup> {
                 let surface = soup.surface(opacity);
                 soup.polygon(&corners, surface);
             }
-            for (centre, size, rows, is_box) in solids {
-                let surface = soup.surface(1.0);
+            for (centre, size, rows, is_box, opacity) in solids {
+                let surface = soup.surface(opacity);
                 match is_box {
                     true => soup.cuboid(centre - size, centre + size * 0.5, surface),
                     false => soup.sphere(centre, size, rows, rows + 1, surface),
@@ -97,6 +97,12 @@ proptest! {
     #[test]
     fn what_is_seen_does_not_depend_on_the_order_of_triangles(s in soup(), v in view(), l in parallelogram(), seed: u64) {
         holds!(area::triangle_order_does_not_matter(&s, v, &outline(l), seed));
+    }
+
+    #[test]
+    fn pieces_behind_translucent_sheets_are_one_receiver(s in soup(), v in view(), half in 0.1..1.0f64) {
+        // Each of a few outlines moves by a tenth of the light.
+        holds!(area::pieces_may_be_asked_together(&s, v, &lamp(half, 6.0), 0.3));
     }
 
     #[test]

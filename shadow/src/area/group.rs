@@ -3,13 +3,15 @@
 use super::light::{AreaLight, SeenLight, above_horizon};
 use super::masks::Masks;
 use super::outline::Outline;
+use super::piece::{self, Piece, around};
 use super::shaft::Shaft;
 use super::sheets::Sheets;
 use super::sweep::Sweep;
 use crate::receiver::{Receivers, Viewer};
 use glam::{DVec2, DVec3};
-use pointillist_dice::{clip_ring, convex, share_before_crossing};
+use pointillist_dice::convex;
 use pointillist_micropoint::Face;
+use std::ops::Range;
 
 /// Groups of this many receivers are not divided further.
 const FEW_RECEIVERS: usize = 8;
@@ -25,15 +27,18 @@ struct Target {
     receiver: u32,
     /// Unit normal of its surface, on the side that is seen.
     normal: DVec3,
+    /// What it gives to the picture over what it would give with nothing in front.
+    visibility: f64,
     bounds: Box3,
-    first_corner: u32,
-    corner_count: u32,
+    first_piece: u32,
+    piece_count: u32,
 }
 
 /// Reusable memory of [`AreaLight::visit`], one per thread.
 #[derive(Debug, Default)]
 pub struct AreaScratch {
     targets: Vec<Target>,
+    pieces: Vec<Piece>,
     corners: Vec<DVec3>,
     sheets: Sheets,
     /// Stack of the sheets of nested groups.
@@ -59,8 +64,8 @@ pub(crate) fn visit(
     scratch: &mut AreaScratch,
     visit: &mut impl FnMut(usize, f64, &SeenLight),
 ) {
-    let AreaScratch { targets, corners, sheets, stack, point } = scratch;
-    collect(light, viewer, receivers, targets, corners);
+    let AreaScratch { targets, pieces, corners, sheets, stack, point } = scratch;
+    collect(light, viewer, receivers, (targets, pieces, corners));
     if targets.is_empty() {
         return;
     }
@@ -73,7 +78,7 @@ pub(crate) fn visit(
     stack.extend(0..sheets.list.len() as u32);
     point.outline.start(sheets, light.coincident);
     point.seen.frame = light.frame;
-    Groups { light, corners, sheets, stack, point, visit }.divide(targets, 0);
+    Groups { light, pieces, corners, sheets, stack, point, visit }.divide(targets, 0);
 }
 
 /// Receivers that may see something of the light.
@@ -81,34 +86,48 @@ fn collect(
     light: &AreaLight<'_>,
     viewer: Viewer<'_>,
     receivers: &Receivers,
-    targets: &mut Vec<Target>,
-    corners: &mut Vec<DVec3>,
+    (targets, pieces, corners): (&mut Vec<Target>, &mut Vec<Piece>, &mut Vec<DVec3>),
 ) {
     targets.clear();
+    pieces.clear();
     corners.clear();
-    for (index, receiver) in receivers.list.iter().enumerate() {
-        let first = corners.len();
-        let world = receivers.corners(receiver);
-        let offset = viewer.lens.origin - light.frame.origin;
-        corners.extend(world.iter().map(|&c| light.frame.local_vector(c + offset)));
-        let own = &corners[first..];
-        let low = own.iter().fold(DVec3::INFINITY, |m, &c| m.min(c));
-        let high = own.iter().fold(DVec3::NEG_INFINITY, |m, &c| m.max(c));
+    let offset = viewer.lens.origin - light.frame.origin;
+    let mut next = 0;
+    while let Some(receiver) = receivers.list.get(next) {
+        let index = next as u32;
+        let (first_piece, first_corner) = (pieces.len(), corners.len());
+        for (i, r) in receivers.list[next..].iter().enumerate() {
+            if i > 0 && !r.joins {
+                break;
+            }
+            next += 1;
+            if r.weight > 0.0 {
+                let first = corners.len();
+                corners.extend(receivers.corners(r).iter().map(|&c| light.frame.local_vector(c + offset)));
+                let (middle, _) = piece::middle(&corners[first..]);
+                let corner_count = (corners.len() - first) as u32;
+                pieces.push(Piece { first_corner: first as u32, corner_count, weight: r.weight, middle });
+            }
+        }
+        let own = &corners[first_corner..];
+        let (low, high) = around(own.iter());
         let normal = seen_normal(light, &viewer.faces[receiver.face as usize]);
         // Behind the light, edge-on, or the light below the horizon of all of it.
         let towards = light.outline.iter().map(|v| v.extend(0.0));
         let faces = |v: DVec3| own.iter().any(|&c| normal.dot(v - c) > 0.0);
         let lit = high.z > light.coincident && towards.into_iter().any(faces);
         if !(lit && low.is_finite() && high.is_finite()) {
-            corners.truncate(first);
+            pieces.truncate(first_piece);
+            corners.truncate(first_corner);
             continue;
         }
         targets.push(Target {
-            receiver: index as u32,
+            receiver: index,
             normal,
+            visibility: receiver.visibility,
             bounds: (low, high),
-            first_corner: first as u32,
-            corner_count: (corners.len() - first) as u32,
+            first_piece: first_piece as u32,
+            piece_count: (pieces.len() - first_piece) as u32,
         });
     }
 }
@@ -128,6 +147,8 @@ fn bounds(targets: &[Target]) -> Box3 {
 /// A batch of receivers while it is divided.
 struct Groups<'s, F> {
     light: &'s AreaLight<'s>,
+    /// Those of a receiver, in any order.
+    pieces: &'s mut [Piece],
     corners: &'s [DVec3],
     sheets: &'s Sheets,
     stack: &'s mut Vec<u32>,
@@ -150,7 +171,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         }
         let count = self.stack.len() - own;
         if targets.len() <= FEW_RECEIVERS || count <= FEW_SHEETS {
-            self.settle(targets, own, around);
+            self.settle(targets, own, (around, &shaft));
         } else {
             let (low, high) = split(targets, around);
             for half in [low, high] {
@@ -163,48 +184,87 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
     }
 
     /// Asks the points of a group one by one.
-    fn settle(&mut self, targets: &[Target], first: usize, around: Box3) {
+    fn settle(&mut self, targets: &[Target], first: usize, (around, shaft): (Box3, &Shaft)) {
         let group = &self.stack[first..];
         let opaque = |&&s: &&u32| self.sheets.list[s as usize].mask.is_none();
-        self.point.outline.take(self.sheets, group.iter().filter(opaque).copied(), around);
+        self.point.outline.take(self.sheets, group.iter().filter(opaque).copied(), around, shaft);
         self.point.masks.take(self.sheets, group);
         for target in targets {
-            let corners = &self.corners[target.first_corner as usize..][..target.corner_count as usize];
-            self.ask(target, corners, 1.0, 0);
+            let first = target.first_piece as usize;
+            self.ask_pieces(target, first..first + target.piece_count as usize, 1.0, 0);
         }
     }
 
+    /// Asks one point for some pieces of a receiver that stand for this share of it, or each half of them.
+    fn ask_pieces(&mut self, target: &Target, pieces: Range<usize>, share: f64, halvings: u32) {
+        let corners = self.corners;
+        let own = &mut self.pieces[pieces.clone()];
+        if let [only] = own {
+            let ring = only.corners(corners);
+            return self.ask(target, ring, share, halvings);
+        }
+        if let Some((middle, radius)) = piece::common_middle(own, corners) {
+            let all = own.iter().flat_map(|p| p.corners(corners));
+            let around = around(all.clone());
+            let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
+            if !self.point.outline.passes_between(self.sheets, all.copied(), around, &shaft) {
+                let factor = self.cast((middle, target.normal), &shaft, around.1.z);
+                if !self.is_coarse(target, factor, radius, halvings) {
+                    return self.report(target, share);
+                }
+            }
+        }
+        let own = &mut self.pieces[pieces.clone()];
+        let first = piece::part(own, corners);
+        let share_of_first = piece::weight(&own[..first]) / piece::weight(own);
+        let parted = pieces.start + first;
+        self.ask_pieces(target, pieces.start..parted, share * share_of_first, halvings + 1);
+        self.ask_pieces(target, parted..pieces.end, share * (1.0 - share_of_first), halvings + 1);
+    }
+
     /// Asks the middle of a convex piece of a receiver, or the middles of its halves.
-    fn ask(&mut self, target: &Target, piece: &[DVec3], weight: f64, halvings: u32) {
-        let (middle, radius) = middle(piece);
-        let shaft = Shaft::new(around(piece), convex::bounds(&self.light.outline));
-        let factor = self.cast((middle, target.normal), &shaft);
-        let options = &self.light.options;
-        if factor * radius > options.largest_shift * self.light.width && halvings < options.most_halvings {
-            let halves = halves(piece, middle);
-            let areas = halves.each_ref().map(|h| area(h));
+    fn ask(&mut self, target: &Target, ring: &[DVec3], share: f64, halvings: u32) {
+        let (middle, radius) = piece::middle(ring);
+        let around = around(ring.iter());
+        let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
+        let factor = self.cast((middle, target.normal), &shaft, around.1.z);
+        if self.is_coarse(target, factor, radius, halvings) {
+            let halves = piece::halves(ring, middle);
+            let areas = halves.each_ref().map(|h| piece::area(h));
             let total = areas[0] + areas[1];
             if total > 0.0 {
                 for (half, own) in halves.iter().zip(areas) {
                     if own > 0.0 {
-                        self.ask(target, half, weight * own / total, halvings + 1);
+                        self.ask(target, half, share * own / total, halvings + 1);
                     }
                 }
                 return;
             }
         }
+        self.report(target, share);
+    }
+
+    /// Whether one point is too few where outlines move by this factor of its way, and all it stands for is within this radius.
+    fn is_coarse(&self, target: &Target, factor: f64, radius: f64, halvings: u32) -> bool {
+        let options = &self.light.options;
+        let shift = factor * radius * target.visibility;
+        shift > options.largest_shift * self.light.width && halvings < options.most_halvings
+    }
+
+    fn report(&mut self, target: &Target, share: f64) {
         if !self.point.seen.is_empty() {
-            (self.visit)(target.receiver as usize, weight, &self.point.seen);
+            (self.visit)(target.receiver as usize, share, &self.point.seen);
         }
     }
 
-    /// What a point of a surface sees. Returns the factor of [`Outline::cast`].
-    fn cast(&mut self, (point, normal): (DVec3, DVec3), shaft: &Shaft) -> f64 {
+    /// What a point of a surface sees. Returns the factor of [`Outline::cast`] for points around it that are at most this high over the light.
+    fn cast(&mut self, (point, normal): (DVec3, DVec3), shaft: &Shaft, highest: f64) -> f64 {
         let PointScratch { outline, masks, sweep, polygon, seen } = &mut *self.point;
         seen.clear();
         seen.point = point;
         if point.z <= self.light.coincident {
-            return 0.0;
+            // Some of what it stands for may be in front of the light.
+            return if highest > self.light.coincident { f64::INFINITY } else { 0.0 };
         }
         above_horizon(&self.light.outline, point, normal, polygon);
         if convex::area(polygon) <= 0.0 {
@@ -226,44 +286,4 @@ fn split(targets: &mut [Target], (low, high): Box3) -> (&mut [Target], &mut [Tar
     let key = |t: &Target| t.bounds.0[axis] + t.bounds.1[axis];
     targets.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
     targets.split_at_mut(middle)
-}
-
-/// Centroid of a convex polygon in space, and the distance of its farthest corner from it.
-fn middle(ring: &[DVec3]) -> (DVec3, f64) {
-    let mut sum = DVec3::ZERO;
-    let mut total = 0.0;
-    for pair in ring[1..].windows(2) {
-        let own = (pair[0] - ring[0]).cross(pair[1] - ring[0]).length();
-        sum += (pair[0] - ring[0] + (pair[1] - ring[0])) * (own / 3.0);
-        total += own;
-    }
-    let mean = || ring.iter().map(|&c| c - ring[0]).sum::<DVec3>() / ring.len() as f64;
-    let middle = ring[0] + if total > 0.0 { sum / total } else { mean() };
-    (middle, ring.iter().map(|&c| c.distance(middle)).fold(0.0, f64::max))
-}
-
-fn area(ring: &[DVec3]) -> f64 {
-    ring.get(1..)
-        .unwrap_or_default()
-        .windows(2)
-        .map(|p| (p[0] - ring[0]).cross(p[1] - ring[0]).length())
-        .sum()
-}
-
-fn around(ring: &[DVec3]) -> Box3 {
-    let union = |a: Box3, &c: &DVec3| (a.0.min(c), a.1.max(c));
-    ring.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), union)
-}
-
-/// A polygon cut through its middle, across its longest extent.
-fn halves(ring: &[DVec3], middle: DVec3) -> [Vec<DVec3>; 2] {
-    let far =
-        |a: DVec3, &b: &DVec3| if b.distance_squared(middle) > a.distance_squared(middle) { b } else { a };
-    let along = ring.iter().fold(middle, far) - middle;
-    let crossing = |(a, va): (DVec3, f64), (b, vb): (DVec3, f64)| a + (b - a) * share_before_crossing(va, vb);
-    [1.0, -1.0].map(|sign| {
-        let mut half = vec![];
-        clip_ring(ring, |p| sign * along.dot(p - middle), crossing, |p| half.push(p));
-        half
-    })
 }

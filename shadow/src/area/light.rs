@@ -26,7 +26,10 @@ const COINCIDENT: f64 = 1e-10;
 #[non_exhaustive]
 pub struct AreaOptions {
     /// A receiver is asked at one point if no outline of a shadow on the light moves by more than this share of the light's width over it;
-    /// otherwise it is halved. Default: 0.1.
+    /// otherwise it is halved. What is seen through something counts by what is seen of it: at a [`Tile::visibility`] of 0.1, outlines
+    /// may move ten times as far, with the same effect on the picture. Default: 0.1.
+    ///
+    /// [`Tile::visibility`]: pointillist_micropoint::Tile::visibility
     pub largest_shift: f64,
     /// How often a receiver is halved at most. Default: 5.
     pub most_halvings: u32,
@@ -162,8 +165,8 @@ impl<'a> AreaLight<'a> {
         seen
     }
 
-    /// Calls `visit` for every receiver with what its points see of the light: the receiver's position in the list, and the
-    /// share of its area that the point stands for. Receivers that see nothing of the light, or turn a dark side to it, are left out.
+    /// Calls `visit` for every receiver with what its points see of the light: the receiver's position in the list (that of its first piece,
+    /// [`Receivers::push_point`]), and the share of its area, or of its weight, that the point stands for. Receivers that see nothing of the light, or turn a dark side to it, are left out.
     ///
     /// What a receiver sees depends on the receiver, the viewer and the scene only, not on its companions. Their order in `visit` is
     /// not that of the list.

@@ -6,6 +6,8 @@
 //! 1. Casters that may stand between a batch of receivers and the light are gathered, with the edges that they share ([`sheets`]).
 //! 2. Receivers are divided into ever smaller groups, and casters outside the shaft between a group and the light are left out
 //!    ([`group`], [`shaft`]). A group without casters sees the whole light.
+//!    Pieces of one receiver are asked at one point if it is in one of them and stands for them as [`AreaOptions`] say ([`piece`]):
+//!    behind translucent surfaces, what is seen of a surface comes in many pieces.
 //! 3. From each point, a caster is seen from one side or the other; an edge between two casters seen from the same side is inside of the
 //!    shadow and drops out ([`outline`]). What is left of the edges is the shadow's outline, with winding numbers.
 //! 4. A sweep along the light's plane finds where the winding number is 0 ([`sweep`]): the visible parts, as trapezoids.
@@ -19,6 +21,7 @@ mod group;
 mod light;
 mod masks;
 mod outline;
+mod piece;
 mod shaft;
 mod sheets;
 mod sweep;

@@ -35,7 +35,7 @@ pub(crate) struct Outline {
     /// For each edge of the batch, its position in `edges`, or `NONE`.
     position: Vec<u32>,
     numbers: Vec<u32>,
-    /// Edges that may count.
+    /// Edges that may count. Those that cancel for all points of the group do not, nor do those that [`Shaft::is_right_or_beside`] finds.
     live: Vec<u32>,
     /// Sheets whose side depends on the point, or that reach above a point of the group.
     open: Vec<u32>,
@@ -54,12 +54,13 @@ impl Outline {
         self.coincident = coincident;
     }
 
-    /// Takes the sheets of a group of points within a box.
+    /// Takes the sheets of a group of points within a box; `shaft` is that box's.
     pub(crate) fn take(
         &mut self,
         sheets: &Sheets,
         group: impl Iterator<Item = u32>,
         (low, high): (DVec3, DVec3),
+        shaft: &Shaft,
     ) {
         for number in self.numbers.drain(..) {
             self.position[number as usize] = NONE;
@@ -81,7 +82,7 @@ impl Outline {
             }
         }
         self.live.clear();
-        let counts = |e: &OutlineEdge| e.open || e.sure != 0;
+        let counts = |e: &OutlineEdge| (e.open || e.sure != 0) && !shaft.is_right_or_beside(e.ends);
         self.live.extend((0..self.edges.len()).filter(|&i| counts(&self.edges[i])).map(|i| i as u32));
     }
 
@@ -113,7 +114,10 @@ impl Outline {
         sweep: &mut Sweep,
     ) -> f64 {
         let top = highest_caster(point.z);
-        self.edges.iter_mut().for_each(|e| e.now = e.sure);
+        for &i in &self.live {
+            let edge = &mut self.edges[i as usize];
+            edge.now = edge.sure;
+        }
         for i in 0..self.open.len() {
             let sheet = &sheets.list[self.open[i] as usize];
             let distance = sheet.normal.dot(point) - sheet.offset;
@@ -144,6 +148,31 @@ impl Outline {
             }
         }
         factor
+    }
+
+    /// Whether a sheet passes between these corners, which are within a box: there is a shadow's outline there, and no edge for it.
+    ///
+    /// Sheets that the box's own shaft misses do not count, margin or not: whether they are among the group's depends on the group.
+    pub(crate) fn passes_between(
+        &self,
+        sheets: &Sheets,
+        corners: impl Iterator<Item = DVec3> + Clone,
+        (low, high): (DVec3, DVec3),
+        shaft: &Shaft,
+    ) -> bool {
+        let shaft = shaft.without_margin();
+        self.open.iter().any(|&s| {
+            let sheet = &sheets.list[s as usize];
+            let beside = (0..3).any(|axis| {
+                let all = |beyond: &dyn Fn(f64) -> bool| sheets.corners(sheet).all(|c| beyond(c[axis]));
+                all(&|x| x < low[axis]) || all(&|x| x > high[axis])
+            });
+            let distance = |c: DVec3| sheet.normal.dot(c) - sheet.offset;
+            !beside
+                && !shaft.misses(sheets.corners(sheet))
+                && corners.clone().any(|c| distance(c) > self.coincident)
+                && corners.clone().any(|c| distance(c) < -self.coincident)
+        })
     }
 
     /// The edge along which a sheet is cut off at height `top`.

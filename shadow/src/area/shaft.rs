@@ -5,6 +5,11 @@ use glam::{DVec2, DVec3};
 /// Overlaps that are smaller than this, times the coordinates, are taken for possible: rounding must not decide.
 const MARGIN: f64 = 1e-9;
 
+/// Bits of [`Shaft::beyond`].
+const LEFT: u32 = 2;
+const ABOVE: u32 = 4;
+const BELOW: u32 = 5;
+
 /// What lies beyond one of its planes casts no shadow on the light as seen from any point of the box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shaft {
@@ -44,6 +49,11 @@ impl Shaft {
         Self { least, most, least_slope, most_slope, top: high.z, margin: MARGIN * size }
     }
 
+    /// The same shaft, exactly: what it does not miss, the shaft of no larger box misses.
+    pub(crate) fn without_margin(&self) -> Self {
+        Self { margin: 0.0, ..*self }
+    }
+
     /// Which of its planes a point lies beyond, as bits; and whether it lies above all receivers, or not in front of the light.
     #[inline]
     pub(crate) fn beyond(&self, p: DVec3) -> u8 {
@@ -52,16 +62,22 @@ impl Shaft {
         let margin = self.margin;
         u8::from(most.x > margin)
             | u8::from(most.y > margin) << 1
-            | u8::from(least.x < -margin) << 2
+            | u8::from(least.x < -margin) << LEFT
             | u8::from(least.y < -margin) << 3
-            | u8::from(p.z >= self.top) << 4
-            | u8::from(p.z <= 0.0) << 5
+            | u8::from(p.z >= self.top) << ABOVE
+            | u8::from(p.z <= 0.0) << BELOW
     }
 
     /// Whether convex things with these corners are beyond one plane.
     #[inline]
     pub(crate) fn misses(&self, corners: impl Iterator<Item = DVec3>) -> bool {
         corners.fold(!0, |all, p| all & self.beyond(p)) != 0
+    }
+
+    /// Whether every point of the box sees an edge to the right of the rectangle (greater x), or above or below it (y): there it does not
+    /// change winding numbers within the rectangle.
+    pub(crate) fn is_right_or_beside(&self, [a, b]: [DVec3; 2]) -> bool {
+        self.beyond(a) & self.beyond(b) & !(1 << LEFT | 1 << ABOVE | 1 << BELOW) != 0
     }
 
     /// The greatest height of the part of an edge that is within the planes; `None` if there is none. Without the margin: what is within a

@@ -1,7 +1,7 @@
 //! Facts about lights with an area.
 
 use super::check;
-use crate::{AreaLight, AreaOptions, AreaScratch, Receivers, Viewer};
+use crate::{AreaLight, AreaOptions, AreaScratch, Receivers, SeenLight, Viewer};
 use glam::DVec3;
 use pointillist_micropoint::invariants::{Soup, permutation};
 use pointillist_micropoint::{Geometry, MicropointOptions, PixelRect, PlainOpacity, Renderer, Tile, View};
@@ -41,9 +41,11 @@ fn picture_of(
     for rect in rects {
         renderer.render(rect, &mut tile);
         receivers.clear();
-        receivers.push_tile(&tile);
-        let fragments = |p| tile.fragments(p).iter().map(move |_| p);
-        let owners: Vec<_> = tile.points().iter().flat_map(fragments).collect();
+        let mut owners = vec![];
+        for point in tile.points() {
+            receivers.push_point(&tile, point);
+            owners.resize(receivers.len(), point);
+        }
         let mut seen = vec![vec![]; owners.len()];
         let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
         light.visit(viewer, &receivers, &mut scratch, |receiver, weight, part| {
@@ -149,6 +151,48 @@ pub fn triangle_order_does_not_matter(
     let (Some(expected), Some(mut got)) = (expected, got) else { return Ok(()) };
     got.iter_mut().flatten().for_each(|p| p.triangle = order[p.triangle as usize]);
     are_identical(&expected, &got)
+}
+
+/// What the fragments of a micropoint receive of a light together is what they receive each by itself, to within `tolerance` of what the light
+/// would give to the picture in front of everything, over the micropoint's visibility.
+///
+/// # Errors
+/// The first micropoint for which it is not.
+pub fn pieces_may_be_asked_together(
+    soup: &Soup,
+    view: View,
+    outline: &[DVec3],
+    tolerance: f64,
+) -> Result<(), String> {
+    let result = with_light(soup, view, (outline, AreaOptions::DEFAULT), |renderer, _, light| {
+        let (mut tile, mut together, mut apart) =
+            (Tile::default(), Receivers::default(), Receivers::default());
+        renderer.render(renderer.picture(), &mut tile);
+        apart.push_tile(&tile);
+        tile.points().iter().for_each(|point| together.push_point(&tile, point));
+        let areas = |receivers: &Receivers| {
+            let mut areas = vec![0.0; receivers.len()];
+            let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
+            let add = |receiver: usize, share: f64, part: &SeenLight| {
+                areas[receiver] += share * part.area() / light.area();
+            };
+            light.visit(viewer, receivers, &mut AreaScratch::default(), add);
+            areas
+        };
+        let (together, apart) = (areas(&together), areas(&apart));
+        let mut first = 0;
+        for point in tile.points() {
+            let fragments = tile.fragments(point);
+            let weighted = fragments.iter().zip(&apart[first..]).map(|(f, area)| f.weight * area);
+            let expected = weighted.sum::<f64>() / fragments.iter().map(|f| f.weight).sum::<f64>();
+            let got = together[first];
+            let close = (expected - got).abs() * tile.visibility(point) <= tolerance;
+            check(close, || format!("{point:?}: {got}, {expected} each by itself"))?;
+            first += fragments.len();
+        }
+        Ok(())
+    });
+    result.unwrap_or(Ok(()))
 }
 
 /// What is seen of a parallelogram agrees with rays to `n`² points of it, each in the middle of its cell, to within `tolerance` of its area.
