@@ -24,10 +24,12 @@ pub(crate) struct Arrival {
 pub(crate) struct DirectScratch {
     pub(crate) shadow: ShadowScratch,
     pub(crate) area: AreaScratch,
-    /// For each micropoint, at its first receiver: what it sends to the eye because of a whole light, and the lit area of the light.
+    /// For each micropoint: what it sends to the eye because of a whole light, and the lit area of the light.
     pub(crate) seen: Vec<(Vec3, f64)>,
-    /// The micropoint of each receiver.
-    pub(crate) owners: Vec<u32>,
+    /// The micropoints that are asked about, those of one receiver side by side.
+    pub(crate) asked: Vec<u32>,
+    /// For each piece of a receiver, the receiver's range in `asked`.
+    pub(crate) owners: Vec<Range<u32>>,
     pub(crate) receivers: Receivers,
     pub(crate) lit: Vec<f64>,
     pub(crate) arrivals: Vec<Arrival>,

@@ -10,6 +10,7 @@ use glam::Vec3;
 use pointillist_micropoint::{Face, Tile};
 use pointillist_shade::{Falloff, Interpolation, Lobe, Model, integrate_polygon, interpolate_color, turn_to};
 use pointillist_shadow::{SeenLight, Viewer};
+use std::ops::Range;
 
 /// Lobe of measured BRDFs, in radians: the width of a highlight that most of them have.
 const MEASURED_LOBE: f32 = 0.1;
@@ -25,35 +26,55 @@ impl Shader<'_> {
         mut lit_layer: Option<&mut Vec<f64>>,
         monitor: &dyn Monitor,
     ) {
-        let DirectScratch { area, seen, owners, receivers, .. } = direct;
-        receivers.clear();
-        owners.clear();
-        for (i, p) in points.iter().enumerate() {
-            let m = &tile.points()[i];
-            if lit_layer.is_some() || !self.is_black(p, tile.faces()[m.face as usize].id) {
-                receivers.push_point(tile, m);
-                owners.resize(receivers.len(), i as u32);
-            }
-        }
-        // Summed up by receiver first: they come in an order that depends on the tile.
+        self.ask_for_whole(tile, points, lit_layer.is_some(), direct);
+        let DirectScratch { area, seen, asked, owners, receivers, .. } = direct;
+        // Summed up by micropoint first: receivers come in an order that depends on the tile.
         seen.clear();
-        seen.resize(owners.len(), (Vec3::ZERO, 0.0));
+        seen.resize(points.len(), (Vec3::ZERO, 0.0));
         let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
         light.side.visit(viewer, receivers, area, |receiver, share, part| {
-            let owner = owners[receiver] as usize;
-            let face = &tile.faces()[tile.points()[owner].face as usize];
-            let sum = &mut seen[receiver];
-            sum.0 += self.reflect_whole(light, &points[owner], face, part) * share as f32;
-            sum.1 += share * part.area();
+            let Range { start, end } = owners[receiver].clone();
+            for &owner in &asked[start as usize..end as usize] {
+                let face = &tile.faces()[tile.points()[owner as usize].face as usize];
+                let sum = &mut seen[owner as usize];
+                sum.0 += self.reflect_whole(light, &points[owner as usize], face, part) * share as f32;
+                sum.1 += share * part.area();
+            }
         });
-        // All of a micropoint is at its first piece.
-        for (&owner, (radiance, lit)) in owners.iter().zip(&*seen) {
-            points[owner as usize].direct += *radiance;
+        for &owner in &*asked {
+            let (radiance, lit) = seen[owner as usize];
+            points[owner as usize].direct += radiance;
             if let Some(layer) = lit_layer.as_deref_mut() {
                 layer[owner as usize] += lit / light.side.area() * share(light.channels);
             }
         }
         monitor.lap("shadow");
+    }
+
+    /// Collects the receivers of whole lights. What a pixel sees of a masked face is one: its mask divides it into squares, and
+    /// light of this kind does not vary from one to the next.
+    fn ask_for_whole(&self, tile: &Tile, points: &[Point], with_black: bool, direct: &mut DirectScratch) {
+        let DirectScratch { asked, owners, receivers, .. } = direct;
+        receivers.clear();
+        owners.clear();
+        asked.clear();
+        let face_of = |i: u32| tile.faces()[tile.points()[i as usize].face as usize].id;
+        let wanted = |&i: &u32| with_black || !self.is_black(&points[i as usize], face_of(i));
+        asked.extend((0..points.len() as u32).filter(wanted));
+        let masked_face = |i: u32| {
+            self.surfaces.is_masked(face_of(i)).then(|| {
+                let m = &tile.points()[i as usize];
+                (m.y, m.x, m.face)
+            })
+        };
+        asked.sort_unstable_by_key(|&i| (masked_face(i), i));
+        let mut start = 0;
+        for same in asked.chunk_by(|&a, &b| masked_face(a).is_some() && masked_face(a) == masked_face(b)) {
+            receivers.push_points(tile, same.iter().map(|&i| &tile.points()[i as usize]));
+            let end = start + same.len() as u32;
+            owners.resize(receivers.len(), start..end);
+            start = end;
+        }
     }
 
     /// Radiance that a point sends to the eye because of what it sees of a light.

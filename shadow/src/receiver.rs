@@ -84,8 +84,14 @@ impl Receivers {
     /// [`AreaLight::visit`](crate::AreaLight::visit) takes them as one receiver, with the first one's position in the list. For other lights
     /// each is a receiver of its own. The less is seen of it, the coarser it is asked: see [`AreaOptions`](crate::AreaOptions).
     pub fn push_point(&mut self, tile: &Tile, point: &Micropoint) {
-        let visibility = tile.visibility(point);
-        for (i, fragment) in tile.fragments(point).iter().enumerate() {
+        self.push_points(tile, std::iter::once(point));
+    }
+
+    /// As [`Receivers::push_point`] for micropoints of one face: all their fragments are one receiver.
+    pub fn push_points<'t>(&mut self, tile: &'t Tile, points: impl Iterator<Item = &'t Micropoint> + Clone) {
+        let visibility = points.clone().map(|point| tile.visibility(point)).fold(0.0, f64::max);
+        let fragments = points.flat_map(|point| tile.fragments(point).iter().map(move |f| (point, f)));
+        for (i, (point, fragment)) in fragments.enumerate() {
             self.push_fragment(tile, point, fragment);
             if let Some(piece) = self.list.last_mut() {
                 (piece.weight, piece.joins, piece.visibility) = (fragment.weight, i > 0, visibility);
