@@ -500,11 +500,14 @@ fn check_opacities(surfaces: &[SurfaceOpacity]) -> Result<(), MicropointError> {
 /// triangle.
 const LAST_CELL: u32 = 1023;
 
-/// Triangle numbers along a Morton curve of their centres.
+/// Triangle numbers along a Morton curve of their centres. Those that name a vertex twice are left out: they are never seen, and must not
+/// decide which others share a cluster.
 fn morton_order(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<u32> {
     let mut bounds = Bounds::EMPTY;
     let centre = |t: &[u32; 3]| t.iter().map(|&v| positions[v as usize] / 3.0).sum::<DVec3>();
-    for t in triangles {
+    let has_corners = |&(_, &[a, b, c]): &(usize, &[u32; 3])| a != b && b != c && c != a;
+    let shown = || triangles.iter().enumerate().filter(has_corners);
+    for (_, t) in shown() {
         bounds.include(centre(t));
     }
     // One scale for all axes keeps clusters compact in flat scenes.
@@ -515,7 +518,7 @@ fn morton_order(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<u32> {
         let cell = q.to_array().map(|c| (c as u32).min(LAST_CELL));
         morton_code(cell) << 32 | i as u64
     };
-    let mut keys: Vec<u64> = triangles.iter().enumerate().map(key).collect();
+    let mut keys: Vec<u64> = shown().map(key).collect();
     keys.sort_unstable();
     keys.into_iter().map(|k| k as u32).collect()
 }
