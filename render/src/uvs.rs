@@ -86,8 +86,9 @@ impl Corners {
     }
 }
 
-fn weighted(corners: &[DVec2; 3], b: DVec3) -> DVec2 {
-    corners[0] * b.x + corners[1] * b.y + corners[2] * b.z
+/// By differences: where all corners have the same coordinate, which may be that of a border between texels, it comes out exactly.
+fn weighted([a, b, c]: &[DVec2; 3], share: DVec3) -> DVec2 {
+    *a + (*b - *a) * share.y + (*c - *a) * share.z
 }
 
 pub(crate) fn texel_wrap(wrap: Wrap) -> TexelWrap {
@@ -95,5 +96,29 @@ pub(crate) fn texel_wrap(wrap: Wrap) -> TexelWrap {
         Wrap::Clamp => TexelWrap::Clamp,
         Wrap::Mirror => TexelWrap::Mirror,
         Wrap::Repeat => TexelWrap::Repeat,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec2;
+    use pointillist_micropoint::MicropointError;
+
+    #[test]
+    fn what_runs_along_the_top_of_a_texture_sees_its_top_row() -> Result<(), MicropointError> {
+        let rows = TexelSums::<1>::new(4, 3, TexelWrap::Repeat, |_, y| [y as f32])?;
+        let uvs = Uvs(vec![[dvec2(0.1, 1.0), dvec2(0.7, 1.0), dvec2(0.3, 1.0)]]);
+        for k in 1..100 {
+            let (y, z) = (f64::from(k) / 301.0, f64::from(k) / 207.0);
+            let place = |y: f64, z: f64| SurfacePoint {
+                grid: dvec2(y, z),
+                nearness: 1.0,
+                rational: 1.0,
+                barycentric: DVec3::new(1.0 - y - z, y, z),
+            };
+            assert_eq!(uvs.mean(0, &[place(y, z), place(0.9 * y, z), place(y, 0.9 * z)], &rows), [0.0]);
+        }
+        Ok(())
     }
 }

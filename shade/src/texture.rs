@@ -34,8 +34,8 @@ impl Wrap {
 
 /// The texel at `uv` of a row-major image whose row 0 is the top, that is v = 1.
 ///
-/// A texel is the half-open square [i, i+1) / size; at v on a border between rows, the upper row. Coordinates that
-/// are not finite count as 0.
+/// A texel is half open: a place on a border belongs to the texel on the right (growing u) and below (falling v), as where v grows
+/// downward. So v = 1 is the top row. NaN is in the first column or row.
 ///
 /// # Errors
 ///
@@ -52,8 +52,7 @@ pub fn nearest<T: Copy>(
         return Err(size_error);
     }
     let x = wrap.texel(number(uv.x, width), width);
-    let row_from_bottom = wrap.texel(number(uv.y, height), height);
-    let y = height - 1 - row_from_bottom;
+    let y = wrap.texel(number(1.0 - uv.y, height), height);
     Ok(texels[y as usize * width as usize + x as usize])
 }
 

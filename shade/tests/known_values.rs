@@ -247,10 +247,11 @@ fn v_runs_upward_and_row_zero_is_the_top() {
     let at = |u: f64, v: f64| nearest(&texels, 2, 2, Wrap::Repeat, dvec2(u, v)).unwrap();
     assert_eq!(at(0.25, 0.75), "top left");
     assert_eq!(at(0.75, 0.25), "bottom right");
-    // On the borders: the right and upper texel; 1 is 0 again.
-    assert_eq!(at(0.5, 0.5), "top right");
-    assert_eq!(at(1.0, 1.0), "bottom left");
-    assert_eq!(at(f64::NAN, f64::NAN), "bottom left");
+    // On the borders: the right and lower texel; u = 1 is u = 0 again, and so is v = 0 as v = 1.
+    assert_eq!(at(0.5, 0.5), "bottom right");
+    assert_eq!(at(1.0, 1.0), "top left");
+    assert_eq!(at(0.0, 0.0), "top left");
+    assert_eq!(at(f64::NAN, f64::NAN), "top left");
 }
 
 #[test]

@@ -29,12 +29,6 @@ pub struct TexelCorner {
 /// to make progress.
 const LARGEST: f64 = 1e12;
 
-/// Column and row of the texel at a place: a texel is half open in u and in v, so that on a border between columns it is the right one, and
-/// between rows the upper one.
-pub(super) fn cell(texel: DVec2) -> DVec2 {
-    DVec2::new(texel.x.floor(), texel.y.ceil() - 1.0)
-}
-
 pub(super) fn is_usable(texel: DVec2) -> bool {
     texel.is_finite() && texel.abs().max_element() < LARGEST
 }

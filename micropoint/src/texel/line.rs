@@ -1,6 +1,6 @@
 //! Means over polygons that a texture sees as a line: of a surface that it runs along, or one that it sees edge-on.
 
-use super::corner::{TexelCorner, cell};
+use super::corner::TexelCorner;
 use super::perspective::divide;
 use glam::DVec2;
 use pointillist_dice::convex;
@@ -59,11 +59,11 @@ pub(super) fn mean_along_line<const N: usize>(
         } else {
             end - begin
         };
-        let texel = texel_at(cell(start + along * (0.5 * (begin + end))));
+        let texel = texel_at((start + along * (0.5 * (begin + end))).floor());
         total += weight;
         sum.iter_mut().zip(texel).for_each(|(s, t)| *s += weight * t);
     });
-    if total > 0.0 { sum.map(|s| s / total) } else { texel_at(cell(start + 0.5 * along)) }
+    if total > 0.0 { sum.map(|s| s / total) } else { texel_at((start + 0.5 * along).floor()) }
 }
 
 /// The parts of a line from texel border to texel border, from 0 to 1.

@@ -32,7 +32,7 @@ pub use corner::{TexelCorner, TexelWrap};
 pub use mask::MaskSums;
 
 use crate::error::MicropointError;
-use corner::{cell, is_usable};
+use corner::is_usable;
 use glam::DVec2;
 use plane::Plane;
 use pointillist_dice::convex;
@@ -238,7 +238,7 @@ impl<const N: usize> TexelSums<N> {
     /// 0.001 in the root mean square: many texels on the outline are taken together, and a polygon of different depths is
     /// cut into strips of nearly equal depth. A polygon that is a line in the texture sees each texel by the area that sees it or,
     /// without area in the grid, by the length of the line in it. A texel is half open: a place on a border belongs to the
-    /// texel on the right (growing u) and above (growing v). Never beyond the smallest and largest texel of a channel. Corners that are
+    /// texel on the right (growing u) and below (falling v), so that v = 1 is the top row. Never beyond the smallest and largest texel of a channel. Corners that are
     /// not finite give the texel at the origin.
     #[must_use]
     pub fn mean(&self, corners: &[TexelCorner]) -> [f64; N] {
@@ -259,7 +259,7 @@ impl<const N: usize> TexelSums<N> {
         if corners.is_empty() || !corners.iter().all(|c| is_usable(c.texel)) {
             return self.texel(0.0, 0.0);
         }
-        let first = DVec2::new(low.x.floor(), if low.y < high.y { low.y.floor() } else { cell(low).y });
+        let first = low.floor();
         if high.x <= first.x + 1.0 && high.y <= first.y + 1.0 {
             return self.texel(first.x, first.y);
         }

@@ -126,12 +126,12 @@ fn a_line_in_perspective_is_cut_where_texels_meet() {
 }
 
 #[test]
-fn a_place_on_a_border_belongs_to_the_texel_on_its_right_and_above() {
+fn a_place_on_a_border_belongs_to_the_texel_on_its_right_and_below() {
     let sums = checker(6, 5, TexelWrap::Repeat);
     let at = |x: f64, y: f64| sums.mean(&corners(&[dvec2(x, y); 3]))[0];
-    assert_eq!(at(2.0, 3.0), sums.texel(2.0, 2.0)[0]);
-    assert_eq!(at(2.5, 0.0), sums.texel(2.0, 4.0)[0]);
-    assert_eq!(at(6.0, 5.0), sums.texel(0.0, 4.0)[0]);
+    assert_eq!(at(2.0, 3.0), sums.texel(2.0, 3.0)[0]);
+    assert_eq!(at(2.5, 0.0), sums.texel(2.0, 0.0)[0]);
+    assert_eq!(at(6.0, 5.0), sums.texel(0.0, 0.0)[0]);
 }
 
 /// A square cell of the grid that sees a plane: `extent` in texels across, `squeeze` times less along, depths in this ratio.

@@ -142,8 +142,8 @@ impl Texture {
     #[must_use]
     pub fn lookup(&self, wrap: Wrap, uv: DVec2) -> Vec4 {
         let column = wrap.texel((uv.x * f64::from(self.width)).floor() as i64, self.width);
-        let row_from_bottom = wrap.texel((uv.y * f64::from(self.height)).floor() as i64, self.height);
-        self.texel(column, self.height - 1 - row_from_bottom)
+        let row = wrap.texel(((1.0 - uv.y) * f64::from(self.height)).floor() as i64, self.height);
+        self.texel(column, row)
     }
 
     /// Whether all texels are equal, so that there is nothing to dice.

@@ -168,6 +168,9 @@ impl<'a> AreaLight<'a> {
     /// Calls `visit` for every receiver with what its points see of the light: the receiver's position in the list (that of its first piece,
     /// [`Receivers::push_point`]), and the share of its area, or of its weight, that the point stands for. Receivers that see nothing of the light, or turn a dark side to it, are left out.
     ///
+    /// Casters that are nearer to a point than a millionth of its distance from the light's plane, measured along the light's normal, do
+    /// not count.
+    ///
     /// What a receiver sees depends on the receiver, the viewer and the scene only, not on its companions. Their order in `visit` is
     /// not that of the list.
     pub fn visit(

@@ -195,7 +195,11 @@ pub fn pieces_may_be_asked_together(
     result.unwrap_or(Ok(()))
 }
 
+/// Points that stand for less of their receiver lie within rounding of an edge, where rays may start on either side of what ends there.
+const SLIVER: f64 = 1e-7;
+
 /// What is seen of a parallelogram agrees with rays to `n`² points of it, each in the middle of its cell, to within `tolerance` of its area.
+/// Points that stand for less than 1e-7 of their receiver are left out.
 ///
 /// # Errors
 /// The first point at which it does not.
@@ -209,7 +213,7 @@ pub fn agrees_with_rays(
     let outline = [corner, corner + u, corner + u + v, corner + v];
     let Some(picture) = seen_picture(soup, view, &outline) else { return Ok(()) };
     let place = |k: u32| (f64::from(k) + 0.5) / f64::from(n);
-    for p in picture.iter().flatten() {
+    for p in picture.iter().flatten().filter(|p| p.weight >= SLIVER) {
         let targets = (0..n * n).map(|k| corner + u * place(k % n) + v * place(k / n));
         let above = targets.filter(|t| p.normal.dot(*t - p.position) > 0.0);
         let area = above.map(|t| transmittance(soup, p.position, t)).sum::<f64>() / f64::from(n * n);
@@ -218,7 +222,10 @@ pub fn agrees_with_rays(
     Ok(())
 }
 
-/// What passes through all triangles between two points; those that the first lies on do not count.
+/// Shares of the way to a light below which casters may count or not ([`AreaLight::visit`]).
+const NEAREST: f64 = 1.1e-6;
+
+/// What passes through all triangles between two points; those that the first lies on, or almost, do not count.
 fn transmittance(soup: &Soup, from: DVec3, to: DVec3) -> f64 {
     let mut passed = 1.0;
     for (triangle, &surface) in soup.triangles.iter().zip(&soup.surface_of) {
@@ -226,7 +233,10 @@ fn transmittance(soup: &Soup, from: DVec3, to: DVec3) -> f64 {
         let normal = (b - a).cross(c - a);
         let towards = to - from;
         let (height, slope) = (normal.dot(a), normal.dot(towards));
-        if height.abs() <= 1e-9 * normal.length() || slope == 0.0 || !(0.0..1.0).contains(&(height / slope)) {
+        if height.abs() <= 1e-9 * normal.length()
+            || slope == 0.0
+            || !(NEAREST..1.0).contains(&(height / slope))
+        {
             continue;
         }
         let sides = [b.cross(c), c.cross(a), a.cross(b)].map(|s| s.dot(towards) * slope.signum());
