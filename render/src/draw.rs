@@ -10,7 +10,7 @@ use crate::frame::{Frame, LayerKind};
 use crate::lights::{SceneLights, scene_lights};
 use crate::monitor::{Monitor, go_on};
 use crate::prepared::Prepared;
-use crate::shader::{Shader, Style};
+use crate::shader::{Glow, Shader, Style};
 use crate::shading::ShaderScratch;
 use pointillist_micropoint::{Renderer, TileCounts};
 use pointillist_shadow::ShadowCounts;
@@ -71,7 +71,7 @@ impl Prepared<'_> {
         options: &DrawOptions,
         monitor: &dyn Monitor,
     ) -> Result<Frame, RenderError> {
-        let style = Style { ambient: self.ambient(), emission: true, lights: true, economy: None };
+        let style = Style { ambient: self.ambient(), glow: Glow::Everything, lights: true, economy: None };
         self.draw_styled(view, &style, options, monitor)
     }
 

@@ -69,12 +69,14 @@ mod detail;
 mod detail_maps;
 mod direct;
 mod draw;
+mod emitters;
 mod error;
 pub mod fingerprint;
 mod frame;
 mod gather;
 #[cfg(feature = "invariants")]
 pub mod invariants;
+mod joined;
 mod lamps;
 mod lightmap;
 mod lights;

@@ -1,12 +1,13 @@
 //! The scene's lights as the points and directions that shadows are cast from.
 
+use crate::emitters::{EmittingPolygon, Side};
 use crate::error::RenderError;
 use crate::prepared::Prepared;
 use crate::scene::LightSource;
 use crate::surfaces::Surfaces;
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Geometry, Lens};
-use pointillist_shade::{Emission, Light, LightOutline, Source};
+use pointillist_shade::{Emission, Falloff, Light, LightOutline, Source};
 use pointillist_shadow::{AreaLight, AreaOptions, Emitter, ShadowError, ShadowLight, ShadowOptions};
 
 /// One point or direction from which light comes: a light, or a sample of an area light.
@@ -20,10 +21,12 @@ pub(crate) struct LightSample<'a> {
     pub(crate) shadow: Option<ShadowLight<'a>>,
 }
 
-/// One side of a light with an area, taken as a whole.
+/// One side of a light with an area, or of an emitting polygon, taken as a whole.
 pub(crate) struct WholeLight<'a> {
-    /// Index into [`Scene::lights`].
-    pub(crate) light: usize,
+    /// Index into [`Scene::lights`]; `None` for an emitting polygon.
+    pub(crate) light: Option<usize>,
+    /// What it lights, if not everything.
+    pub(crate) within: Option<(DVec3, DVec3)>,
     /// 1 for the channels of the light that it brings, 0 for the others.
     pub(crate) channels: Vec3,
     pub(crate) side: AreaLight<'a>,
@@ -71,6 +74,14 @@ pub(crate) fn scene_lights<'a>(
             }
         }
     }
+    // Their points would be too many: they are taken as a whole, if need be coarsely.
+    let options = AreaOptions::default();
+    let options = if sampled { options.with_most_halvings(0) } else { options };
+    for emitter in prepared.emitters.iter() {
+        for casters in prepared.casters() {
+            lights.whole.extend(emitting_sides(prepared, emitter, casters, options)?);
+        }
+    }
     Ok(lights)
 }
 
@@ -98,7 +109,40 @@ fn whole_light<'a>(
         let side = if source.shadow { side } else { side.without_shadows() };
         let radiance = source.light.color() * channels;
         let emission = Emission { front: side.front(), radiance, falloff: source.light.falloff() };
-        found.push(WholeLight { light, channels, side, emission });
+        found.push(WholeLight { light: Some(light), within: None, channels, side, emission });
+    }
+    Ok(found)
+}
+
+/// The sides of an emitting polygon that shine.
+fn emitting_sides<'a>(
+    prepared: &'a Prepared<'_>,
+    emitter: &EmittingPolygon,
+    (channels, geometry): (Vec3, &'a Geometry),
+    options: AreaOptions,
+) -> Result<Vec<WholeLight<'a>>, RenderError> {
+    let mut found = vec![];
+    let back: Vec<DVec3> = emitter.vertices.iter().rev().copied().collect();
+    for (side, vertices) in [(emitter.front, &emitter.vertices), (emitter.back, &back)] {
+        let within = match side {
+            Side::Dark => continue,
+            Side::Lights => None,
+            Side::LightsWithin(low, high) => Some((low, high)),
+        };
+        let name = || {
+            let mesh = &prepared.scene.mesh;
+            let material = mesh.material_of[emitter.triangles[0] as usize] as usize;
+            prepared.scene.materials[material].name.clone()
+        };
+        let side = AreaLight::new(geometry, &*prepared.surfaces, vertices, options)
+            .map_err(|source| RenderError::Shadow { name: name(), source })?
+            .of_triangles(&emitter.triangles);
+        // Together, the polygons of a lamp are asked as finely as one light of its width.
+        let shift = options.largest_shift * (emitter.lamp_width / side.area().sqrt()).max(1.0);
+        let side = side.with_options(options.with_largest_shift(shift));
+        let radiance = emitter.radiance * channels;
+        let emission = Emission { front: side.front(), radiance, falloff: Falloff::InverseSquare };
+        found.push(WholeLight { light: None, within, channels, side, emission });
     }
     Ok(found)
 }

@@ -49,8 +49,14 @@ impl Shader<'_> {
         for light in &self.lights.samples {
             self.add_light(tile, light, points, direct, lit.get_mut(&light.light), monitor);
         }
+        let mut asked = None;
         for light in &self.lights.whole {
-            self.add_whole_light(tile, light, points, direct, lit.get_mut(&light.light), monitor);
+            let layer = light.light.and_then(|number| lit.get_mut(&number));
+            if asked != Some(layer.is_some()) {
+                self.ask_for_whole(tile, points, layer.is_some(), direct);
+                asked = Some(layer.is_some());
+            }
+            self.add_whole_light(tile, light, points, direct, layer, monitor);
         }
         self.gather(tile, background, points, pixels);
         self.gather_layers(tile, layers, &lit, points, pixels);

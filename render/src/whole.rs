@@ -6,17 +6,27 @@ use crate::direct::DirectScratch;
 use crate::lights::{WholeLight, share};
 use crate::monitor::Monitor;
 use crate::shader::{Point, Shader};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Face, Tile};
 use pointillist_shade::{Falloff, Interpolation, Lobe, Model, integrate_polygon, interpolate_color, turn_to};
-use pointillist_shadow::{SeenLight, Viewer};
+use pointillist_shadow::{Receivers, SeenLight, Viewer};
 use std::ops::Range;
 
 /// Lobe of measured BRDFs, in radians: the width of a highlight that most of them have.
 const MEASURED_LOBE: f32 = 0.1;
 
+impl WholeLight<'_> {
+    /// Whether any receiver is where it may shine; receivers are relative to `origin`.
+    fn may_reach(&self, receivers: &Receivers, origin: DVec3) -> bool {
+        let Some((low, high)) = receivers.bounds() else { return false };
+        self.within.is_none_or(|(least, most)| {
+            (low + origin).cmple(most).all() && (high + origin).cmpge(least).all()
+        })
+    }
+}
+
 impl Shader<'_> {
-    /// Adds one side of a light as a whole.
+    /// Adds one side of a light as a whole, to the receivers of [`Shader::ask_for_whole`].
     pub(crate) fn add_whole_light(
         &self,
         tile: &Tile,
@@ -26,8 +36,10 @@ impl Shader<'_> {
         mut lit_layer: Option<&mut Vec<f64>>,
         monitor: &dyn Monitor,
     ) {
-        self.ask_for_whole(tile, points, lit_layer.is_some(), direct);
         let DirectScratch { area, seen, asked, owners, receivers, .. } = direct;
+        if !light.may_reach(receivers, tile.lens().origin) {
+            return;
+        }
         // Summed up by micropoint first: receivers come in an order that depends on the tile.
         seen.clear();
         seen.resize(points.len(), (Vec3::ZERO, 0.0));
@@ -53,7 +65,13 @@ impl Shader<'_> {
 
     /// Collects the receivers of whole lights. What a pixel sees of a masked face is one: its mask divides it into squares, and
     /// light of this kind does not vary from one to the next.
-    fn ask_for_whole(&self, tile: &Tile, points: &[Point], with_black: bool, direct: &mut DirectScratch) {
+    pub(crate) fn ask_for_whole(
+        &self,
+        tile: &Tile,
+        points: &[Point],
+        with_black: bool,
+        direct: &mut DirectScratch,
+    ) {
         let DirectScratch { asked, owners, receivers, .. } = direct;
         receivers.clear();
         owners.clear();

@@ -8,6 +8,8 @@ use pointillist_micropoint::{Face, Fragment, Lens, Micropoint, Tile};
 pub struct Receivers {
     pub(crate) list: Vec<Receiver>,
     pub(crate) vertices: Vec<DVec3>,
+    /// Around all vertices; without vertices, nothing is around them.
+    around: Option<(DVec3, DVec3)>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +32,13 @@ impl Receivers {
     pub fn clear(&mut self) {
         self.list.clear();
         self.vertices.clear();
+        self.around = None;
+    }
+
+    /// A box around all corners: its lowest and its highest corner, relative to the viewer's lens. `None` if there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        self.around
     }
 
     /// Number of pieces.
@@ -59,6 +68,9 @@ impl Receivers {
         let first_vertex = self.vertices.len() as u32;
         self.vertices.extend(corners);
         let vertex_count = self.vertices.len() as u32 - first_vertex;
+        for &v in &self.vertices[first_vertex as usize..] {
+            self.around = Some(self.around.map_or((v, v), |(low, high)| (low.min(v), high.max(v))));
+        }
         self.list.push(Receiver {
             face,
             first_vertex,

@@ -87,6 +87,12 @@ impl Material {
         self.details
             .numbers()
             .try_for_each(|(name, value)| finite(value.is_finite(), || format!("{user}: {name}")))?;
+        if self.details.emits && s.emission == Vec3::ZERO {
+            return Err(SceneError::NoEmission { material: self.name.clone() });
+        }
+        if self.details.emits && s.emission.min_element() < 0.0 {
+            return Err(SceneError::NegativeEmission { material: self.name.clone() });
+        }
         match self.details.transmission {
             Some(Transmission { index, .. }) if index <= 0.0 => {
                 Err(SceneError::RefractionIndex { material: self.name.clone(), value: index })

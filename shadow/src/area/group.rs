@@ -72,7 +72,7 @@ pub(crate) fn visit(
     let shaft = Shaft::new(bounds(targets), convex::bounds(&light.outline));
     sheets.clear();
     if light.casts {
-        sheets.gather(light.geometry, &light.frame, &shaft, light.coincident);
+        sheets.gather(light, &shaft);
     }
     stack.clear();
     stack.extend(0..sheets.list.len() as u32);
@@ -111,11 +111,12 @@ fn collect(
         }
         let own = &corners[first_corner..];
         let (low, high) = around(own.iter());
-        let normal = seen_normal(light, &viewer.faces[receiver.face as usize]);
+        let face = &viewer.faces[receiver.face as usize];
+        let normal = seen_normal(light, face);
         // Behind the light, edge-on, or the light below the horizon of all of it.
         let towards = light.outline.iter().map(|v| v.extend(0.0));
         let faces = |v: DVec3| own.iter().any(|&c| normal.dot(v - c) > 0.0);
-        let lit = high.z > light.coincident && towards.into_iter().any(faces);
+        let lit = high.z > light.coincident && towards.into_iter().any(faces) && !light.is_own(face.id);
         if !(lit && low.is_finite() && high.is_finite()) {
             pieces.truncate(first_piece);
             corners.truncate(first_corner);

@@ -97,6 +97,8 @@ pub struct AreaLight<'a> {
     pub(crate) width: f64,
     /// Distances up to this are 0.
     pub(crate) coincident: f64,
+    /// The triangles that shine, rising.
+    pub(crate) own: Vec<u32>,
 }
 
 impl<'a> AreaLight<'a> {
@@ -128,7 +130,24 @@ impl<'a> AreaLight<'a> {
             casts: true,
             width,
             coincident: COINCIDENT * size,
+            own: vec![],
         })
+    }
+
+    /// The same light as the shine of these triangles, by their positions in the caller's array: they cast no shadow on it, and it does not
+    /// light them. Their plane is the light's up to rounding, which decides about neither.
+    #[must_use]
+    pub fn of_triangles(mut self, triangles: &[u32]) -> Self {
+        self.own = triangles.to_vec();
+        self.own.sort_unstable();
+        self
+    }
+
+    /// The same light, asked as finely as these options say.
+    #[must_use]
+    pub fn with_options(mut self, options: AreaOptions) -> Self {
+        self.options = options;
+        self
     }
 
     /// The same light without shadows.
@@ -177,7 +196,24 @@ impl<'a> AreaLight<'a> {
         scratch: &mut AreaScratch,
         mut visit: impl FnMut(usize, f64, &SeenLight),
     ) {
-        super::group::visit(self, viewer, receivers, scratch, &mut visit);
+        let behind = |bounds| self.is_behind(bounds, viewer.lens.origin);
+        if !receivers.bounds().is_none_or(behind) {
+            super::group::visit(self, viewer, receivers, scratch, &mut visit);
+        }
+    }
+}
+
+impl AreaLight<'_> {
+    /// Whether a triangle is part of the light.
+    pub(crate) fn is_own(&self, triangle: u32) -> bool {
+        !self.own.is_empty() && self.own.binary_search(&triangle).is_ok()
+    }
+
+    /// Whether everything in a box, relative to a point, is behind the light.
+    fn is_behind(&self, (low, high): (DVec3, DVec3), origin: DVec3) -> bool {
+        let front = self.front();
+        let farthest = DVec3::select(front.cmpgt(DVec3::ZERO), high, low);
+        front.dot(farthest + (origin - self.frame.origin)) <= 0.0
     }
 }
 
