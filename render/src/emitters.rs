@@ -39,8 +39,10 @@ pub(crate) enum Side {
 pub(crate) fn emitting_polygons(scene: &Scene, radiance_of: impl Fn(u32) -> Vec3) -> Vec<EmittingPolygon> {
     let mesh = &scene.mesh;
     let material = |t: u32| &scene.materials[mesh.material_of[t as usize] as usize];
-    let emitting: Vec<u32> =
+    let mut emitting: Vec<u32> =
         (0..mesh.triangles.len() as u32).filter(|&t| material(t).details.emits).collect();
+    // By place: how triangles are joined does not depend on their order.
+    emitting.sort_by_cached_key(|&t| scene.corners(t).map(place));
     if emitting.is_empty() {
         return vec![];
     }

