@@ -8,7 +8,9 @@ use crate::surfaces::Surfaces;
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Geometry, Lens};
 use pointillist_shade::{Emission, Falloff, Light, LightOutline, Source};
-use pointillist_shadow::{AreaLight, AreaOptions, Emitter, ShadowError, ShadowLight, ShadowOptions};
+use pointillist_shadow::{
+    AreaLight, AreaOptions, Emitter, LineLight, ShadowError, ShadowLight, ShadowOptions,
+};
 
 /// One point or direction from which light comes: a light, or a sample of an area light.
 pub(crate) struct LightSample<'a> {
@@ -29,9 +31,15 @@ pub(crate) struct WholeLight<'a> {
     pub(crate) within: Option<(DVec3, DVec3)>,
     /// 1 for the channels of the light that it brings, 0 for the others.
     pub(crate) channels: Vec3,
-    pub(crate) side: AreaLight<'a>,
+    pub(crate) shape: Shape<'a>,
     /// What the side sends out.
     pub(crate) emission: Emission,
+}
+
+/// What a light as a whole is asked as.
+pub(crate) enum Shape<'a> {
+    Side(AreaLight<'a>),
+    Line(LineLight<'a>),
 }
 
 /// The lights of a scene for one view.
@@ -41,7 +49,7 @@ pub(crate) struct SceneLights<'a> {
     pub(crate) whole: Vec<WholeLight<'a>>,
 }
 
-/// All lights, for receivers that `lens` sees. Lights with an area are taken as a whole unless they ask for samples, or `sampled` does. Where
+/// All lights, for receivers that `lens` sees. Lights with an area and lines are taken as a whole unless they ask for samples, or `sampled` does. Where
 /// something clear lets colours pass differently, a light comes once for each.
 pub(crate) fn scene_lights<'a>(
     prepared: &'a Prepared<'_>,
@@ -56,6 +64,10 @@ pub(crate) fn scene_lights<'a>(
         for (channels, geometry) in casters {
             if !sampled && let Some(area) = source.light.exact_area() {
                 lights.whole.extend(whole_light((light, source), area, channels, geometry, surfaces)?);
+                continue;
+            }
+            if !sampled && let Some(ends) = source.light.exact_line() {
+                lights.whole.push(whole_line((light, source), ends, channels, geometry, surfaces)?);
                 continue;
             }
             for sample in 0..source.light.samples() {
@@ -109,9 +121,26 @@ fn whole_light<'a>(
         let side = if source.shadow { side } else { side.without_shadows() };
         let radiance = source.light.color() * channels;
         let emission = Emission { front: side.front(), radiance, falloff: source.light.falloff() };
-        found.push(WholeLight { light: Some(light), within: None, channels, side, emission });
+        let shape = Shape::Side(side);
+        found.push(WholeLight { light: Some(light), within: None, channels, shape, emission });
     }
     Ok(found)
+}
+
+/// A light that is a line.
+fn whole_line<'a>(
+    (light, source): (usize, &LightSource),
+    ends: [DVec3; 2],
+    channels: Vec3,
+    geometry: &'a Geometry,
+    surfaces: &'a Surfaces,
+) -> Result<WholeLight<'a>, RenderError> {
+    let line = LineLight::new(geometry, surfaces, ends, AreaOptions::default())
+        .map_err(|e| RenderError::Shadow { name: source.name.clone(), source: e })?;
+    let line = if source.shadow { line } else { line.without_shadows() };
+    let radiance = source.light.color() * channels;
+    let emission = Emission { front: DVec3::ZERO, radiance, falloff: source.light.falloff() };
+    Ok(WholeLight { light: Some(light), within: None, channels, shape: Shape::Line(line), emission })
 }
 
 /// The sides of an emitting polygon that shine.
@@ -142,7 +171,7 @@ fn emitting_sides<'a>(
         let side = side.with_options(options.with_largest_shift(shift));
         let radiance = emitter.radiance * channels;
         let emission = Emission { front: side.front(), radiance, falloff: Falloff::InverseSquare };
-        found.push(WholeLight { light: None, within, channels, side, emission });
+        found.push(WholeLight { light: None, within, channels, shape: Shape::Side(side), emission });
     }
     Ok(found)
 }
@@ -156,6 +185,7 @@ pub fn emitter(light: &Light, sample: u32) -> Emitter {
         Light::Spot { direction, .. } => *direction,
         Light::Rect { edge_u, edge_v, .. } => edge_u.cross(*edge_v),
         Light::Polygon { outline, .. } => outline.area_vector(),
+        Light::Line { from, to, .. } => (*to - *from).any_orthogonal_vector(),
         _ => DVec3::NEG_Y,
     };
     match light.source(sample) {

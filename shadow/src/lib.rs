@@ -36,6 +36,7 @@ mod grid;
 pub mod invariants;
 mod layers;
 mod light;
+mod line;
 mod lit_regions;
 mod options;
 mod query;
@@ -52,6 +53,7 @@ pub use area::{AreaLight, AreaOptions, AreaScratch, LARGEST_OUTLINE, SeenLight, 
 pub use counts::ShadowCounts;
 pub use error::ShadowError;
 pub use light::ShadowLight;
+pub use line::{LineLight, LineScratch, SeenLine};
 pub use lit_regions::LitRegion;
 pub use options::{Resolution, ShadowOptions};
 pub use receiver::{Receivers, Viewer};

@@ -7,7 +7,7 @@ use super::{
 };
 use glam::Vec3;
 use pointillist_shade::Light;
-use pointillist_shadow::check_outline;
+use pointillist_shadow::{ShadowError, check_outline};
 
 impl Scene {
     /// Whether lists fit one another, indices refer to something, and numbers are finite. Linear in the size of the scene
@@ -180,11 +180,16 @@ fn finite(is_finite: bool, what: impl FnOnce() -> String) -> Result<(), SceneErr
 fn check_light(source: &LightSource) -> Result<(), SceneError> {
     let LightSource { name, light, .. } = source;
     finite(is_finite(light), || format!("light `{name}`"))?;
-    let Light::Polygon { outline, radiance, .. } = light else { return Ok(()) };
+    let (Light::Polygon { radiance, .. } | Light::Line { radiance, .. }) = light else { return Ok(()) };
     if radiance.min_element() < 0.0 {
         return Err(SceneError::NegativeLight { name: name.clone() });
     }
-    check_outline(outline.vertices()).map_err(|fault| SceneError::LightOutline { name: name.clone(), fault })
+    let fault = match light {
+        Light::Polygon { outline, .. } => check_outline(outline.vertices()),
+        Light::Line { from, to, .. } if from == to => Err(ShadowError::LineWithoutLength),
+        _ => Ok(()),
+    };
+    fault.map_err(|fault| SceneError::LightOutline { name: name.clone(), fault })
 }
 
 fn is_finite(light: &Light) -> bool {
@@ -202,6 +207,7 @@ fn is_finite(light: &Light) -> bool {
             Light::Rect { corner, edge_u, edge_v, .. } => {
                 corner.is_finite() && edge_u.is_finite() && edge_v.is_finite()
             }
+            Light::Line { from, to, .. } => from.is_finite() && to.is_finite(),
             Light::Polygon { outline, .. } => outline.vertices().iter().all(|v| v.is_finite()),
             _ => true,
         }

@@ -107,7 +107,7 @@ pub enum SceneError {
         /// Its name.
         name: String,
     },
-    /// A polygonal light is no planar convex polygon.
+    /// A polygonal light is no planar convex polygon, or a line has no length.
     #[error("light `{name}`: {fault}")]
     LightOutline {
         /// Its name.

@@ -19,7 +19,7 @@ const NO_AREA: f64 = 1e-12;
 
 /// Distances below this, times the size of the scene, are 0: of a receiver from the plane of a caster that it lies on, and of a caster from
 /// the plane of the light. Visible surfaces coincide below the same share of their depth (`pointillist-micropoint`).
-const COINCIDENT: f64 = 1e-10;
+pub(crate) const COINCIDENT: f64 = 1e-10;
 
 /// How finely a polygonal light is asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +68,11 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// The axes of the world about a point.
+    pub(crate) fn at(origin: DVec3) -> Self {
+        Self { origin, axes: [DVec3::X, DVec3::Y, DVec3::Z] }
+    }
+
     pub(crate) fn local(&self, world: DVec3) -> DVec3 {
         self.local_vector(world - self.origin)
     }
@@ -277,8 +282,7 @@ pub struct SeenLight {
 
 impl Default for SeenLight {
     fn default() -> Self {
-        let frame = Frame { origin: DVec3::ZERO, axes: [DVec3::X, DVec3::Y, DVec3::Z] };
-        Self { frame, point: DVec3::Z, vertices: vec![], parts: vec![] }
+        Self { frame: Frame::at(DVec3::ZERO), point: DVec3::Z, vertices: vec![], parts: vec![] }
     }
 }
 
