@@ -42,6 +42,9 @@ pub(crate) enum Shape<'a> {
     Line(LineLight<'a>),
 }
 
+/// [`AreaOptions::largest_shift`] of lines: they have sharp shadows across, which what is seen of an area smooths.
+const LINE_SHIFT: f64 = 0.03;
+
 /// The lights of a scene for one view.
 #[derive(Default)]
 pub(crate) struct SceneLights<'a> {
@@ -135,8 +138,9 @@ fn whole_line<'a>(
     geometry: &'a Geometry,
     surfaces: &'a Surfaces,
 ) -> Result<WholeLight<'a>, RenderError> {
-    let line = LineLight::new(geometry, surfaces, ends, AreaOptions::default())
-        .map_err(|e| RenderError::Shadow { name: source.name.clone(), source: e })?;
+    let line =
+        LineLight::new(geometry, surfaces, ends, AreaOptions::default().with_largest_shift(LINE_SHIFT))
+            .map_err(|e| RenderError::Shadow { name: source.name.clone(), source: e })?;
     let line = if source.shadow { line } else { line.without_shadows() };
     let radiance = source.light.color() * channels;
     let emission = Emission { front: DVec3::ZERO, radiance, falloff: source.light.falloff() };

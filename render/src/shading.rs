@@ -8,7 +8,7 @@ use crate::monitor::Monitor;
 use crate::shader::{Point, Shader};
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::{SurfacePoint, Tile};
-use pointillist_shadow::ShadowCounts;
+use pointillist_shadow::{AreaCounts, ShadowCounts};
 use std::collections::BTreeMap;
 
 /// Per-thread memory.
@@ -22,8 +22,10 @@ pub(crate) struct ShaderScratch {
 }
 
 impl ShaderScratch {
-    pub(crate) fn take_counts(&mut self) -> ShadowCounts {
-        self.direct.shadow.take_counts()
+    pub(crate) fn take_counts(&mut self) -> (ShadowCounts, AreaCounts) {
+        let mut whole = self.direct.area.take_counts();
+        whole += self.direct.line.take_counts();
+        (self.direct.shadow.take_counts(), whole)
     }
 }
 

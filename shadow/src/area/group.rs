@@ -8,6 +8,7 @@ use super::shaft::Shaft;
 use super::sheets::Sheets;
 use super::sweep::Sweep;
 use super::targets::{Box3, Target, Targets, bounds, split};
+use crate::counts::AreaCounts;
 use crate::receiver::{Receivers, Viewer};
 use glam::{DVec2, DVec3};
 use pointillist_dice::convex;
@@ -27,6 +28,15 @@ pub struct AreaScratch {
     /// Stack of the sheets of nested groups.
     stack: Vec<u32>,
     point: PointScratch,
+    pub(crate) counts: AreaCounts,
+}
+
+impl AreaScratch {
+    /// What has been done since the last call.
+    #[must_use]
+    pub fn take_counts(&mut self) -> AreaCounts {
+        std::mem::take(&mut self.counts)
+    }
 }
 
 /// Memory for one point.
@@ -47,7 +57,7 @@ pub(crate) fn visit(
     scratch: &mut AreaScratch,
     visit: &mut impl FnMut(usize, f64, &SeenLight),
 ) {
-    let AreaScratch { targets, sheets, stack, point } = scratch;
+    let AreaScratch { targets, sheets, stack, point, counts } = scratch;
     // Behind the light, edge-on, or the light below the horizon of all of it.
     let is_lit = |own: &[DVec3], highest: DVec3, normal: DVec3| {
         let towards = light.outline.iter().map(|v| v.extend(0.0));
@@ -58,6 +68,7 @@ pub(crate) fn visit(
         is_lit(own, highest, normal) && !light.is_own(face.id)
     });
     let Targets { list: targets, pieces, corners } = targets;
+    counts.batch(receivers.wholes(), targets.len());
     if targets.is_empty() {
         return;
     }
@@ -70,7 +81,8 @@ pub(crate) fn visit(
     stack.extend(0..sheets.list.len() as u32);
     point.outline.start(sheets, light.coincident);
     point.seen.frame = light.frame;
-    Groups { light, pieces, corners, sheets, stack, point, visit }.divide(targets, 0);
+    Groups { light, pieces, corners, sheets, stack, point, counts, has_casters: false, visit }
+        .divide(targets, 0);
 }
 
 /// A batch of receivers while it is divided.
@@ -82,6 +94,9 @@ struct Groups<'s, F> {
     sheets: &'s Sheets,
     stack: &'s mut Vec<u32>,
     point: &'s mut PointScratch,
+    counts: &'s mut AreaCounts,
+    /// The group at hand has some.
+    has_casters: bool,
     visit: &'s mut F,
 }
 
@@ -115,6 +130,8 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
     /// Asks the points of a group one by one.
     fn settle(&mut self, targets: &[Target], first: usize, (around, shaft): (Box3, &Shaft)) {
         let group = &self.stack[first..];
+        self.has_casters = !group.is_empty();
+        self.counts.casters += group.len() as u64;
         let opaque = |&&s: &&u32| self.sheets.list[s as usize].mask.is_none();
         self.point.outline.take(self.sheets, group.iter().filter(opaque).copied(), around, shaft);
         self.point.masks.take(self.sheets, group);
@@ -181,6 +198,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
     }
 
     fn report(&mut self, target: &Target, share: f64) {
+        self.counts.point(self.has_casters, self.point.seen.is_empty());
         if !self.point.seen.is_empty() {
             (self.visit)(target.receiver as usize, share, &self.point.seen);
         }

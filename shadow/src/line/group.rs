@@ -6,6 +6,7 @@ use super::light::{LineLight, SeenLine, above_horizon};
 use crate::area::masks::surface_point;
 use crate::area::piece;
 use crate::area::targets::{Target, Targets, bounds, split};
+use crate::counts::AreaCounts;
 use crate::receiver::{Receivers, Viewer};
 use glam::{DVec3, dvec2, dvec3};
 use pointillist_micropoint::{Bounds, ClusterView};
@@ -27,6 +28,15 @@ pub struct LineScratch {
     /// Stack of the casters of nested groups.
     stack: Vec<u32>,
     point: PointScratch,
+    counts: AreaCounts,
+}
+
+impl LineScratch {
+    /// What has been done since the last call.
+    #[must_use]
+    pub fn take_counts(&mut self) -> AreaCounts {
+        std::mem::take(&mut self.counts)
+    }
 }
 
 /// Memory for one point.
@@ -46,11 +56,12 @@ pub(crate) fn visit(
     scratch: &mut LineScratch,
     visit: &mut impl FnMut(usize, f64, &SeenLine),
 ) {
-    let LineScratch { targets, casters, stack, point } = scratch;
+    let LineScratch { targets, casters, stack, point, counts } = scratch;
     targets.collect((light.geometry, &light.frame), viewer, receivers, |_, own, _, normal| {
         light.ends.iter().any(|&end| own.iter().any(|&c| normal.dot(end - c) > 0.0))
     });
     let Targets { list, pieces, corners } = targets;
+    counts.batch(receivers.wholes(), list.len());
     if list.is_empty() {
         return;
     }
@@ -60,7 +71,7 @@ pub(crate) fn visit(
     }
     stack.clear();
     stack.extend(0..casters.len() as u32);
-    Groups { light, pieces, corners, casters, stack, point, visit }.divide(list, 0);
+    Groups { light, pieces, corners, casters, stack, point, counts, visit }.divide(list, 0);
 }
 
 /// Adds what a hull does not miss.
@@ -101,6 +112,7 @@ struct Groups<'s, F> {
     casters: &'s [LineCaster],
     stack: &'s mut Vec<u32>,
     point: &'s mut PointScratch,
+    counts: &'s mut AreaCounts,
     visit: &'s mut F,
 }
 
@@ -117,6 +129,7 @@ impl<F: FnMut(usize, f64, &SeenLine)> Groups<'_, F> {
             }
         }
         if targets.len() <= FEW_RECEIVERS || self.stack.len() - own <= FEW_CASTERS {
+            self.counts.casters += (self.stack.len() - own) as u64;
             for target in &*targets {
                 self.ask_pieces(target, own);
             }
@@ -158,6 +171,7 @@ impl<F: FnMut(usize, f64, &SeenLine)> Groups<'_, F> {
             (hidden, borders),
             seen,
         );
+        self.counts.point(self.stack.len() > first, seen.parts.is_empty());
         if !seen.parts.is_empty() {
             (self.visit)(target.receiver as usize, share, seen);
         }
