@@ -88,6 +88,7 @@ mod prepared;
 mod radiosity_surfaces;
 mod reflections;
 mod scene;
+mod seen;
 mod set_up;
 mod shader;
 mod shading;

@@ -77,7 +77,8 @@ fn a_quad_lights_the_floor_as_a_light_of_its_shape_does() {
     });
     let cells: Vec<[u32; 3]> = cells.collect();
     let faces = [[0, 1, 2], [0, 2, 3]];
-    let ways: [(&[DVec3], &[[u32; 3]], bool); 3] =
+    type Way<'a> = (&'a [DVec3], &'a [[u32; 3]], bool);
+    let ways: [Way<'_>; 3] =
         [(&[a, b, c, d], &faces, false), (&[d, c, b, a], &faces, true), (&grid, &cells, false)];
     for (corners, triangles, two_sided) in ways {
         let mut own = scene();

@@ -43,7 +43,7 @@ fn scene(floor: shade::Material, light: Light) -> Scene {
 }
 
 fn checker() -> Texture {
-    let opaque = |i: usize| if (i % 4 + i / 4) % 2 == 0 { 255 } else { 0 };
+    let opaque = |i: usize| if (i % 4 + i / 4).is_multiple_of(2) { 255 } else { 0 };
     Texture::new("leaf", [4, 4], Texels::from_opacities((0..16).map(opaque).collect()))
 }
 

@@ -15,8 +15,11 @@ pub(crate) struct LineCaster {
     pub(crate) mask: Option<(u32, u32)>,
 }
 
-/// The places of the line from 0 to 1 at which `from + t · (to − from)` is positive, for a function that has these values at 0 and 1.
-pub(crate) fn positive((from, to): (f64, f64), (least, most): (f64, f64)) -> (f64, f64) {
+/// A part of a line whose ends are 0 and 1; empty if its first number is not below its second.
+pub(crate) type Interval = (f64, f64);
+
+/// The part of an interval at which `from + t · (to − from)` is positive, for a function that has these values at 0 and 1.
+pub(crate) fn positive((from, to): (f64, f64), (least, most): Interval) -> Interval {
     match (from > 0.0, to > 0.0) {
         (true, true) => (least, most),
         (true, false) => (least, most.min(from / (from - to))),
@@ -28,7 +31,7 @@ pub(crate) fn positive((from, to): (f64, f64), (least, most): (f64, f64)) -> (f6
 impl LineCaster {
     /// The interval of places on the line from `a` to `b` that it hides from a point; `None` if it hides nothing. A triangle whose plane is
     /// within `coincident` of the point does not: the point is on it.
-    pub(crate) fn hidden(&self, point: DVec3, [a, b]: [DVec3; 2], coincident: f64) -> Option<(f64, f64)> {
+    pub(crate) fn hidden(&self, point: DVec3, [a, b]: [DVec3; 2], coincident: f64) -> Option<Interval> {
         let height = |p: DVec3| self.normal.dot(p) - self.offset;
         let own = height(point);
         if own.abs() <= coincident {

@@ -1,6 +1,6 @@
 //! Receivers in groups, each with the casters that may hide something of a line.
 
-use super::cut::LineCaster;
+use super::cut::{Interval, LineCaster};
 use super::hull::Hull;
 use super::light::{LineLight, SeenLine, above_horizon};
 use crate::area::masks::surface_point;
@@ -42,10 +42,18 @@ impl LineScratch {
 /// Memory for one point.
 #[derive(Debug, Default)]
 struct PointScratch {
-    hidden: Vec<((f64, f64), u32)>,
-    borders: Vec<f64>,
+    marks: Marks,
     seen: SeenLine,
     corner: SeenLine,
+}
+
+/// What divides a line, as a point sees it.
+#[derive(Debug, Default)]
+struct Marks {
+    /// Intervals and their casters.
+    hidden: Vec<(Interval, u32)>,
+    /// Their ends.
+    borders: Vec<f64>,
 }
 
 /// See [`LineLight::visit`].
@@ -163,14 +171,8 @@ impl<F: FnMut(usize, f64, &SeenLine)> Groups<'_, F> {
                 return;
             }
         }
-        let PointScratch { hidden, borders, seen, .. } = &mut *self.point;
-        cast(
-            self.light,
-            (middle, target.normal),
-            (self.casters, &self.stack[first..]),
-            (hidden, borders),
-            seen,
-        );
+        let PointScratch { marks, seen, .. } = &mut *self.point;
+        cast(self.light, (middle, target.normal), (self.casters, &self.stack[first..]), marks, seen);
         self.counts.point(self.stack.len() > first, seen.parts.is_empty());
         if !seen.parts.is_empty() {
             (self.visit)(target.receiver as usize, share, seen);
@@ -190,21 +192,21 @@ impl<F: FnMut(usize, f64, &SeenLine)> Groups<'_, F> {
         if halvings >= options.most_halvings || casters.1.is_empty() {
             return false;
         }
-        let PointScratch { hidden, borders, seen, corner } = &mut *self.point;
-        cast(self.light, (middle, target.normal), casters, (hidden, borders), seen);
+        let PointScratch { marks, seen, corner } = &mut *self.point;
+        cast(self.light, (middle, target.normal), casters, marks, seen);
         ring.iter().any(|&c| {
             let near = c + (middle - c) * INSET;
-            cast(self.light, (near, target.normal), casters, (hidden, borders), corner);
+            cast(self.light, (near, target.normal), casters, marks, corner);
             disagreement(&seen.parts, &corner.parts) * target.visibility > options.largest_shift
         })
     }
 }
 
-type Parts = [((f64, f64), f64)];
+type Parts = [(Interval, f64)];
 
 /// Length over which two points see the line differently, times how much; both lists rise.
 fn disagreement(a: &Parts, b: &Parts) -> f64 {
-    let overlap = |(f, t): (f64, f64), (g, u): (f64, f64)| (t.min(u) - f.max(g)).max(0.0);
+    let overlap = |(f, t): Interval, (g, u): Interval| (t.min(u) - f.max(g)).max(0.0);
     let length = |parts: &Parts| parts.iter().map(|&((f, t), passed)| (t - f) * passed).sum::<f64>();
     let both =
         a.iter().flat_map(|&(p, passed)| b.iter().map(move |&(q, other)| overlap(p, q) * passed.min(other)));
@@ -216,7 +218,7 @@ fn cast(
     light: &LineLight<'_>,
     (point, normal): (DVec3, DVec3),
     (casters, group): (&[LineCaster], &[u32]),
-    (hidden, borders): (&mut Vec<((f64, f64), u32)>, &mut Vec<f64>),
+    Marks { hidden, borders }: &mut Marks,
     seen: &mut SeenLine,
 ) {
     seen.start(light, point);
@@ -253,7 +255,7 @@ fn cast(
 }
 
 /// Adds a part, or makes the last one longer.
-fn join(parts: &mut Vec<((f64, f64), f64)>, part: (f64, f64), passed: f64) {
+fn join(parts: &mut Vec<(Interval, f64)>, part: Interval, passed: f64) {
     match parts.last_mut() {
         Some((last, alike)) if last.1 == part.0 && *alike == passed => last.1 = part.1,
         _ => parts.push((part, passed)),
@@ -261,7 +263,7 @@ fn join(parts: &mut Vec<((f64, f64), f64)>, part: (f64, f64), passed: f64) {
 }
 
 /// Opacity of a caster before a part of the line: of a mask, the mean along the part's shadow on it.
-fn opacity(light: &LineLight<'_>, caster: &LineCaster, point: DVec3, (from, to): (f64, f64)) -> f64 {
+fn opacity(light: &LineLight<'_>, caster: &LineCaster, point: DVec3, (from, to): Interval) -> f64 {
     let Some((surface, triangle)) = caster.mask else { return caster.opacity };
     let corners = caster.corners.map(|c| c - point);
     let [a, b] = light.ends;

@@ -1,6 +1,6 @@
 //! A line that shines, and what of it a point sees.
 
-use super::cut::positive;
+use super::cut::{Interval, positive};
 use super::group::LineScratch;
 use crate::area::AreaOptions;
 use crate::area::light::{COINCIDENT, Frame};
@@ -95,7 +95,7 @@ impl<'a> LineLight<'a> {
 }
 
 /// The interval of the line that is above the horizon of a surface's point.
-pub(crate) fn above_horizon([a, b]: [DVec3; 2], point: DVec3, normal: DVec3) -> Option<(f64, f64)> {
+pub(crate) fn above_horizon([a, b]: [DVec3; 2], point: DVec3, normal: DVec3) -> Option<Interval> {
     let interval = positive((normal.dot(a - point), normal.dot(b - point)), (0.0, 1.0));
     (interval.0 < interval.1).then_some(interval)
 }
@@ -107,7 +107,7 @@ pub struct SeenLine {
     ends: [DVec3; 2],
     /// The point, in the light's frame.
     pub(crate) point: DVec3,
-    pub(crate) parts: Vec<((f64, f64), f64)>,
+    pub(crate) parts: Vec<(Interval, f64)>,
 }
 
 impl Default for SeenLine {
