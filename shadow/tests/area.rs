@@ -153,6 +153,18 @@ fn a_line_over_a_plane_gives_the_closed_form_and_its_shadow_its_limits() {
 }
 
 #[test]
+fn a_line_in_the_plane_of_a_receiver_does_not_light_it() {
+    // A tilted square, whose plane is met by the line's ends up to rounding.
+    let mut soup = Soup::default();
+    let surface = soup.surface(1.0);
+    let tilted = |p: DVec3| glam::DQuat::from_rotation_x(0.3) * p;
+    soup.polygon(&square(1.0, 0.0).map(tilted), surface);
+    let light = [dvec3(-0.3, 0.0, 0.7), dvec3(0.9, 0.0, -0.1)].map(tilted);
+    let picture = line::seen_picture(&soup, down(0.5, 3), light).unwrap();
+    assert!(picture.iter().all(Vec::is_empty), "{picture:?}");
+}
+
+#[test]
 fn lines_that_are_none_are_refused() {
     let geometry = ground().geometry().unwrap();
     let refused = |ends| LineLight::new(&geometry, &PlainOpacity, ends, AreaOptions::DEFAULT).err();

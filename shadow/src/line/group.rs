@@ -222,7 +222,7 @@ fn cast(
     seen: &mut SeenLine,
 ) {
     seen.start(light, point);
-    let Some((least, most)) = above_horizon(light.ends, point, normal) else { return };
+    let Some((least, most)) = above_horizon(light, point, normal) else { return };
     hidden.clear();
     borders.clear();
     borders.extend([least, most]);

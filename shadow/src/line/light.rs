@@ -76,7 +76,7 @@ impl<'a> LineLight<'a> {
     pub fn whole(&self, position: DVec3, normal: DVec3) -> SeenLine {
         let mut seen = SeenLine::default();
         seen.start(self, self.frame.local(position));
-        if let Some(interval) = above_horizon(self.ends, seen.point, normal) {
+        if let Some(interval) = above_horizon(self, seen.point, normal) {
             seen.parts.push((interval, 1.0));
         }
         seen
@@ -94,9 +94,10 @@ impl<'a> LineLight<'a> {
     }
 }
 
-/// The interval of the line that is above the horizon of a surface's point.
-pub(crate) fn above_horizon([a, b]: [DVec3; 2], point: DVec3, normal: DVec3) -> Option<Interval> {
-    let interval = positive((normal.dot(a - point), normal.dot(b - point)), (0.0, 1.0));
+/// The interval of the line that is above the horizon of a surface's point; what is in the surface's plane is not.
+pub(crate) fn above_horizon(light: &LineLight<'_>, point: DVec3, normal: DVec3) -> Option<Interval> {
+    let height = |end: DVec3| normal.dot(end - point) - light.coincident;
+    let interval = positive((height(light.ends[0]), height(light.ends[1])), (0.0, 1.0));
     (interval.0 < interval.1).then_some(interval)
 }
 
