@@ -153,6 +153,24 @@ fn a_line_over_a_plane_gives_the_closed_form_and_its_shadow_its_limits() {
 }
 
 #[test]
+fn what_crosses_the_plane_of_a_light_of_two_sides_is_on_one_of_them() {
+    // A light that stands on the ground, tilted, and the pixels under its foot.
+    let front = [dvec3(-1.0, 0.0, 0.03), dvec3(1.0, 0.0, 0.03), dvec3(1.0, 1.0, 0.5), dvec3(-1.0, 1.0, 0.5)];
+    let mut back = front;
+    back.reverse();
+    // One triangle: one receiver in each pixel.
+    let mut soup = Soup::default();
+    let surface = soup.surface(1.0);
+    soup.polygon(&[dvec3(-9.0, 0.0, 9.0), dvec3(9.0, 0.0, 9.0), dvec3(0.0, 0.0, -9.0)], surface);
+    let areas = |outline: &[DVec3]| -> Vec<f64> {
+        let picture = seen_picture(&soup, down(0.5, 3), outline).unwrap();
+        picture.iter().map(|pixel| pixel.iter().map(|p| p.weight * p.area).sum()).collect()
+    };
+    let both: Vec<f64> = areas(&front).into_iter().zip(areas(&back)).map(|(a, b)| a + b).collect();
+    assert!(both.iter().all(|&sum| sum <= 1.0 + 1e-9 && sum > 0.9), "{both:?}");
+}
+
+#[test]
 fn a_line_in_the_plane_of_a_receiver_does_not_light_it() {
     // A tilted square, whose plane is met by the line's ends up to rounding.
     let mut soup = Soup::default();

@@ -154,7 +154,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
             let around = around(all.clone());
             let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
             if !self.point.outline.passes_between(self.sheets, all.copied(), around, &shaft) {
-                let factor = self.cast((middle, target.normal), &shaft, around.1.z);
+                let factor = self.cast((middle, target.normal), &shaft, (around.0.z, around.1.z));
                 if !self.is_coarse(target, factor, radius, halvings) {
                     return self.report(target, share);
                 }
@@ -173,7 +173,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         let (middle, radius) = piece::middle(ring);
         let around = around(ring.iter());
         let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
-        let factor = self.cast((middle, target.normal), &shaft, around.1.z);
+        let factor = self.cast((middle, target.normal), &shaft, (around.0.z, around.1.z));
         if self.is_coarse(target, factor, radius, halvings) {
             let halves = piece::halves(ring, middle);
             let areas = halves.each_ref().map(|h| piece::area(h));
@@ -204,8 +204,8 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         }
     }
 
-    /// What a point of a surface sees. Returns the factor of [`Outline::cast`] for points around it that are at most this high over the light.
-    fn cast(&mut self, (point, normal): (DVec3, DVec3), shaft: &Shaft, highest: f64) -> f64 {
+    /// What a point of a surface sees. Returns the factor of [`Outline::cast`] for points around it between these heights over the light.
+    fn cast(&mut self, (point, normal): (DVec3, DVec3), shaft: &Shaft, (lowest, highest): (f64, f64)) -> f64 {
         let PointScratch { outline, masks, sweep, polygon, seen } = &mut *self.point;
         seen.clear();
         seen.point = point;
@@ -221,6 +221,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         let factor = outline.cast(self.sheets, (point, normal), shaft, sweep);
         sweep.finish(polygon, self.sheets, seen);
         masks.dim(self.light, self.sheets, seen);
-        factor
+        // Some of what it stands for may be behind the light.
+        if lowest < -self.light.coincident { f64::INFINITY } else { factor }
     }
 }
