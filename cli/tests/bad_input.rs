@@ -226,7 +226,13 @@ fn lights_with_an_area_are_checked() {
     wrong(polygon("[[0, 2, 0], [1, 2, 0], [1, 2]]", ""), &["`light[0].vertices`", "3 numbers"]);
     wrong(polygon(square, "samples = 0\n"), &["`light[0].samples`", "1"]);
     wrong(polygon(square, "").replace("[1, 1, 1]\n", "[1, -1, 1]\n"), &["`light[0].radiance`", "negative"]);
+    let line = |to: &str| format!("type = \"line\"\nfrom = [0, 2, 0]\nto = {to}\nradiance = [1, 1, 1]\n");
+    wrong(line("[0, 2, 0]"), &["`light[0].to`", "no length"]);
+    wrong(line("[0, 2, inf]"), &["`light[0].to`"]);
+    wrong(line("[0, 2, 1]") + "samples = 0\n", &["`light[0].samples`"]);
     let folder = Folder::new();
-    folder.write("scene.toml", SCENE.replacen(LAMP, &polygon(square, "two_sided = true\n"), 1));
-    folder.prints(&["check", "scene.toml"]);
+    for right in [polygon(square, "two_sided = true\n"), line("[0, 2, 1]")] {
+        folder.write("scene.toml", SCENE.replacen(LAMP, &right, 1));
+        folder.prints(&["check", "scene.toml"]);
+    }
 }

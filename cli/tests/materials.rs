@@ -322,6 +322,7 @@ fn wrong_materials_name_material_and_key() {
     refused("model = \"ggx\"\nshininess = 3\n", &["`material.m.shininess` does nothing here", "roughness"]);
     refused("roughness = 0.5\n", &["`material.m.roughness` does nothing here", "ggx"]);
     refused("metallic = 0.5\n", &["`material.m.metallic` does nothing here"]);
+    refused("emits = true\n", &["`material.m.emits` does nothing here", "emission"]);
     refused("bump_scale = 0.5\n", &["`material.m.bump_scale` does nothing here"]);
     refused("refraction_index = 1.5\n", &["`material.m.refraction_index` does nothing here"]);
     refused("model = \"merl\"\n", &["`material.m` needs `merl`"]);

@@ -6,7 +6,7 @@ use crate::error::RenderError;
 use crate::frame::{Frame, LayerKind};
 use crate::monitor::{Monitor, Part};
 use crate::prepared::Prepared;
-use crate::shader::{Economy, Style};
+use crate::shader::{Economy, Glow, Style};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::Bounds;
 use pointillist_sh::{CubePoint, cube_direction, texel_solid_angle};
@@ -18,7 +18,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub struct CaptureOptions {
     /// Pixels on a side of each of the six pictures. Default: 32.
     pub resolution: u32,
-    /// Whether surfaces show the light that they emit. Default: no.
+    /// Whether surfaces show the light that they emit, except those that light others directly ([`Details::emits`]): they are
+    /// lights, which captures do not show. Default: no.
+    ///
+    /// [`Details::emits`]: crate::Details::emits
     pub emission: bool,
     /// Whether surfaces show what they reflect of the scene's lights. Default: yes.
     pub lights: bool,
@@ -71,12 +74,25 @@ impl Prepared<'_> {
         ambient: Ambient<'_>,
         monitor: &dyn Monitor,
     ) -> Result<Capture, RenderError> {
+        let glow = if options.emission { Glow::OtherThanLights } else { Glow::Nothing };
+        self.look_around(position, options, ambient, glow, monitor)
+    }
+
+    /// As [`Prepared::capture`], with the emission of some surfaces.
+    pub(crate) fn look_around(
+        &self,
+        position: DVec3,
+        options: CaptureOptions,
+        ambient: Ambient<'_>,
+        glow: Glow,
+        monitor: &dyn Monitor,
+    ) -> Result<Capture, RenderError> {
         let mut views = Vec::with_capacity(6);
         for face in 0..6 {
             views.push(view_of_face(position, face, options.resolution)?);
         }
         let economy = (!options.thorough).then_some(ECONOMY);
-        let style = Style { ambient, emission: options.emission, lights: options.lights, economy };
+        let style = Style { ambient, glow, lights: options.lights, economy };
         let layers = DrawOptions::DEFAULT.with_layers(vec![LayerKind::Back, LayerKind::Direct]);
         let mut capture = Capture::new(options.resolution as usize);
         for (face, view) in views.into_iter().enumerate() {

@@ -206,6 +206,11 @@ impl DetailMaps {
         colors || numbers.iter().any(|map| map.is_some()) || self.slope.is_some() || self.normal.is_some()
     }
 
+    /// The factor on the emission over a polygon of a triangle.
+    pub(crate) fn emission(&self, uvs: &Uvs, triangle: u32, polygon: &[SurfacePoint]) -> Vec3 {
+        self.emission.as_ref().map_or(Vec3::ONE, |sums| vector(uvs.mean(triangle, polygon, sums)))
+    }
+
     /// Means over outlines, each with its weight.
     pub(crate) fn means(
         &self,

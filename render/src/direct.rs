@@ -8,7 +8,7 @@ use crate::shader::{Economy, Point, Shader};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Face, Fragment, Micropoint, Tile};
 use pointillist_shade::{Incident, Interpolation, interpolate_color, sees_light, turn_to};
-use pointillist_shadow::{AreaScratch, Receivers, ShadowScratch, Viewer};
+use pointillist_shadow::{AreaScratch, LineScratch, Receivers, ShadowScratch, Viewer};
 use std::ops::Range;
 
 /// Light that would reach a micropoint if nothing stood in its way, and the part of it that does.
@@ -24,6 +24,7 @@ pub(crate) struct Arrival {
 pub(crate) struct DirectScratch {
     pub(crate) shadow: ShadowScratch,
     pub(crate) area: AreaScratch,
+    pub(crate) line: LineScratch,
     /// For each micropoint: what it sends to the eye because of a whole light, and the lit area of the light.
     pub(crate) seen: Vec<(Vec3, f64)>,
     /// The micropoints that are asked about, those of one receiver side by side.

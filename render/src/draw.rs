@@ -10,10 +10,10 @@ use crate::frame::{Frame, LayerKind};
 use crate::lights::{SceneLights, scene_lights};
 use crate::monitor::{Monitor, go_on};
 use crate::prepared::Prepared;
-use crate::shader::{Shader, Style};
+use crate::shader::{Glow, Shader, Style};
 use crate::shading::ShaderScratch;
 use pointillist_micropoint::{Renderer, TileCounts};
-use pointillist_shadow::ShadowCounts;
+use pointillist_shadow::{AreaCounts, ShadowCounts};
 use pointillist_view::{PixelRect, View};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -71,7 +71,7 @@ impl Prepared<'_> {
         options: &DrawOptions,
         monitor: &dyn Monitor,
     ) -> Result<Frame, RenderError> {
-        let style = Style { ambient: self.ambient(), emission: true, lights: true, economy: None };
+        let style = Style { ambient: self.ambient(), glow: Glow::Everything, lights: true, economy: None };
         self.draw_styled(view, &style, options, monitor)
     }
 
@@ -104,7 +104,7 @@ impl Prepared<'_> {
         let background = Background::new(self.scene, (*self.environment).as_ref(), &view);
         let shader = Shader::new(self, &lights, &view, style);
         let canvas = Mutex::new(Canvas::new(self.scene, [view.width(), view.height()], window, layers));
-        let totals = Mutex::new((TileCounts::default(), ShadowCounts::default()));
+        let totals = Mutex::new((TileCounts::default(), ShadowCounts::default(), AreaCounts::default()));
         let start = || {
             monitor.start_lap();
             ShaderScratch::default()
@@ -115,12 +115,14 @@ impl Prepared<'_> {
             lock(&canvas).put(tile.rect(), pixels);
             let mut totals = lock(&totals);
             totals.0 += tile.counts();
-            totals.1 += scratch.take_counts();
+            let (shadow, whole) = scratch.take_counts();
+            totals.1 += shadow;
+            totals.2 += whole;
             monitor.advance(1);
             go_on(monitor)
         })?;
-        let (tile_counts, shadow_counts) = *lock(&totals);
-        record(monitor, &tile_counts, &shadow_counts);
+        let (tile_counts, shadow_counts, area_counts) = *lock(&totals);
+        record(monitor, &tile_counts, &shadow_counts, &area_counts);
         Ok(canvas.into_inner().unwrap_or_else(PoisonError::into_inner).into_frame())
     }
 
@@ -138,7 +140,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn record(monitor: &dyn Monitor, t: &TileCounts, s: &ShadowCounts) {
+fn record(monitor: &dyn Monitor, t: &TileCounts, s: &ShadowCounts, a: &AreaCounts) {
     let counts = [
         ("clusters", t.clusters),
         ("triangles_diced", t.triangles - t.triangles_hidden),
@@ -153,6 +155,10 @@ fn record(monitor: &dyn Monitor, t: &TileCounts, s: &ShadowCounts) {
         ("shadow_clusters", s.clusters),
         ("shadow_casters", s.casters),
         ("shadow_receivers_cut", s.partial),
+        ("area_light_receivers", a.receivers),
+        ("area_light_points", a.points),
+        ("area_light_points_cut", a.points - a.lit_by_group - a.dark),
+        ("area_light_casters", a.casters),
     ];
     let skipped = [
         ("clusters", t.clusters_skipped),
@@ -164,6 +170,9 @@ fn record(monitor: &dyn Monitor, t: &TileCounts, s: &ShadowCounts) {
         ("shadow_receivers_facing_away", s.facing_away),
         ("shadow_receivers_lit_by_group", s.lit_by_group),
         ("shadow_receivers_dark_by_group", s.dark_by_group),
+        ("area_light_receivers_facing_away", a.facing_away),
+        ("area_light_points_lit_by_group", a.lit_by_group),
+        ("area_light_points_dark", a.dark),
         ("shadow_clusters", s.clusters_skipped),
         ("shadow_casters_culled", s.casters_culled),
     ];

@@ -220,6 +220,12 @@ impl Fingerprint {
                 self.int(samples.map_or(0, |n| u64::from(n.get())));
                 falloff = f;
             }
+            Light::Line { from, to, samples, falloff: f, .. } => {
+                self.text("line");
+                [from, to].into_iter().for_each(|v| self.vector(v));
+                self.int(samples.map_or(0, |n| u64::from(n.get())));
+                falloff = f;
+            }
             // A light that this version cannot read from a file.
             _ => self.text(&format!("{light:?}")),
         }

@@ -106,6 +106,7 @@ pub fn light_adds_up(scene: &Scene) -> Result<(), String> {
     for material in &mut scene.materials {
         material.surface.emission = Vec3::ZERO;
         material.details.emission_map = None;
+        material.details.emits = false;
     }
     let Some(frame) = picture(&scene) else { return Ok(()) };
     let planes =

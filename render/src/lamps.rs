@@ -1,6 +1,7 @@
 //! A scene's lights as lamps of radiosity.
 
-use crate::radiosity_surfaces::bands;
+use crate::emitters::{Side, emitting_polygons};
+use crate::radiosity_surfaces::{bands, direct_radiances};
 use crate::scene::Scene;
 use glam::DVec3;
 use pointillist_radiosity::{Lamp, Polygon};
@@ -23,7 +24,8 @@ enum Part {
 
 impl Lamps {
     /// All lights of a scene. A rectangle or a polygon with the inverse-square law is one [`Lamp::Area`] for each side, or none if its area is 0, which sends out
-    /// nothing; one with another law is its sample points, as in [`crate::render`].
+    /// nothing; one with another law is its sample points, as in [`crate::render`]. The polygons of materials that light others directly
+    /// ([`crate::Details::emits`]) are such lamps, too, of the mean emission of their material.
     pub fn new(scene: &Scene) -> Self {
         let mut parts = vec![];
         for source in &scene.lights {
@@ -47,6 +49,17 @@ impl Lamps {
                     bands(incident.irradiance).map(|e| e * cosine)
                 };
                 parts.push(Part::Sample(light.source(sample), Box::new(arrives), source.shadow));
+            }
+        }
+        let radiances = direct_radiances(scene);
+        let radiance_of = |t: u32| radiances[scene.mesh.material_of[t as usize] as usize];
+        for emitter in emitting_polygons(scene, radiance_of) {
+            let exitance = bands(emitter.radiance).map(|r| r * PI);
+            let back = emitter.vertices.iter().rev().copied().collect();
+            for (side, ring) in [(emitter.front, emitter.vertices), (emitter.back, back)] {
+                if let (true, Ok(polygon)) = (side != Side::Dark, Polygon::new(&ring)) {
+                    parts.push(Part::Area(polygon, exitance, true));
+                }
             }
         }
         Self { parts }

@@ -1,13 +1,16 @@
 //! The scene's lights as the points and directions that shadows are cast from.
 
+use crate::emitters::{EmittingPolygon, Side};
 use crate::error::RenderError;
 use crate::prepared::Prepared;
 use crate::scene::LightSource;
 use crate::surfaces::Surfaces;
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Geometry, Lens};
-use pointillist_shade::{Emission, Light, LightOutline, Source};
-use pointillist_shadow::{AreaLight, AreaOptions, Emitter, ShadowError, ShadowLight, ShadowOptions};
+use pointillist_shade::{Emission, Falloff, Light, LightOutline, Source};
+use pointillist_shadow::{
+    AreaLight, AreaOptions, Emitter, LineLight, ShadowError, ShadowLight, ShadowOptions,
+};
 
 /// One point or direction from which light comes: a light, or a sample of an area light.
 pub(crate) struct LightSample<'a> {
@@ -20,16 +23,27 @@ pub(crate) struct LightSample<'a> {
     pub(crate) shadow: Option<ShadowLight<'a>>,
 }
 
-/// One side of a light with an area, taken as a whole.
+/// One side of a light with an area, or of an emitting polygon, taken as a whole.
 pub(crate) struct WholeLight<'a> {
-    /// Index into [`Scene::lights`].
-    pub(crate) light: usize,
+    /// Index into [`Scene::lights`]; `None` for an emitting polygon.
+    pub(crate) light: Option<usize>,
+    /// What it lights, if not everything.
+    pub(crate) within: Option<(DVec3, DVec3)>,
     /// 1 for the channels of the light that it brings, 0 for the others.
     pub(crate) channels: Vec3,
-    pub(crate) side: AreaLight<'a>,
+    pub(crate) shape: Shape<'a>,
     /// What the side sends out.
     pub(crate) emission: Emission,
 }
+
+/// What a light as a whole is asked as.
+pub(crate) enum Shape<'a> {
+    Side(AreaLight<'a>),
+    Line(LineLight<'a>),
+}
+
+/// [`AreaOptions::largest_shift`] of lines: they have sharp shadows across, which what is seen of an area smooths.
+const LINE_SHIFT: f64 = 0.03;
 
 /// The lights of a scene for one view.
 #[derive(Default)]
@@ -38,7 +52,7 @@ pub(crate) struct SceneLights<'a> {
     pub(crate) whole: Vec<WholeLight<'a>>,
 }
 
-/// All lights, for receivers that `lens` sees. Lights with an area are taken as a whole unless they ask for samples, or `sampled` does. Where
+/// All lights, for receivers that `lens` sees. Lights with an area and lines are taken as a whole unless they ask for samples, or `sampled` does. Where
 /// something clear lets colours pass differently, a light comes once for each.
 pub(crate) fn scene_lights<'a>(
     prepared: &'a Prepared<'_>,
@@ -55,6 +69,10 @@ pub(crate) fn scene_lights<'a>(
                 lights.whole.extend(whole_light((light, source), area, channels, geometry, surfaces)?);
                 continue;
             }
+            if !sampled && let Some(ends) = source.light.exact_line() {
+                lights.whole.push(whole_line((light, source), ends, channels, geometry, surfaces)?);
+                continue;
+            }
             for sample in 0..source.light.samples() {
                 let shadow = if source.shadow {
                     let options = ShadowOptions::default()
@@ -69,6 +87,14 @@ pub(crate) fn scene_lights<'a>(
                 };
                 lights.samples.push(LightSample { light, sample, channels, shadow });
             }
+        }
+    }
+    // Their points would be too many: they are taken as a whole, if need be coarsely.
+    let options = AreaOptions::default();
+    let options = if sampled { options.with_most_halvings(0) } else { options };
+    for emitter in prepared.emitters.iter() {
+        for casters in prepared.casters() {
+            lights.whole.extend(emitting_sides(prepared, emitter, casters, options)?);
         }
     }
     Ok(lights)
@@ -98,7 +124,58 @@ fn whole_light<'a>(
         let side = if source.shadow { side } else { side.without_shadows() };
         let radiance = source.light.color() * channels;
         let emission = Emission { front: side.front(), radiance, falloff: source.light.falloff() };
-        found.push(WholeLight { light, channels, side, emission });
+        let shape = Shape::Side(side);
+        found.push(WholeLight { light: Some(light), within: None, channels, shape, emission });
+    }
+    Ok(found)
+}
+
+/// A light that is a line.
+fn whole_line<'a>(
+    (light, source): (usize, &LightSource),
+    ends: [DVec3; 2],
+    channels: Vec3,
+    geometry: &'a Geometry,
+    surfaces: &'a Surfaces,
+) -> Result<WholeLight<'a>, RenderError> {
+    let line =
+        LineLight::new(geometry, surfaces, ends, AreaOptions::default().with_largest_shift(LINE_SHIFT))
+            .map_err(|e| RenderError::Shadow { name: source.name.clone(), source: e })?;
+    let line = if source.shadow { line } else { line.without_shadows() };
+    let radiance = source.light.color() * channels;
+    let emission = Emission { front: DVec3::ZERO, radiance, falloff: source.light.falloff() };
+    Ok(WholeLight { light: Some(light), within: None, channels, shape: Shape::Line(line), emission })
+}
+
+/// The sides of an emitting polygon that shine.
+fn emitting_sides<'a>(
+    prepared: &'a Prepared<'_>,
+    emitter: &EmittingPolygon,
+    (channels, geometry): (Vec3, &'a Geometry),
+    options: AreaOptions,
+) -> Result<Vec<WholeLight<'a>>, RenderError> {
+    let mut found = vec![];
+    let back: Vec<DVec3> = emitter.vertices.iter().rev().copied().collect();
+    for (side, vertices) in [(emitter.front, &emitter.vertices), (emitter.back, &back)] {
+        let within = match side {
+            Side::Dark => continue,
+            Side::Lights => None,
+            Side::LightsWithin(low, high) => Some((low, high)),
+        };
+        let name = || {
+            let mesh = &prepared.scene.mesh;
+            let material = mesh.material_of[emitter.triangles[0] as usize] as usize;
+            prepared.scene.materials[material].name.clone()
+        };
+        let side = AreaLight::new(geometry, &*prepared.surfaces, vertices, options)
+            .map_err(|source| RenderError::Shadow { name: name(), source })?
+            .of_triangles(&emitter.triangles);
+        // Together, the polygons of a lamp are asked as finely as one light of its width.
+        let shift = options.largest_shift * (emitter.lamp_width / side.area().sqrt()).max(1.0);
+        let side = side.with_options(options.with_largest_shift(shift));
+        let radiance = emitter.radiance * channels;
+        let emission = Emission { front: side.front(), radiance, falloff: Falloff::InverseSquare };
+        found.push(WholeLight { light: None, within, channels, shape: Shape::Side(side), emission });
     }
     Ok(found)
 }
@@ -112,6 +189,7 @@ pub fn emitter(light: &Light, sample: u32) -> Emitter {
         Light::Spot { direction, .. } => *direction,
         Light::Rect { edge_u, edge_v, .. } => edge_u.cross(*edge_v),
         Light::Polygon { outline, .. } => outline.area_vector(),
+        Light::Line { from, to, .. } => (*to - *from).any_orthogonal_vector(),
         _ => DVec3::NEG_Y,
     };
     match light.source(sample) {

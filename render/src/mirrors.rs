@@ -6,6 +6,7 @@ use crate::monitor::{Monitor, Part};
 use crate::prepared::Prepared;
 use crate::reflections::{Reflections, mirrors};
 use crate::scene::{Scene, Surroundings};
+use crate::shader::Glow;
 use glam::{DVec3, Vec3};
 use pointillist_shade::CubeMap;
 use std::collections::BTreeMap;
@@ -67,7 +68,7 @@ impl<'a> Prepared<'a> {
             let options =
                 CaptureOptions { resolution: RESOLUTION, emission: true, lights: true, thorough: true };
             let middle = low + 0.5 * (high - low);
-            let capture = others.capture(middle, options, others.ambient(), monitor)?;
+            let capture = others.look_around(middle, options, others.ambient(), Glow::Everything, monitor)?;
             let [r, g, b] = &capture.radiance;
             let texels: Vec<Vec3> = (0..r.len()).map(|i| Vec3::new(r[i], g[i], b[i])).collect();
             let cube = CubeMap::new(RESOLUTION, &texels).expect("a capture has all its texels");

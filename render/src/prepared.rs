@@ -3,6 +3,7 @@
 use crate::ambient::Ambient;
 use crate::background::sum_up_environment;
 use crate::casters::{Casters, clear_casters};
+use crate::emitters::{EmittingPolygon, emitting_polygons, radiance_of_triangle};
 use crate::error::RenderError;
 use crate::monitor::{Monitor, go_on, stage};
 use crate::reflections::Reflections;
@@ -19,6 +20,8 @@ pub struct Prepared<'a> {
     pub(crate) geometry: Geometry,
     /// What casts shadows in the place of `geometry`, if anything is clear.
     pub(crate) clear_casters: Vec<Casters>,
+    /// Polygons of materials that light others.
+    pub(crate) emitters: Arc<Vec<EmittingPolygon>>,
     pub(crate) environment: Arc<Option<TexelSums<3>>>,
     pub(crate) reflections: Arc<Reflections>,
 }
@@ -33,13 +36,16 @@ impl<'a> Prepared<'a> {
         go_on(monitor)?;
         let environment = stage(monitor, "textures", || sum_up_environment(scene))?;
         let clear_casters = clear_casters(scene, &geometry)?;
+        let emitters = emitting_polygons(scene, |t| radiance_of_triangle(scene, &surfaces, t));
         monitor.count("triangles", geometry.triangle_count() as u64);
         monitor.count("triangles_of_solids", geometry.solid_triangle_count() as u64);
+        monitor.count("emitting_polygons", emitters.len() as u64);
         Ok(Self {
             scene,
             surfaces: Arc::new(surfaces),
             geometry,
             clear_casters,
+            emitters: Arc::new(emitters),
             environment: Arc::new(environment),
             reflections: Arc::new(Reflections::new(scene, monitor)?),
         })
@@ -52,6 +58,7 @@ impl<'a> Prepared<'a> {
             surfaces: self.surfaces.clone(),
             clear_casters: clear_casters(self.scene, &geometry)?,
             geometry,
+            emitters: self.emitters.clone(),
             environment: self.environment.clone(),
             reflections: self.reflections.clone(),
         })

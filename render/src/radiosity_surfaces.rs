@@ -61,14 +61,28 @@ pub fn scene_surfaces(scene: &Scene) -> Result<SceneSurfaces, SceneError> {
         if let Some(value) = albedo.to_array().into_iter().find(|v| !(0.0..=1.0).contains(v)) {
             return Err(SceneError::Albedo { material: scene.materials[material].name.clone(), value });
         }
-        let mut surface =
-            Surface::new(&vertices, bands(albedo)).emitting(bands(look.radiance).map(|l| l * PI));
+        // What lights others directly is a lamp.
+        let emits = scene.materials[material].details.emits;
+        let radiance = if emits { Vec3::ZERO } else { look.radiance };
+        let mut surface = Surface::new(&vertices, bands(albedo)).emitting(bands(radiance).map(|l| l * PI));
         surface.two_sided = mesh.objects[mesh.object_of[triangle as usize] as usize].two_sided
             && !scene.materials[material].details.one_sided;
         found.surfaces.push(surface);
         found.faces.push(faces);
     }
     Ok(found)
+}
+
+/// What each material sends out that lights others directly, by the means of its whole maps; 0 for others.
+pub(crate) fn direct_radiances(scene: &Scene) -> Vec<Vec3> {
+    let of = |material: &Material| {
+        if !material.details.emits {
+            return Vec3::ZERO;
+        }
+        let look = look_of(material, &|i| mean_texel(&scene.textures[i]));
+        look.radiance * look.opacity
+    };
+    scene.materials.iter().map(of).collect()
 }
 
 /// Means over a material's textures.

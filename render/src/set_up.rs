@@ -1,7 +1,7 @@
 //! Everything about a micropoint that does not depend on lights: place, normals, material, ambient light.
 
 use crate::scene;
-use crate::shader::{Place, Point, ShadedSurface, Shader};
+use crate::shader::{Glow, Place, Point, ShadedSurface, Shader};
 use glam::Vec3;
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::{Face, Fragment, LensKind, Micropoint, SurfacePoint, Tile};
@@ -54,7 +54,12 @@ impl Shader<'_> {
         if !self.scene.mesh.colors.is_empty() {
             material.diffuse *= self.vertex_color(face.id, barycentric);
         }
-        if !self.emission {
+        let glows = match self.glow {
+            Glow::Nothing => false,
+            Glow::OtherThanLights => !described.details.emits,
+            Glow::Everything => true,
+        };
+        if !glows {
             material.emission = Vec3::ZERO;
         }
         let normal = self.shading_normal(face, barycentric, face_normal, to_eye);

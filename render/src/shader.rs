@@ -16,12 +16,21 @@ use pointillist_view::View;
 pub(crate) struct Style<'a> {
     /// Light that does not come straight from lights.
     pub(crate) ambient: Ambient<'a>,
-    /// Surfaces that glow are seen to glow.
-    pub(crate) emission: bool,
+    /// Which surfaces that glow are seen to glow.
+    pub(crate) glow: Glow,
     /// What comes straight from the lights is seen.
     pub(crate) lights: bool,
     /// For pictures that are only summed up: fewer questions about details within a pixel.
     pub(crate) economy: Option<Economy>,
+}
+
+/// Whose emission is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Glow {
+    Nothing,
+    /// That of materials which light others directly is left out, as lights are: it counts already.
+    OtherThanLights,
+    Everything,
 }
 
 /// How much is asked about details smaller than a pixel.
@@ -41,7 +50,7 @@ pub(crate) struct Shader<'a> {
     pub(crate) lights: &'a SceneLights<'a>,
     pub(crate) economy: Option<Economy>,
     pub(crate) ambient: Ambient<'a>,
-    pub(crate) emission: bool,
+    pub(crate) glow: Glow,
     pub(crate) eye: DVec3,
     pub(crate) forward: DVec3,
 }
@@ -97,7 +106,7 @@ impl<'a> Shader<'a> {
         view: &View,
         style: &Style<'a>,
     ) -> Self {
-        let Style { ambient, emission, economy, .. } = *style;
+        let Style { ambient, glow, economy, .. } = *style;
         Self {
             scene: prepared.scene,
             surfaces: &prepared.surfaces,
@@ -105,7 +114,7 @@ impl<'a> Shader<'a> {
             lights,
             economy,
             ambient,
-            emission,
+            glow,
             eye: view.eye(),
             forward: view.forward(),
         }

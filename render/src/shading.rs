@@ -8,7 +8,7 @@ use crate::monitor::Monitor;
 use crate::shader::{Point, Shader};
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::{SurfacePoint, Tile};
-use pointillist_shadow::ShadowCounts;
+use pointillist_shadow::{AreaCounts, ShadowCounts};
 use std::collections::BTreeMap;
 
 /// Per-thread memory.
@@ -22,8 +22,10 @@ pub(crate) struct ShaderScratch {
 }
 
 impl ShaderScratch {
-    pub(crate) fn take_counts(&mut self) -> ShadowCounts {
-        self.direct.shadow.take_counts()
+    pub(crate) fn take_counts(&mut self) -> (ShadowCounts, AreaCounts) {
+        let mut whole = self.direct.area.take_counts();
+        whole += self.direct.line.take_counts();
+        (self.direct.shadow.take_counts(), whole)
     }
 }
 
@@ -49,8 +51,14 @@ impl Shader<'_> {
         for light in &self.lights.samples {
             self.add_light(tile, light, points, direct, lit.get_mut(&light.light), monitor);
         }
+        let mut asked = None;
         for light in &self.lights.whole {
-            self.add_whole_light(tile, light, points, direct, lit.get_mut(&light.light), monitor);
+            let layer = light.light.and_then(|number| lit.get_mut(&number));
+            if asked != Some(layer.is_some()) {
+                self.ask_for_whole(tile, points, layer.is_some(), direct);
+                asked = Some(layer.is_some());
+            }
+            self.add_whole_light(tile, light, points, direct, layer, monitor);
         }
         self.gather(tile, background, points, pixels);
         self.gather_layers(tile, layers, &lit, points, pixels);

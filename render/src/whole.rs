@@ -1,22 +1,49 @@
-//! Light from lights with an area, taken as a whole: what each visible piece of a surface sees of them is integrated.
+//! Light from lights with an area or a length, taken as a whole: what each visible piece of a surface sees of them is integrated.
 //!
-//! The constant part of a BRDF has a closed form, Lambert's formula; the rest is integrated by quadrature over what is seen of the light.
+//! The constant part of a BRDF has a closed form, of an area Lambert's formula; the rest is integrated by quadrature over what is seen of the light.
 
 use crate::direct::DirectScratch;
-use crate::lights::{WholeLight, share};
+use crate::lights::{Shape, WholeLight, share};
 use crate::monitor::Monitor;
+use crate::seen::Seen;
 use crate::shader::{Point, Shader};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Face, Tile};
-use pointillist_shade::{Falloff, Interpolation, Lobe, Model, integrate_polygon, interpolate_color, turn_to};
-use pointillist_shadow::{SeenLight, Viewer};
+use pointillist_shade::{Falloff, Interpolation, Lobe, Model, interpolate_color, turn_to};
+use pointillist_shadow::{Receivers, Viewer};
 use std::ops::Range;
 
 /// Lobe of measured BRDFs, in radians: the width of a highlight that most of them have.
 const MEASURED_LOBE: f32 = 0.1;
 
+impl WholeLight<'_> {
+    /// Its area or length.
+    fn extent(&self) -> f64 {
+        match &self.shape {
+            Shape::Side(side) => side.area(),
+            Shape::Line(line) => line.length(),
+        }
+    }
+
+    /// What a point of a surface would see with nothing in between.
+    fn unhindered(&self, position: DVec3, normal: DVec3) -> Box<dyn Seen> {
+        match &self.shape {
+            Shape::Side(side) => Box::new(side.whole(position, normal)),
+            Shape::Line(line) => Box::new(line.whole(position, normal)),
+        }
+    }
+
+    /// Whether any receiver is where it may shine; receivers are relative to `origin`.
+    fn may_reach(&self, receivers: &Receivers, origin: DVec3) -> bool {
+        let Some((low, high)) = receivers.bounds() else { return false };
+        self.within.is_none_or(|(least, most)| {
+            (low + origin).cmple(most).all() && (high + origin).cmpge(least).all()
+        })
+    }
+}
+
 impl Shader<'_> {
-    /// Adds one side of a light as a whole.
+    /// Adds one side of a light as a whole, to the receivers of [`Shader::ask_for_whole`].
     pub(crate) fn add_whole_light(
         &self,
         tile: &Tile,
@@ -26,26 +53,32 @@ impl Shader<'_> {
         mut lit_layer: Option<&mut Vec<f64>>,
         monitor: &dyn Monitor,
     ) {
-        self.ask_for_whole(tile, points, lit_layer.is_some(), direct);
-        let DirectScratch { area, seen, asked, owners, receivers, .. } = direct;
+        let DirectScratch { area, line, seen, asked, owners, receivers, .. } = direct;
+        if !light.may_reach(receivers, tile.lens().origin) {
+            return;
+        }
         // Summed up by micropoint first: receivers come in an order that depends on the tile.
         seen.clear();
         seen.resize(points.len(), (Vec3::ZERO, 0.0));
         let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
-        light.side.visit(viewer, receivers, area, |receiver, share, part| {
+        let mut add = |receiver: usize, share: f64, part: &dyn Seen| {
             let Range { start, end } = owners[receiver].clone();
             for &owner in &asked[start as usize..end as usize] {
                 let face = &tile.faces()[tile.points()[owner as usize].face as usize];
                 let sum = &mut seen[owner as usize];
                 sum.0 += self.reflect_whole(light, &points[owner as usize], face, part) * share as f32;
-                sum.1 += share * part.area();
+                sum.1 += share * part.extent();
             }
-        });
+        };
+        match &light.shape {
+            Shape::Side(side) => side.visit(viewer, receivers, area, |r, share, part| add(r, share, part)),
+            Shape::Line(own) => own.visit(viewer, receivers, line, |r, share, part| add(r, share, part)),
+        }
         for &owner in &*asked {
             let (radiance, lit) = seen[owner as usize];
             points[owner as usize].direct += radiance;
             if let Some(layer) = lit_layer.as_deref_mut() {
-                layer[owner as usize] += lit / light.side.area() * share(light.channels);
+                layer[owner as usize] += lit / light.extent() * share(light.channels);
             }
         }
         monitor.lap("shadow");
@@ -53,7 +86,13 @@ impl Shader<'_> {
 
     /// Collects the receivers of whole lights. What a pixel sees of a masked face is one: its mask divides it into squares, and
     /// light of this kind does not vary from one to the next.
-    fn ask_for_whole(&self, tile: &Tile, points: &[Point], with_black: bool, direct: &mut DirectScratch) {
+    pub(crate) fn ask_for_whole(
+        &self,
+        tile: &Tile,
+        points: &[Point],
+        with_black: bool,
+        direct: &mut DirectScratch,
+    ) {
         let DirectScratch { asked, owners, receivers, .. } = direct;
         receivers.clear();
         owners.clear();
@@ -78,7 +117,7 @@ impl Shader<'_> {
     }
 
     /// Radiance that a point sends to the eye because of what it sees of a light.
-    fn reflect_whole(&self, light: &WholeLight<'_>, p: &Point, face: &Face, seen: &SeenLight) -> Vec3 {
+    fn reflect_whole(&self, light: &WholeLight<'_>, p: &Point, face: &Face, seen: &dyn Seen) -> Vec3 {
         if self.scene.render.shading == Interpolation::Gouraud
             && let Some(normals) = self.corner_normals(face)
         {
@@ -93,19 +132,19 @@ impl Shader<'_> {
         light: &WholeLight<'_>,
         p: &Point,
         face: &Face,
-        seen: &SeenLight,
+        seen: &dyn Seen,
         normals: [Vec3; 3],
     ) -> Vec3 {
         let above = p.place.face_normal.as_dvec3();
-        let most = light.side.whole(seen.position(), above).share(above);
+        let most = light.unhindered(seen.position(), above).share(above);
         if most <= 0.0 {
             return Vec3::ZERO;
         }
         let corners = self.scene.corners(face.id);
         let at = |k: usize| {
             let to_eye = (self.eye - corners[k]).normalize_or_zero().as_vec3();
-            let whole = light.side.whole(corners[k], above);
-            self.reflect_seen(light, p, face.id, &whole, turn_to(normals[k], p.place.face_normal), to_eye)
+            let whole = light.unhindered(corners[k], above);
+            self.reflect_seen(light, p, face.id, &*whole, turn_to(normals[k], p.place.face_normal), to_eye)
         };
         let share = (seen.share(above) / most).min(1.0) as f32;
         interpolate_color([at(0), at(1), at(2)], p.place.barycentric) * share
@@ -117,7 +156,7 @@ impl Shader<'_> {
         light: &WholeLight<'_>,
         p: &Point,
         triangle: u32,
-        seen: &SeenLight,
+        seen: &dyn Seen,
         normal: Vec3,
         to_eye: Vec3,
     ) -> Vec3 {
@@ -139,10 +178,8 @@ impl Shader<'_> {
             None => material.lobe(normal, to_eye),
         };
         let surface = Point { material, ..*p };
-        seen.for_each_part(|ring, transmittance| {
-            let reflect = |incident: &_| self.reflect(&surface, triangle, incident, normal, to_eye);
-            sum += integrate_polygon(ring, emission, &lobe, reflect) * transmittance as f32;
-        });
+        let mut reflect = |incident: &_| self.reflect(&surface, triangle, incident, normal, to_eye);
+        seen.integrate(emission, &lobe, &mut reflect, &mut sum);
         sum
     }
 }

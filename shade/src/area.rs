@@ -66,6 +66,67 @@ pub fn integrate_polygon(
     sum.as_vec3()
 }
 
+/// As [`integrate_polygon`], from a line between two points relative to the point; [`Emission::radiance`] is the intensity per length, and
+/// [`Emission::front`] does not matter. Parts are halved as cells are divided.
+pub fn integrate_line(
+    ends: [DVec3; 2],
+    emission: &Emission,
+    lobe: &Lobe,
+    mut reflect: impl FnMut(&Incident) -> Vec3,
+) -> Vec3 {
+    let mut sum = DVec3::ZERO;
+    line(ends, MOST_DIVISIONS, emission, lobe, &mut reflect, &mut sum);
+    sum.as_vec3()
+}
+
+fn line(
+    [a, b]: [DVec3; 2],
+    divisions: u32,
+    emission: &Emission,
+    lobe: &Lobe,
+    reflect: &mut impl FnMut(&Incident) -> Vec3,
+    sum: &mut DVec3,
+) {
+    let middle = 0.5 * (a + b);
+    let relative = relative_size(middle, a.distance(b), lobe);
+    if relative > 1.0 && divisions > 0 {
+        line([a, middle], divisions - 1, emission, lobe, reflect, sum);
+        line([middle, b], divisions - 1, emission, lobe, reflect, sum);
+        return;
+    }
+    for &(t, weight) in nodes(relative) {
+        let position = a + (b - a) * t;
+        let (to_light, distance) = direction_and_length(position);
+        let irradiance = scaled(emission.radiance, a.distance(b) * emission.falloff.at(distance));
+        if irradiance != Vec3::ZERO {
+            let source = Source::Position(position);
+            let incident = Incident { to_light: to_light.as_vec3(), irradiance, source };
+            *sum += reflect(&incident).as_dvec3() * weight;
+        }
+    }
+}
+
+/// Size of a cell, relative to the largest that one set of points is enough for.
+fn relative_size(centre: DVec3, size: f64, lobe: &Lobe) -> f64 {
+    let (towards, distance) = direction_and_length(centre);
+    let angle = size / distance.max(f64::MIN_POSITIVE);
+    let axis = lobe.axis.as_dvec3();
+    let away = axis.cross(towards).length().atan2(axis.dot(towards));
+    let scale = f64::from(lobe.width_rad).max(away - 0.5 * angle).min(WIDEST);
+    angle / (scale * LARGEST_CELL)
+}
+
+/// Step 2.
+fn nodes(relative: f64) -> &'static [(f64, f64)] {
+    if relative > FOUR_POINTS {
+        &GAUSS_3
+    } else if relative > ONE_POINT {
+        &GAUSS_2
+    } else {
+        &GAUSS_1
+    }
+}
+
 /// Step 1.
 fn cell(
     quad: &[DVec3; 4],
@@ -78,12 +139,7 @@ fn cell(
     let [a, b, c, d] = *quad;
     let centre = 0.25 * (a + b + c + d);
     let size = a.distance(c).max(b.distance(d)).max(a.distance(b)).max(c.distance(d));
-    let (towards, distance) = direction_and_length(centre);
-    let angle = size / distance.max(f64::MIN_POSITIVE);
-    let axis = lobe.axis.as_dvec3();
-    let away = axis.cross(towards).length().atan2(axis.dot(towards));
-    let scale = f64::from(lobe.width_rad).max(away - 0.5 * angle).min(WIDEST);
-    let relative = angle / (scale * LARGEST_CELL);
+    let relative = relative_size(centre, size, lobe);
     if relative > 1.0 && divisions > 0 {
         let (ab, bc, cd, da) = (0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + d), 0.5 * (d + a));
         for part in [[a, ab, centre, da], [ab, b, bc, centre], [centre, bc, c, cd], [da, centre, cd, d]] {
@@ -91,13 +147,7 @@ fn cell(
         }
         return;
     }
-    let nodes: &[(f64, f64)] = if relative > FOUR_POINTS {
-        &GAUSS_3
-    } else if relative > ONE_POINT {
-        &GAUSS_2
-    } else {
-        &GAUSS_1
-    };
+    let nodes = nodes(relative);
     for &(u, wu) in nodes {
         for &(v, wv) in nodes {
             *sum += point(quad, u, v, emission, reflect).as_dvec3() * (wu * wv);

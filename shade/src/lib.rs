@@ -106,7 +106,7 @@ mod refraction;
 mod roughness;
 mod texture;
 
-pub use area::{Emission, Lobe, integrate_polygon};
+pub use area::{Emission, Lobe, integrate_line, integrate_polygon};
 pub use auto_uv::AutoUv;
 pub use bump::{UvFrame, keep_visible, slope_of_heights};
 pub use creases::{CornerNormals, corner_normals};

@@ -98,6 +98,19 @@ pub enum Light {
         /// How each point of it weakens with distance.
         falloff: Falloff,
     },
+    /// A line each of whose points shines alike in all directions.
+    Line {
+        /// One end.
+        from: DVec3,
+        /// The other end.
+        to: DVec3,
+        /// Radiant intensity per length: of a thin tube, its radiance times its thickness.
+        radiance: Vec3,
+        /// How many points stand for it; `None` for the whole line, exactly.
+        samples: Option<NonZeroU32>,
+        /// How each point of it weakens with distance.
+        falloff: Falloff,
+    },
 }
 
 /// Points that stand for an area light without a number of its own, where points have to stand for it.
@@ -134,11 +147,11 @@ impl Incident {
 }
 
 impl Light {
-    /// How many samples stand for this light: 1 except for lights with an area, which have [`DEFAULT_SAMPLES`] if they do not say.
+    /// How many samples stand for this light: 1 except for lights with an area and lines, which have [`DEFAULT_SAMPLES`] if they do not say.
     #[must_use]
     pub fn samples(&self) -> u32 {
         match self {
-            Self::Rect { samples, .. } | Self::Polygon { samples, .. } => {
+            Self::Rect { samples, .. } | Self::Polygon { samples, .. } | Self::Line { samples, .. } => {
                 samples.map_or(DEFAULT_SAMPLES, NonZeroU32::get)
             }
             _ => 1,
@@ -152,6 +165,15 @@ impl Light {
         match *self {
             Self::Rect { samples: None, .. } => Some((self.outline()?, false)),
             Self::Polygon { samples: None, two_sided, .. } => Some((self.outline()?, two_sided)),
+            _ => None,
+        }
+    }
+
+    /// The ends of a line whose samples nobody asked for: it can be taken as a whole.
+    #[must_use]
+    pub fn exact_line(&self) -> Option<[DVec3; 2]> {
+        match *self {
+            Self::Line { from, to, samples: None, .. } => Some([from, to]),
             _ => None,
         }
     }
@@ -177,7 +199,8 @@ impl Light {
             Self::Point { falloff, .. }
             | Self::Spot { falloff, .. }
             | Self::Rect { falloff, .. }
-            | Self::Polygon { falloff, .. } => falloff,
+            | Self::Polygon { falloff, .. }
+            | Self::Line { falloff, .. } => falloff,
         }
     }
 
@@ -190,6 +213,10 @@ impl Light {
             Self::Rect { corner, edge_u, edge_v, .. } => {
                 let [s, t] = hammersley(sample % self.samples(), self.samples());
                 Source::Position(corner + edge_u * s + edge_v * t)
+            }
+            Self::Line { from, to, .. } => {
+                let [t, _] = hammersley(sample % self.samples(), self.samples());
+                Source::Position(from + (to - from) * t)
             }
             Self::Polygon { outline, .. } => {
                 Source::Position(outline.point(hammersley(sample % self.samples(), self.samples())))
@@ -227,6 +254,10 @@ impl Light {
                 let cos_light = if two_sided { cos_light.abs() } else { cos_light.max(0.0) };
                 area / f64::from(self.samples()) * cos_light * falloff.at(d)
             }
+            Self::Line { from, to, falloff, .. } => {
+                let (_, length) = direction_and_length(to - from);
+                length / f64::from(self.samples()) * falloff.at(d)
+            }
         };
         Incident { to_light: to_light.as_vec3(), irradiance: scaled(self.color(), strength), source }
     }
@@ -237,7 +268,9 @@ impl Light {
         match *self {
             Self::Directional { irradiance, .. } => irradiance,
             Self::Point { intensity, .. } | Self::Spot { intensity, .. } => intensity,
-            Self::Rect { radiance, .. } | Self::Polygon { radiance, .. } => radiance,
+            Self::Rect { radiance, .. } | Self::Polygon { radiance, .. } | Self::Line { radiance, .. } => {
+                radiance
+            }
         }
     }
 

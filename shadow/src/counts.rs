@@ -40,3 +40,47 @@ impl std::ops::AddAssign for ShadowCounts {
         self.partial += o.partial;
     }
 }
+
+/// Counts of work done and of work skipped for lights with an area and lines that shine, summed over calls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct AreaCounts {
+    /// Receivers asked about.
+    pub receivers: u64,
+    /// Receivers left out: behind the light, or with all of it below their horizon.
+    pub facing_away: u64,
+    /// Points at which receivers were asked.
+    pub points: u64,
+    /// Points whose group has no caster near: they see the whole light, without a test.
+    pub lit_by_group: u64,
+    /// Points that see nothing of the light.
+    pub dark: u64,
+    /// Casters of all groups in sum.
+    pub casters: u64,
+}
+
+impl std::ops::AddAssign for AreaCounts {
+    fn add_assign(&mut self, o: Self) {
+        self.receivers += o.receivers;
+        self.facing_away += o.facing_away;
+        self.points += o.points;
+        self.lit_by_group += o.lit_by_group;
+        self.dark += o.dark;
+        self.casters += o.casters;
+    }
+}
+
+impl AreaCounts {
+    /// Receivers of a batch, of which some are asked.
+    pub(crate) fn batch(&mut self, receivers: usize, asked: usize) {
+        self.receivers += receivers as u64;
+        self.facing_away += (receivers - asked) as u64;
+    }
+
+    /// A point that was asked.
+    pub(crate) fn point(&mut self, has_casters: bool, is_dark: bool) {
+        self.points += 1;
+        self.lit_by_group += u64::from(!has_casters && !is_dark);
+        self.dark += u64::from(is_dark);
+    }
+}

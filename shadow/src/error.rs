@@ -28,6 +28,9 @@ pub enum ShadowError {
         /// Position of the vertex.
         index: usize,
     },
+    /// Both ends of a line that shines are one point.
+    #[error("the light's line has no length")]
+    LineWithoutLength,
     /// The vertices of a polygonal light lie on a line.
     #[error("the light's outline has no area")]
     OutlineWithoutArea,

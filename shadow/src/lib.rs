@@ -12,7 +12,7 @@
 //!
 //! What a point sees of a light with an area ([`AreaLight`]) is exact up to rounding, but for casters nearer to the point than 10⁻⁶ of its
 //! distance from the light's plane, along the light's normal, and for masks, which weaken light by their mean over each part. A receiver
-//! is asked at its middle, or at those of its pieces ([`AreaOptions`]). Cost: a microsecond or two for each point in a penumbra, less
+//! is asked at its middle, or at those of its pieces ([`AreaOptions`]). The same holds of a line that shines ([`LineLight`]). Cost: a microsecond or two for each point in a penumbra, less
 //! elsewhere; masks cost a cut of the light for each of them.
 //!
 //! # Features
@@ -36,6 +36,7 @@ mod grid;
 pub mod invariants;
 mod layers;
 mod light;
+mod line;
 mod lit_regions;
 mod options;
 mod query;
@@ -49,9 +50,10 @@ pub use glam;
 pub use pointillist_micropoint as micropoint;
 
 pub use area::{AreaLight, AreaOptions, AreaScratch, LARGEST_OUTLINE, SeenLight, check_outline};
-pub use counts::ShadowCounts;
+pub use counts::{AreaCounts, ShadowCounts};
 pub use error::ShadowError;
 pub use light::ShadowLight;
+pub use line::{LineLight, LineScratch, SeenLine};
 pub use lit_regions::LitRegion;
 pub use options::{Resolution, ShadowOptions};
 pub use receiver::{Receivers, Viewer};

@@ -8,6 +8,10 @@ use pointillist_micropoint::{Face, Fragment, Lens, Micropoint, Tile};
 pub struct Receivers {
     pub(crate) list: Vec<Receiver>,
     pub(crate) vertices: Vec<DVec3>,
+    /// Around all vertices; without vertices, nothing is around them.
+    around: Option<(DVec3, DVec3)>,
+    /// Pieces that do not join the one before.
+    wholes: usize,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +34,14 @@ impl Receivers {
     pub fn clear(&mut self) {
         self.list.clear();
         self.vertices.clear();
+        self.around = None;
+        self.wholes = 0;
+    }
+
+    /// A box around all corners: its lowest and its highest corner, relative to the viewer's lens. `None` if there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        self.around
     }
 
     /// Number of pieces.
@@ -59,6 +71,10 @@ impl Receivers {
         let first_vertex = self.vertices.len() as u32;
         self.vertices.extend(corners);
         let vertex_count = self.vertices.len() as u32 - first_vertex;
+        for &v in &self.vertices[first_vertex as usize..] {
+            self.around = Some(self.around.map_or((v, v), |(low, high)| (low.min(v), high.max(v))));
+        }
+        self.wholes += 1;
         self.list.push(Receiver {
             face,
             first_vertex,
@@ -95,6 +111,7 @@ impl Receivers {
             self.push_fragment(tile, point, fragment);
             if let Some(piece) = self.list.last_mut() {
                 (piece.weight, piece.joins, piece.visibility) = (fragment.weight, i > 0, visibility);
+                self.wholes -= usize::from(i > 0);
             }
         }
     }
@@ -103,6 +120,11 @@ impl Receivers {
         let face: &Face = &tile.faces()[point.face as usize];
         let corners = tile.outline(fragment).iter();
         self.push(point.face, corners.map(|&v| tile.position(v, face.nearness_at(v))));
+    }
+
+    /// Number of receivers for lights with an area.
+    pub(crate) fn wholes(&self) -> usize {
+        self.wholes
     }
 
     pub(crate) fn corners(&self, r: &Receiver) -> &[DVec3] {

@@ -4,7 +4,8 @@ use glam::{DVec3, dvec3};
 use pointillist_micropoint::invariants::{self as micropoint, Soup};
 use pointillist_micropoint::{MicropointOptions, PlainOpacity, Projection, View};
 use pointillist_shadow::invariants::area::{self, seen_picture, seen_picture_with, shares_on};
-use pointillist_shadow::{AreaLight, AreaOptions, ShadowError, check_outline};
+use pointillist_shadow::invariants::line;
+use pointillist_shadow::{AreaLight, AreaOptions, LineLight, ShadowError, check_outline};
 use proptest::prelude::*;
 use testkit::holds;
 
@@ -77,6 +78,11 @@ fn soup() -> BoxedStrategy<Soup> {
         .boxed()
 }
 
+/// Of a line that shines.
+fn ends() -> BoxedStrategy<[DVec3; 2]> {
+    (point(), direction(), 0.5..3.0f64).prop_map(|(p, d, far)| [p * far, p * far + d]).boxed()
+}
+
 fn view() -> BoxedStrategy<View> {
     (direction(), 0.5..4.0f64, point(), 0.3..1.6f64, 1..7u32, 1..7u32)
         .prop_filter_map("eye and target differ", |(d, distance, target, fov_y_rad, w, h)| {
@@ -110,6 +116,78 @@ proptest! {
         // An edge across the light misplaces half a cell of each row or column at most; a dozen edges may.
         holds!(area::agrees_with_rays(&s, v, l, 40, 0.1));
     }
+
+    #[test]
+    fn what_is_seen_of_a_line_does_not_depend_on_tiles(s in soup(), v in view(), l in ends()) {
+        holds!(line::tiles_do_not_matter(&s, v, l));
+    }
+
+    #[test]
+    fn what_is_seen_of_a_line_does_not_depend_on_the_order_of_triangles(s in soup(), v in view(), l in ends(), seed: u64) {
+        holds!(line::triangle_order_does_not_matter(&s, v, l, seed));
+    }
+
+    #[test]
+    fn what_is_seen_of_a_line_is_what_rays_find(s in soup(), v in view(), l in ends()) {
+        // A caster misplaces half a place at each end.
+        holds!(line::agrees_with_rays(&s, v, l, 200, 0.1));
+    }
+}
+
+#[test]
+fn a_line_over_a_plane_gives_the_closed_form_and_its_shadow_its_limits() {
+    // From −1 to 1 at height 1, over the ground's origin: ∫ h / (h² + x²)^(3/2) dx = 2 / √2 straight below its middle.
+    let light = [dvec3(-1.0, 1.0, 0.0), dvec3(1.0, 1.0, 0.0)];
+    let picture = line::seen_picture(&ground(), down(0.001, 1), light).unwrap();
+    let expected = std::f64::consts::SQRT_2 / std::f64::consts::PI;
+    assert!((picture[0][0].share - expected).abs() < 1e-6, "{picture:?}");
+    // A wall that hides all places beyond 0 from the origin's right.
+    let mut soup = ground();
+    let wall = soup.surface(1.0);
+    let corners = [dvec3(0.1, 0.0, -1.0), dvec3(0.1, 0.0, 1.0), dvec3(0.1, 2.0, 1.0), dvec3(0.1, 2.0, -1.0)];
+    soup.polygon(&corners, wall);
+    let picture = line::seen_picture(&soup, down(0.001, 1), light).unwrap();
+    // From x = 0 the wall hides what is beyond 0.1; the pixel is 0.001 wide.
+    let seen = picture[0][0].area;
+    assert!((seen - 0.55).abs() < 1e-3, "{seen}");
+}
+
+#[test]
+fn what_crosses_the_plane_of_a_light_of_two_sides_is_on_one_of_them() {
+    // A light that stands on the ground, tilted, and the pixels under its foot.
+    let front = [dvec3(-1.0, 0.0, 0.03), dvec3(1.0, 0.0, 0.03), dvec3(1.0, 1.0, 0.5), dvec3(-1.0, 1.0, 0.5)];
+    let mut back = front;
+    back.reverse();
+    // One triangle: one receiver in each pixel.
+    let mut soup = Soup::default();
+    let surface = soup.surface(1.0);
+    soup.polygon(&[dvec3(-9.0, 0.0, 9.0), dvec3(9.0, 0.0, 9.0), dvec3(0.0, 0.0, -9.0)], surface);
+    let areas = |outline: &[DVec3]| -> Vec<f64> {
+        let picture = seen_picture(&soup, down(0.5, 3), outline).unwrap();
+        picture.iter().map(|pixel| pixel.iter().map(|p| p.weight * p.area).sum()).collect()
+    };
+    let both: Vec<f64> = areas(&front).into_iter().zip(areas(&back)).map(|(a, b)| a + b).collect();
+    assert!(both.iter().all(|&sum| sum <= 1.0 + 1e-9 && sum > 0.9), "{both:?}");
+}
+
+#[test]
+fn a_line_in_the_plane_of_a_receiver_does_not_light_it() {
+    // A tilted square, whose plane is met by the line's ends up to rounding.
+    let mut soup = Soup::default();
+    let surface = soup.surface(1.0);
+    let tilted = |p: DVec3| glam::DQuat::from_rotation_x(0.3) * p;
+    soup.polygon(&square(1.0, 0.0).map(tilted), surface);
+    let light = [dvec3(-0.3, 0.0, 0.7), dvec3(0.9, 0.0, -0.1)].map(tilted);
+    let picture = line::seen_picture(&soup, down(0.5, 3), light).unwrap();
+    assert!(picture.iter().all(Vec::is_empty), "{picture:?}");
+}
+
+#[test]
+fn lines_that_are_none_are_refused() {
+    let geometry = ground().geometry().unwrap();
+    let refused = |ends| LineLight::new(&geometry, &PlainOpacity, ends, AreaOptions::DEFAULT).err();
+    assert_eq!(refused([DVec3::X; 2]), Some(ShadowError::LineWithoutLength));
+    assert_eq!(refused([DVec3::X, DVec3::NAN]), Some(ShadowError::NotFinite { what: "line" }));
 }
 
 proptest! {

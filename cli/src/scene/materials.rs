@@ -220,6 +220,7 @@ impl<'a> MaterialTable<'a> {
             }
         };
         details.uv = found.uv;
+        details.emits = found.emits;
         let opacity_map = found.opacity_map.as_ref().map(|r| load(r, Purpose::Opacity));
         let mut surface = found.surface;
         if let Some(measured) = &details.measured {

@@ -7,7 +7,7 @@ use super::{
 };
 use glam::Vec3;
 use pointillist_shade::Light;
-use pointillist_shadow::check_outline;
+use pointillist_shadow::{ShadowError, check_outline};
 
 impl Scene {
     /// Whether lists fit one another, indices refer to something, and numbers are finite. Linear in the size of the scene
@@ -87,6 +87,12 @@ impl Material {
         self.details
             .numbers()
             .try_for_each(|(name, value)| finite(value.is_finite(), || format!("{user}: {name}")))?;
+        if self.details.emits && s.emission == Vec3::ZERO {
+            return Err(SceneError::NoEmission { material: self.name.clone() });
+        }
+        if self.details.emits && s.emission.min_element() < 0.0 {
+            return Err(SceneError::NegativeEmission { material: self.name.clone() });
+        }
         match self.details.transmission {
             Some(Transmission { index, .. }) if index <= 0.0 => {
                 Err(SceneError::RefractionIndex { material: self.name.clone(), value: index })
@@ -174,11 +180,16 @@ fn finite(is_finite: bool, what: impl FnOnce() -> String) -> Result<(), SceneErr
 fn check_light(source: &LightSource) -> Result<(), SceneError> {
     let LightSource { name, light, .. } = source;
     finite(is_finite(light), || format!("light `{name}`"))?;
-    let Light::Polygon { outline, radiance, .. } = light else { return Ok(()) };
+    let (Light::Polygon { radiance, .. } | Light::Line { radiance, .. }) = light else { return Ok(()) };
     if radiance.min_element() < 0.0 {
         return Err(SceneError::NegativeLight { name: name.clone() });
     }
-    check_outline(outline.vertices()).map_err(|fault| SceneError::LightOutline { name: name.clone(), fault })
+    let fault = match light {
+        Light::Polygon { outline, .. } => check_outline(outline.vertices()),
+        Light::Line { from, to, .. } if from == to => Err(ShadowError::LineWithoutLength),
+        _ => Ok(()),
+    };
+    fault.map_err(|fault| SceneError::LightOutline { name: name.clone(), fault })
 }
 
 fn is_finite(light: &Light) -> bool {
@@ -196,6 +207,7 @@ fn is_finite(light: &Light) -> bool {
             Light::Rect { corner, edge_u, edge_v, .. } => {
                 corner.is_finite() && edge_u.is_finite() && edge_v.is_finite()
             }
+            Light::Line { from, to, .. } => from.is_finite() && to.is_finite(),
             Light::Polygon { outline, .. } => outline.vertices().iter().all(|v| v.is_finite()),
             _ => true,
         }

@@ -40,6 +40,12 @@ pub struct Details {
     pub uv: Option<AutoUv>,
     /// Whether the back is not drawn.
     pub one_sided: bool,
+    /// Whether its polygons are lights: they light others directly, with exact shadows, and are no light sources of probes and radiosity
+    /// besides. Each sends out the mean of its emission, from its front, and from its back if that is drawn. Needs an emission.
+    ///
+    /// Coplanar neighbours are joined to convex polygons, of which each costs about what a rectangular light costs: a flat lamp is one,
+    /// a round bulb has as many as triangles.
+    pub emits: bool,
 }
 
 /// One number or colour per texel.

@@ -89,13 +89,25 @@ pub enum SceneError {
         /// Entries it would have.
         count: usize,
     },
+    /// A material is to light others, and has no emission.
+    #[error("material `{material}`: it emits, but its emission is 0")]
+    NoEmission {
+        /// The material's name.
+        material: String,
+    },
+    /// A material is to light others, and takes light away.
+    #[error("material `{material}`: it emits, and its emission is negative")]
+    NegativeEmission {
+        /// The material's name.
+        material: String,
+    },
     /// A light's radiance is negative.
     #[error("light `{name}` has a negative radiance")]
     NegativeLight {
         /// Its name.
         name: String,
     },
-    /// A polygonal light is no planar convex polygon.
+    /// A polygonal light is no planar convex polygon, or a line has no length.
     #[error("light `{name}`: {fault}")]
     LightOutline {
         /// Its name.

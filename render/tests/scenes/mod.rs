@@ -62,6 +62,13 @@ fn light() -> impl Strategy<Value = Light> {
             samples: NonZeroU32::new(samples),
             falloff,
         }),
+        (point(), point(), color(3.0), 0..3u32).prop_filter_map(
+            "a line",
+            move |(from, to, radiance, samples)| {
+                let samples = NonZeroU32::new(samples);
+                (from != to).then_some(Light::Line { from, to, radiance, samples, falloff })
+            }
+        ),
         (point(), color(3.0), any::<bool>()).prop_map(move |(place, radiance, two_sided)| {
             let vertices = [DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::new(0.2, 0.9, 0.9)];
             let outline = LightOutline::new(&vertices.map(|v| place + v)).expect("four vertices");
@@ -117,13 +124,17 @@ fn details() -> impl Strategy<Value = Details> {
 /// Materials with textures by chance: none, or the first one everywhere.
 fn material() -> impl Strategy<Value = Material> {
     let plain = prop_oneof![Just(Details::default()), details()];
-    (surface(), plain, any::<[bool; 2]>()).prop_map(|(surface, details, [diffuse, opacity])| {
-        let mut material = Material::new("any", surface);
-        material.diffuse_map = diffuse.then_some(0);
-        material.opacity_map = opacity.then_some(0);
-        material.details = details;
-        material
-    })
+    let emits = prop::bool::weighted(0.1);
+    (surface(), plain, emits, any::<[bool; 2]>()).prop_map(
+        |(surface, mut details, emits, [diffuse, opacity])| {
+            details.emits = emits && surface.emission != Vec3::ZERO;
+            let mut material = Material::new("any", surface);
+            material.diffuse_map = diffuse.then_some(0);
+            material.opacity_map = opacity.then_some(0);
+            material.details = details;
+            material
+        },
+    )
 }
 
 /// Ambient light of each kind; what is baked is so after the triangles are known.

@@ -7,10 +7,11 @@ use super::piece::{self, Piece, around};
 use super::shaft::Shaft;
 use super::sheets::Sheets;
 use super::sweep::Sweep;
+use super::targets::{Box3, Target, Targets, bounds, split};
+use crate::counts::AreaCounts;
 use crate::receiver::{Receivers, Viewer};
 use glam::{DVec2, DVec3};
 use pointillist_dice::convex;
-use pointillist_micropoint::Face;
 use std::ops::Range;
 
 /// Groups of this many receivers are not divided further.
@@ -19,31 +20,23 @@ const FEW_RECEIVERS: usize = 8;
 /// Groups with no more casters than this are not divided further.
 const FEW_SHEETS: usize = 12;
 
-type Box3 = (DVec3, DVec3);
-
-/// A receiver in the frame of a light.
-#[derive(Clone, Copy, Debug)]
-struct Target {
-    receiver: u32,
-    /// Unit normal of its surface, on the side that is seen.
-    normal: DVec3,
-    /// What it gives to the picture over what it would give with nothing in front.
-    visibility: f64,
-    bounds: Box3,
-    first_piece: u32,
-    piece_count: u32,
-}
-
 /// Reusable memory of [`AreaLight::visit`], one per thread.
 #[derive(Debug, Default)]
 pub struct AreaScratch {
-    targets: Vec<Target>,
-    pieces: Vec<Piece>,
-    corners: Vec<DVec3>,
+    targets: Targets,
     sheets: Sheets,
     /// Stack of the sheets of nested groups.
     stack: Vec<u32>,
     point: PointScratch,
+    pub(crate) counts: AreaCounts,
+}
+
+impl AreaScratch {
+    /// What has been done since the last call.
+    #[must_use]
+    pub fn take_counts(&mut self) -> AreaCounts {
+        std::mem::take(&mut self.counts)
+    }
 }
 
 /// Memory for one point.
@@ -64,84 +57,32 @@ pub(crate) fn visit(
     scratch: &mut AreaScratch,
     visit: &mut impl FnMut(usize, f64, &SeenLight),
 ) {
-    let AreaScratch { targets, pieces, corners, sheets, stack, point } = scratch;
-    collect(light, viewer, receivers, (targets, pieces, corners));
+    let AreaScratch { targets, sheets, stack, point, counts } = scratch;
+    // Behind the light, edge-on, or the light below the horizon of all of it.
+    let is_lit = |own: &[DVec3], highest: DVec3, normal: DVec3| {
+        let towards = light.outline.iter().map(|v| v.extend(0.0));
+        let faces = |v: DVec3| own.iter().any(|&c| normal.dot(v - c) > 0.0);
+        highest.z > light.coincident && towards.into_iter().any(faces)
+    };
+    targets.collect((light.geometry, &light.frame), viewer, receivers, |face, own, highest, normal| {
+        is_lit(own, highest, normal) && !light.is_own(face.id)
+    });
+    let Targets { list: targets, pieces, corners } = targets;
+    counts.batch(receivers.wholes(), targets.len());
     if targets.is_empty() {
         return;
     }
     let shaft = Shaft::new(bounds(targets), convex::bounds(&light.outline));
     sheets.clear();
     if light.casts {
-        sheets.gather(light.geometry, &light.frame, &shaft, light.coincident);
+        sheets.gather(light, &shaft);
     }
     stack.clear();
     stack.extend(0..sheets.list.len() as u32);
     point.outline.start(sheets, light.coincident);
     point.seen.frame = light.frame;
-    Groups { light, pieces, corners, sheets, stack, point, visit }.divide(targets, 0);
-}
-
-/// Receivers that may see something of the light.
-fn collect(
-    light: &AreaLight<'_>,
-    viewer: Viewer<'_>,
-    receivers: &Receivers,
-    (targets, pieces, corners): (&mut Vec<Target>, &mut Vec<Piece>, &mut Vec<DVec3>),
-) {
-    targets.clear();
-    pieces.clear();
-    corners.clear();
-    let offset = viewer.lens.origin - light.frame.origin;
-    let mut next = 0;
-    while let Some(receiver) = receivers.list.get(next) {
-        let index = next as u32;
-        let (first_piece, first_corner) = (pieces.len(), corners.len());
-        for (i, r) in receivers.list[next..].iter().enumerate() {
-            if i > 0 && !r.joins {
-                break;
-            }
-            next += 1;
-            if r.weight > 0.0 {
-                let first = corners.len();
-                corners.extend(receivers.corners(r).iter().map(|&c| light.frame.local_vector(c + offset)));
-                let (middle, _) = piece::middle(&corners[first..]);
-                let corner_count = (corners.len() - first) as u32;
-                pieces.push(Piece { first_corner: first as u32, corner_count, weight: r.weight, middle });
-            }
-        }
-        let own = &corners[first_corner..];
-        let (low, high) = around(own.iter());
-        let normal = seen_normal(light, &viewer.faces[receiver.face as usize]);
-        // Behind the light, edge-on, or the light below the horizon of all of it.
-        let towards = light.outline.iter().map(|v| v.extend(0.0));
-        let faces = |v: DVec3| own.iter().any(|&c| normal.dot(v - c) > 0.0);
-        let lit = high.z > light.coincident && towards.into_iter().any(faces);
-        if !(lit && low.is_finite() && high.is_finite()) {
-            pieces.truncate(first_piece);
-            corners.truncate(first_corner);
-            continue;
-        }
-        targets.push(Target {
-            receiver: index,
-            normal,
-            visibility: receiver.visibility,
-            bounds: (low, high),
-            first_piece: first_piece as u32,
-            piece_count: (pieces.len() - first_piece) as u32,
-        });
-    }
-}
-
-/// Unit normal of a face on the side that the viewer sees, in the light's frame.
-fn seen_normal(light: &AreaLight<'_>, face: &Face) -> DVec3 {
-    let [a, b, c] = light.geometry.corners(face.source);
-    let normal = (b - a).cross(c - a).normalize_or_zero();
-    light.frame.local_vector(if face.front { normal } else { -normal })
-}
-
-fn bounds(targets: &[Target]) -> Box3 {
-    let union = |a: Box3, t: &Target| (a.0.min(t.bounds.0), a.1.max(t.bounds.1));
-    targets.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), union)
+    Groups { light, pieces, corners, sheets, stack, point, counts, has_casters: false, visit }
+        .divide(targets, 0);
 }
 
 /// A batch of receivers while it is divided.
@@ -153,6 +94,9 @@ struct Groups<'s, F> {
     sheets: &'s Sheets,
     stack: &'s mut Vec<u32>,
     point: &'s mut PointScratch,
+    counts: &'s mut AreaCounts,
+    /// The group at hand has some.
+    has_casters: bool,
     visit: &'s mut F,
 }
 
@@ -186,6 +130,8 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
     /// Asks the points of a group one by one.
     fn settle(&mut self, targets: &[Target], first: usize, (around, shaft): (Box3, &Shaft)) {
         let group = &self.stack[first..];
+        self.has_casters = !group.is_empty();
+        self.counts.casters += group.len() as u64;
         let opaque = |&&s: &&u32| self.sheets.list[s as usize].mask.is_none();
         self.point.outline.take(self.sheets, group.iter().filter(opaque).copied(), around, shaft);
         self.point.masks.take(self.sheets, group);
@@ -208,7 +154,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
             let around = around(all.clone());
             let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
             if !self.point.outline.passes_between(self.sheets, all.copied(), around, &shaft) {
-                let factor = self.cast((middle, target.normal), &shaft, around.1.z);
+                let factor = self.cast((middle, target.normal), &shaft, (around.0.z, around.1.z));
                 if !self.is_coarse(target, factor, radius, halvings) {
                     return self.report(target, share);
                 }
@@ -227,7 +173,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         let (middle, radius) = piece::middle(ring);
         let around = around(ring.iter());
         let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
-        let factor = self.cast((middle, target.normal), &shaft, around.1.z);
+        let factor = self.cast((middle, target.normal), &shaft, (around.0.z, around.1.z));
         if self.is_coarse(target, factor, radius, halvings) {
             let halves = piece::halves(ring, middle);
             let areas = halves.each_ref().map(|h| piece::area(h));
@@ -252,13 +198,14 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
     }
 
     fn report(&mut self, target: &Target, share: f64) {
+        self.counts.point(self.has_casters, self.point.seen.is_empty());
         if !self.point.seen.is_empty() {
             (self.visit)(target.receiver as usize, share, &self.point.seen);
         }
     }
 
-    /// What a point of a surface sees. Returns the factor of [`Outline::cast`] for points around it that are at most this high over the light.
-    fn cast(&mut self, (point, normal): (DVec3, DVec3), shaft: &Shaft, highest: f64) -> f64 {
+    /// What a point of a surface sees. Returns the factor of [`Outline::cast`] for points around it between these heights over the light.
+    fn cast(&mut self, (point, normal): (DVec3, DVec3), shaft: &Shaft, (lowest, highest): (f64, f64)) -> f64 {
         let PointScratch { outline, masks, sweep, polygon, seen } = &mut *self.point;
         seen.clear();
         seen.point = point;
@@ -274,16 +221,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         let factor = outline.cast(self.sheets, (point, normal), shaft, sweep);
         sweep.finish(polygon, self.sheets, seen);
         masks.dim(self.light, self.sheets, seen);
-        factor
+        // Some of what it stands for may be behind the light.
+        if lowest < -self.light.coincident { f64::INFINITY } else { factor }
     }
-}
-
-/// Two halves of a group, side by side along the longest side of the box around it.
-fn split(targets: &mut [Target], (low, high): Box3) -> (&mut [Target], &mut [Target]) {
-    let middle = targets.len() / 2;
-    let size = high - low;
-    let axis = if size.x >= size.y.max(size.z) { 0 } else { 1 + usize::from(size.z > size.y) };
-    let key = |t: &Target| t.bounds.0[axis] + t.bounds.1[axis];
-    targets.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
-    targets.split_at_mut(middle)
 }

@@ -19,7 +19,7 @@ const NO_AREA: f64 = 1e-12;
 
 /// Distances below this, times the size of the scene, are 0: of a receiver from the plane of a caster that it lies on, and of a caster from
 /// the plane of the light. Visible surfaces coincide below the same share of their depth (`pointillist-micropoint`).
-const COINCIDENT: f64 = 1e-10;
+pub(crate) const COINCIDENT: f64 = 1e-10;
 
 /// How finely a polygonal light is asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +68,11 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// The axes of the world about a point.
+    pub(crate) fn at(origin: DVec3) -> Self {
+        Self { origin, axes: [DVec3::X, DVec3::Y, DVec3::Z] }
+    }
+
     pub(crate) fn local(&self, world: DVec3) -> DVec3 {
         self.local_vector(world - self.origin)
     }
@@ -97,6 +102,8 @@ pub struct AreaLight<'a> {
     pub(crate) width: f64,
     /// Distances up to this are 0.
     pub(crate) coincident: f64,
+    /// The triangles that shine, rising.
+    pub(crate) own: Vec<u32>,
 }
 
 impl<'a> AreaLight<'a> {
@@ -128,7 +135,24 @@ impl<'a> AreaLight<'a> {
             casts: true,
             width,
             coincident: COINCIDENT * size,
+            own: vec![],
         })
+    }
+
+    /// The same light as the shine of these triangles, by their positions in the caller's array: they cast no shadow on it, and it does not
+    /// light them. Their plane is the light's up to rounding, which decides about neither.
+    #[must_use]
+    pub fn of_triangles(mut self, triangles: &[u32]) -> Self {
+        self.own = triangles.to_vec();
+        self.own.sort_unstable();
+        self
+    }
+
+    /// The same light, asked as finely as these options say.
+    #[must_use]
+    pub fn with_options(mut self, options: AreaOptions) -> Self {
+        self.options = options;
+        self
     }
 
     /// The same light without shadows.
@@ -180,7 +204,26 @@ impl<'a> AreaLight<'a> {
         scratch: &mut AreaScratch,
         mut visit: impl FnMut(usize, f64, &SeenLight),
     ) {
-        super::group::visit(self, viewer, receivers, scratch, &mut visit);
+        let behind = |bounds| self.is_behind(bounds, viewer.lens.origin);
+        if receivers.bounds().is_none_or(behind) {
+            scratch.counts.batch(receivers.wholes(), 0);
+        } else {
+            super::group::visit(self, viewer, receivers, scratch, &mut visit);
+        }
+    }
+}
+
+impl AreaLight<'_> {
+    /// Whether a triangle is part of the light.
+    pub(crate) fn is_own(&self, triangle: u32) -> bool {
+        !self.own.is_empty() && self.own.binary_search(&triangle).is_ok()
+    }
+
+    /// Whether everything in a box, relative to a point, is behind the light.
+    fn is_behind(&self, (low, high): (DVec3, DVec3), origin: DVec3) -> bool {
+        let front = self.front();
+        let farthest = DVec3::select(front.cmpgt(DVec3::ZERO), high, low);
+        front.dot(farthest + (origin - self.frame.origin)) <= 0.0
     }
 }
 
@@ -244,8 +287,7 @@ pub struct SeenLight {
 
 impl Default for SeenLight {
     fn default() -> Self {
-        let frame = Frame { origin: DVec3::ZERO, axes: [DVec3::X, DVec3::Y, DVec3::Z] };
-        Self { frame, point: DVec3::Z, vertices: vec![], parts: vec![] }
+        Self { frame: Frame::at(DVec3::ZERO), point: DVec3::Z, vertices: vec![], parts: vec![] }
     }
 }
 

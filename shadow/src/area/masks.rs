@@ -191,19 +191,11 @@ impl View<'_> {
         let [a, b, c] = geometry.corners(face.source).map(|p| frame.local(p) - self.point);
         let normal = (b - a).cross(c - a);
         let at = |&grid: &DVec2| {
-            // a + t·(b − a) + s·(c − a) on the line to the polygon's corner, by Cramer's rule; a common factor cancels.
             let towards = grid.extend(0.0) - self.point;
-            let weights =
-                DVec3::new(towards.dot(b.cross(c)), towards.dot(c.cross(a)), towards.dot(a.cross(b)));
-            let sum = weights.element_sum();
-            let kept = if sum < 0.0 { -weights } else { weights }.max(DVec3::ZERO);
-            let total = kept.element_sum();
-            let barycentric = if total > 0.0 { kept / total } else { DVec3::splat(1.0 / 3.0) };
             let along = normal.dot(a) / normal.dot(towards);
             // Depth along the light's axis: a corner of the polygon is at the point's height over the light.
-            let depth =
-                if in_perspective { (along * self.point.z).abs().max(f64::MIN_POSITIVE) } else { 1.0 };
-            SurfacePoint { grid, nearness: 1.0 / depth, rational: 1.0 / depth, barycentric }
+            let depth = if in_perspective { (along * self.point.z).abs() } else { 1.0 };
+            surface_point([a, b, c], towards, grid, depth)
         };
         let zero = SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO };
         let mut points = [zero; convex::MAX_VERTICES];
@@ -213,4 +205,16 @@ impl View<'_> {
         let mean = opacity.rough_opacity(face.id, &points[..polygon.len()]);
         f64::from(geometry.surfaces()[face.surface as usize].behind_mask(mean))
     }
+}
+
+/// Where the line from a point towards a place meets a triangle's plane, on the triangle; corners are relative to the point.
+pub(crate) fn surface_point([a, b, c]: [DVec3; 3], towards: DVec3, grid: DVec2, depth: f64) -> SurfacePoint {
+    // a + t·(b − a) + s·(c − a) on the line, by Cramer's rule; a common factor cancels.
+    let weights = DVec3::new(towards.dot(b.cross(c)), towards.dot(c.cross(a)), towards.dot(a.cross(b)));
+    let sum = weights.element_sum();
+    let kept = if sum < 0.0 { -weights } else { weights }.max(DVec3::ZERO);
+    let total = kept.element_sum();
+    let barycentric = if total > 0.0 { kept / total } else { DVec3::splat(1.0 / 3.0) };
+    let nearness = 1.0 / depth.max(f64::MIN_POSITIVE);
+    SurfacePoint { grid, nearness, rational: nearness, barycentric }
 }

@@ -18,13 +18,14 @@
 //! of 0 there, exactly (step 4), so that what a point sees depends neither on its companions nor on the order of triangles.
 
 mod group;
-mod light;
-mod masks;
+pub(crate) mod light;
+pub(crate) mod masks;
 mod outline;
-mod piece;
+pub(crate) mod piece;
 mod shaft;
 mod sheets;
 mod sweep;
+pub(crate) mod targets;
 
 pub use group::AreaScratch;
 pub use light::{AreaLight, AreaOptions, LARGEST_OUTLINE, SeenLight, check_outline};

@@ -1,9 +1,9 @@
 //! Casters in the frame of a light, with the edges that they share.
 
-use super::light::Frame;
+use super::light::AreaLight;
 use super::shaft::Shaft;
 use glam::{DVec3, dvec3};
-use pointillist_micropoint::{ClusterFace, ClusterView, Geometry};
+use pointillist_micropoint::{ClusterFace, ClusterView};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 use std::num::NonZeroU32;
@@ -77,32 +77,26 @@ impl Sheets {
         self.kinds.clear();
     }
 
-    /// Adds what a shaft does not miss, where it is higher than `lowest` over the light.
-    pub(crate) fn gather(&mut self, geometry: &Geometry, frame: &Frame, shaft: &Shaft, lowest: f64) {
+    /// Adds what a shaft does not miss, where it is in front of the light.
+    pub(crate) fn gather(&mut self, light: &AreaLight<'_>, shaft: &Shaft) {
+        let AreaLight { geometry, frame, .. } = light;
         let wants = |bounds: &pointillist_micropoint::Bounds| {
             let side = |k: usize, bit: bool| if bit { bounds.high[k] } else { bounds.low[k] };
             let corner = |i: usize| dvec3(side(0, i & 1 > 0), side(1, i & 2 > 0), side(2, i & 4 > 0));
             !shaft.misses((0..8).map(|i| frame.local(corner(i))))
         };
-        geometry.visit_clusters(wants, |cluster| self.add_cluster(geometry, cluster, frame, shaft, lowest));
+        geometry.visit_clusters(wants, |cluster| self.add_cluster(light, cluster, shaft));
     }
 
-    fn add_cluster(
-        &mut self,
-        geometry: &Geometry,
-        cluster: &ClusterView<'_>,
-        frame: &Frame,
-        shaft: &Shaft,
-        lowest: f64,
-    ) {
+    fn add_cluster(&mut self, light: &AreaLight<'_>, cluster: &ClusterView<'_>, shaft: &Shaft) {
         self.local.clear();
-        self.local.extend(cluster.vertices.iter().map(|&v| frame.local(v)));
+        self.local.extend(cluster.vertices.iter().map(|&v| light.frame.local(v)));
         self.numbers.clear();
         self.numbers.resize(self.local.len(), NONE);
         for face in cluster.faces() {
-            let surface = &geometry.surfaces()[face.surface as usize];
+            let surface = &light.geometry.surfaces()[face.surface as usize];
             let corners = face.corners.map(|c| self.local[c]);
-            if surface.opacity <= 0.0 || shaft.misses(corners.into_iter()) {
+            if surface.opacity <= 0.0 || shaft.misses(corners.into_iter()) || light.is_own(face.id) {
                 continue;
             }
             let mut mask = None;
@@ -113,7 +107,7 @@ impl Sheets {
             } else if surface.opacity < 1.0 {
                 kind = self.kind(surface.opacity);
             }
-            self.add(corners, face.corners, lowest, (kind, mask));
+            self.add(corners, face.corners, light.coincident, (kind, mask));
         }
     }
 

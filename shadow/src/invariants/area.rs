@@ -1,7 +1,7 @@
 //! Facts about lights with an area.
 
 use super::check;
-use crate::{AreaLight, AreaOptions, AreaScratch, Receivers, SeenLight, Viewer};
+use crate::{AreaLight, AreaOptions, AreaScratch, LineLight, LineScratch, Receivers, Viewer};
 use glam::DVec3;
 use pointillist_micropoint::invariants::{Soup, permutation};
 use pointillist_micropoint::{Geometry, MicropointOptions, PixelRect, PlainOpacity, Renderer, Tile, View};
@@ -28,16 +28,68 @@ pub struct SeenPoint {
 /// What each pixel sees, row by row.
 pub type SeenPicture = Vec<Vec<SeenPoint>>;
 
+/// The outline of a light, or the ends of a line that shines.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Shape<'a> {
+    Polygon(&'a [DVec3]),
+    Line([DVec3; 2]),
+}
+
+/// A light of either shape.
+enum Asked<'a> {
+    Area(AreaLight<'a>),
+    Line(LineLight<'a>),
+}
+
+/// What is seen of it.
+struct Part<'p> {
+    position: DVec3,
+    extent: f64,
+    share: &'p dyn Fn(DVec3) -> f64,
+}
+
+impl Asked<'_> {
+    fn extent(&self) -> f64 {
+        match self {
+            Self::Area(light) => light.area(),
+            Self::Line(light) => light.length(),
+        }
+    }
+
+    fn visit(&self, tile: &Tile, receivers: &Receivers, mut visit: impl FnMut(usize, f64, Part<'_>)) {
+        let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
+        match self {
+            Self::Area(light) => {
+                light.visit(viewer, receivers, &mut AreaScratch::default(), |r, weight, p| {
+                    visit(
+                        r,
+                        weight,
+                        Part { position: p.position(), extent: p.area(), share: &|n| p.share(n) },
+                    );
+                })
+            }
+            Self::Line(light) => {
+                light.visit(viewer, receivers, &mut LineScratch::default(), |r, weight, p| {
+                    visit(
+                        r,
+                        weight,
+                        Part { position: p.position(), extent: p.length(), share: &|n| p.share(n) },
+                    );
+                })
+            }
+        }
+    }
+}
+
 fn picture_of(
     renderer: &Renderer<'_>,
     geometry: &Geometry,
-    light: &AreaLight<'_>,
+    light: &Asked<'_>,
     rects: impl IntoIterator<Item = PixelRect>,
 ) -> SeenPicture {
     let (width, height) = (renderer.view().width(), renderer.view().height());
     let mut picture = vec![vec![]; (width * height) as usize];
-    let (mut tile, mut scratch, mut receivers) =
-        (Tile::default(), AreaScratch::default(), Receivers::default());
+    let (mut tile, mut receivers) = (Tile::default(), Receivers::default());
     for rect in rects {
         renderer.render(rect, &mut tile);
         receivers.clear();
@@ -47,8 +99,7 @@ fn picture_of(
             owners.resize(receivers.len(), point);
         }
         let mut seen = vec![vec![]; owners.len()];
-        let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
-        light.visit(viewer, &receivers, &mut scratch, |receiver, weight, part| {
+        light.visit(&tile, &receivers, |receiver, weight, part| {
             let face = &tile.faces()[owners[receiver].face as usize];
             let [a, b, c] = geometry.corners(face.source);
             let front = (b - a).cross(c - a).normalize_or_zero();
@@ -56,11 +107,11 @@ fn picture_of(
             seen[receiver].push(SeenPoint {
                 triangle: face.id,
                 surface: face.surface,
-                position: part.position(),
+                position: part.position,
                 normal,
                 weight,
-                area: part.area() / light.area(),
-                share: part.share(normal),
+                area: part.extent / light.extent(),
+                share: (part.share)(normal),
             });
         });
         for (owner, points) in owners.iter().zip(seen) {
@@ -73,12 +124,17 @@ fn picture_of(
 fn with_light<T>(
     soup: &Soup,
     view: View,
-    (outline, options): (&[DVec3], AreaOptions),
-    visit: impl FnOnce(&Renderer<'_>, &Geometry, &AreaLight<'_>) -> T,
+    (shape, options): (Shape<'_>, AreaOptions),
+    visit: impl FnOnce(&Renderer<'_>, &Geometry, &Asked<'_>) -> T,
 ) -> Option<T> {
     let geometry = soup.geometry().ok()?;
     let renderer = Renderer::new(&geometry, &PlainOpacity, view, MicropointOptions::DEFAULT).ok()?;
-    let light = AreaLight::new(&geometry, &PlainOpacity, outline, options).ok()?;
+    let light = match shape {
+        Shape::Polygon(outline) => {
+            Asked::Area(AreaLight::new(&geometry, &PlainOpacity, outline, options).ok()?)
+        }
+        Shape::Line(ends) => Asked::Line(LineLight::new(&geometry, &PlainOpacity, ends, options).ok()?),
+    };
     Some(visit(&renderer, &geometry, &light))
 }
 
@@ -96,7 +152,16 @@ pub fn seen_picture_with(
     outline: &[DVec3],
     options: AreaOptions,
 ) -> Option<SeenPicture> {
-    with_light(soup, view, (outline, options), |r, g, l| picture_of(r, g, l, [r.picture()]))
+    picture_of_shape(soup, view, Shape::Polygon(outline), options)
+}
+
+pub(super) fn picture_of_shape(
+    soup: &Soup,
+    view: View,
+    shape: Shape<'_>,
+    options: AreaOptions,
+) -> Option<SeenPicture> {
+    with_light(soup, view, (shape, options), |r, g, l| picture_of(r, g, l, [r.picture()]))
 }
 
 /// Per pixel and surface, what arrives of the light at a picture's points: Σ weight × share.
@@ -124,7 +189,11 @@ fn are_identical(a: &SeenPicture, b: &SeenPicture) -> Result<(), String> {
 /// # Errors
 /// The first pixel that differs.
 pub fn tiles_do_not_matter(soup: &Soup, view: View, outline: &[DVec3]) -> Result<(), String> {
-    let result = with_light(soup, view, (outline, AreaOptions::DEFAULT), |r, g, l| {
+    tiles_do_not_matter_to(soup, view, Shape::Polygon(outline))
+}
+
+pub(super) fn tiles_do_not_matter_to(soup: &Soup, view: View, shape: Shape<'_>) -> Result<(), String> {
+    let result = with_light(soup, view, (shape, AreaOptions::DEFAULT), |r, g, l| {
         let expected = picture_of(r, g, l, [r.picture()]);
         for size in [16, 3, 1] {
             let tiled = picture_of(r, g, l, r.picture().tiles(size));
@@ -145,9 +214,18 @@ pub fn triangle_order_does_not_matter(
     outline: &[DVec3],
     seed: u64,
 ) -> Result<(), String> {
+    triangle_order_does_not_matter_to(soup, view, Shape::Polygon(outline), seed)
+}
+
+pub(super) fn triangle_order_does_not_matter_to(
+    soup: &Soup,
+    view: View,
+    shape: Shape<'_>,
+    seed: u64,
+) -> Result<(), String> {
     let order = permutation(soup.triangles.len(), seed);
-    let expected = seen_picture(soup, view, outline);
-    let got = seen_picture(&soup.reordered(&order), view, outline);
+    let picture = |soup: &Soup| picture_of_shape(soup, view, shape, AreaOptions::DEFAULT);
+    let (expected, got) = (picture(soup), picture(&soup.reordered(&order)));
     let (Some(expected), Some(mut got)) = (expected, got) else { return Ok(()) };
     got.iter_mut().flatten().for_each(|p| p.triangle = order[p.triangle as usize]);
     are_identical(&expected, &got)
@@ -164,7 +242,8 @@ pub fn pieces_may_be_asked_together(
     outline: &[DVec3],
     tolerance: f64,
 ) -> Result<(), String> {
-    let result = with_light(soup, view, (outline, AreaOptions::DEFAULT), |renderer, _, light| {
+    let shape = (Shape::Polygon(outline), AreaOptions::DEFAULT);
+    let result = with_light(soup, view, shape, |renderer, _, light| {
         let (mut tile, mut together, mut apart) =
             (Tile::default(), Receivers::default(), Receivers::default());
         renderer.render(renderer.picture(), &mut tile);
@@ -172,11 +251,9 @@ pub fn pieces_may_be_asked_together(
         tile.points().iter().for_each(|point| together.push_point(&tile, point));
         let areas = |receivers: &Receivers| {
             let mut areas = vec![0.0; receivers.len()];
-            let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
-            let add = |receiver: usize, share: f64, part: &SeenLight| {
-                areas[receiver] += share * part.area() / light.area();
-            };
-            light.visit(viewer, receivers, &mut AreaScratch::default(), add);
+            light.visit(&tile, receivers, |receiver, share, part| {
+                areas[receiver] += share * part.extent / light.extent();
+            });
             areas
         };
         let (together, apart) = (areas(&together), areas(&apart));
@@ -226,7 +303,7 @@ pub fn agrees_with_rays(
 const NEAREST: f64 = 1.1e-6;
 
 /// What passes through all triangles between two points; those that the first lies on, or almost, do not count.
-fn transmittance(soup: &Soup, from: DVec3, to: DVec3) -> f64 {
+pub(super) fn transmittance(soup: &Soup, from: DVec3, to: DVec3) -> f64 {
     let mut passed = 1.0;
     for (triangle, &surface) in soup.triangles.iter().zip(&soup.surface_of) {
         let [a, b, c] = triangle.map(|i| soup.positions[i as usize] - from);

@@ -3,6 +3,7 @@
 //! Each takes any input at all. A scene, view or light that is refused satisfies every fact.
 
 pub mod area;
+pub mod line;
 
 use pointillist_dice::convex;
 use pointillist_micropoint::invariants::{Soup, permutation};

@@ -33,6 +33,7 @@ enum Kind {
     Spot,
     Rect,
     Polygon,
+    Line,
 }
 
 pub(super) fn read_all(root: &mut Table<'_>) -> Result<Vec<LightDescription>, InputError> {
@@ -65,6 +66,7 @@ fn read(mut table: Table<'_>, name: String) -> Result<LightDescription, InputErr
         ("spot", Kind::Spot),
         ("rect", Kind::Rect),
         ("polygon", Kind::Polygon),
+        ("line", Kind::Line),
     ];
     let Some(kind) = table.choice("type", &kinds)? else { return Err(table.missing("type", "\"point\"")) };
     let light = match kind {
@@ -80,6 +82,7 @@ fn read(mut table: Table<'_>, name: String) -> Result<LightDescription, InputErr
         Kind::Spot => read_spot(&mut table)?,
         Kind::Rect => read_rect(&mut table)?,
         Kind::Polygon => read_polygon(&mut table)?,
+        Kind::Line => read_line(&mut table)?,
     };
     let shadow = table.boolean("shadow")?.unwrap_or(true);
     let resolution = read_resolution(&mut table)?;
@@ -137,6 +140,22 @@ fn read_polygon(table: &mut Table<'_>) -> Result<Light, InputError> {
         outline,
         radiance: needed_color(table, "radiance")?,
         two_sided: table.boolean("two_sided")?.unwrap_or(false),
+        samples: read_samples(table)?,
+        falloff: read_falloff(table)?,
+    })
+}
+
+fn read_line(table: &mut Table<'_>) -> Result<Light, InputError> {
+    let from = needed_vector(table, "from")?;
+    let to = needed_vector(table, "to")?;
+    if from == to {
+        let message = format!("`{}` is `from`, too: the line has no length", table.name_of("to"));
+        return Err(table.error("to", message));
+    }
+    Ok(Light::Line {
+        from,
+        to,
+        radiance: needed_color(table, "radiance")?,
         samples: read_samples(table)?,
         falloff: read_falloff(table)?,
     })

@@ -60,6 +60,8 @@ pub struct MaterialDescription {
     pub surroundings: SurroundingsDescription,
     /// Coordinates made from positions.
     pub uv: Option<AutoUv>,
+    /// Its polygons are lights.
+    pub emits: bool,
 }
 
 /// Where mirrored light comes from.
@@ -136,6 +138,7 @@ fn read(span: Span, mut table: Table<'_>) -> Result<MaterialDescription, InputEr
         transmission: read_transmission(&mut table)?,
         surroundings: read_surroundings(&mut table)?,
         uv: table.choice("uv", &KINDS_OF_UV)?,
+        emits: table.boolean("emits")?.unwrap_or(false),
     };
     let bump_scale = table.number_where("bump_scale", "a number (world units)", f64::is_finite)?;
     found.bump_scale = bump_scale.unwrap_or(1.0) as f32;
@@ -144,6 +147,13 @@ fn read(span: Span, mut table: Table<'_>) -> Result<MaterialDescription, InputEr
         found.metallic = found.metallic.or(Some(1.0));
     }
     check_unused(&table, model, &found)?;
+    if found.emits && found.surface.emission == Vec3::ZERO {
+        return Err(unused(
+            &table,
+            "emits",
+            "the material has no `emission` (a radiance such as [10, 10, 10])",
+        ));
+    }
     if bump_scale.is_some() && found.bump_map.is_none() {
         return Err(unused(&table, "bump_scale", "it is the height of a `bump_map`, and there is none"));
     }
