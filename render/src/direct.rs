@@ -17,6 +17,8 @@ pub(crate) struct Arrival {
     pub(crate) point: u32,
     pub(crate) radiance: Vec3,
     pub(crate) fraction: f64,
+    /// The light varies over the micropoint.
+    pub(crate) is_close: bool,
 }
 
 /// Memory for shadows.
@@ -54,9 +56,16 @@ impl Shader<'_> {
     ) {
         direct.arrivals.clear();
         for (i, p) in points.iter().enumerate() {
-            let radiance = self.arriving(light, p, &tile.faces()[tile.points()[i].face as usize]);
+            let m = &tile.points()[i];
+            let face = &tile.faces()[m.face as usize];
+            let mut radiance = self.arriving(light, p, face);
+            let is_close = radiance != Vec3::ZERO && self.is_close(tile, light, p);
+            if is_close {
+                let fragments = tile.fragments(m).iter().map(|f| (tile.outline(f), f.weight));
+                radiance = self.mean_arriving(tile, light, (p, face), fragments);
+            }
             if radiance != Vec3::ZERO || lit_layer.is_some() {
-                direct.arrivals.push(Arrival { point: i as u32, radiance, fraction: 1.0 });
+                direct.arrivals.push(Arrival { point: i as u32, radiance, fraction: 1.0, is_close });
             }
         }
         monitor.lap("shade");

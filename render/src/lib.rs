@@ -64,6 +64,7 @@ mod canvas;
 mod capture;
 mod casters;
 mod choose;
+mod close_lights;
 mod copies;
 mod detail;
 mod detail_maps;

@@ -42,6 +42,8 @@ impl LitFragments<'_> {
 #[derive(Default)]
 pub(crate) struct LitParts {
     corners: Vec<SurfacePoint>,
+    /// The same corners in the picture.
+    outlines: Vec<DVec2>,
     /// The corners of each, and its weight: its share of the pixel times the transmittance on the way from the light.
     list: Vec<(Range<usize>, f64)>,
 }
@@ -50,6 +52,7 @@ impl LitParts {
     /// Collects the lit parts of a micropoint; its lit fraction comes back.
     fn collect(&mut self, of: &LitFragments<'_>, shadow: &ShadowScratch, surfaces: &Surfaces) -> f64 {
         self.corners.clear();
+        self.outlines.clear();
         self.list.clear();
         let masked = surfaces.is_masked(of.face.id);
         for (i, (fragment, lit)) in of.fragments.iter().zip(of.lit).enumerate() {
@@ -78,8 +81,14 @@ impl LitParts {
     fn push(&mut self, of: &LitFragments<'_>, outline: &[DVec2], weight: f64) -> &[SurfacePoint] {
         let first = self.corners.len();
         self.corners.extend(outline.iter().map(|&v| of.face.point(of.tile.lens(), v)));
+        self.outlines.extend(outline);
         self.list.push((first..self.corners.len(), weight));
         &self.corners[first..]
+    }
+
+    /// Outlines in the picture, with their weight.
+    fn outlines(&self) -> impl Iterator<Item = (&[DVec2], f64)> {
+        self.list.iter().map(|(corners, weight)| (&self.outlines[corners.clone()], *weight))
     }
 
     fn for_each(&self, each: &mut dyn FnMut(&[SurfacePoint], f32)) {
@@ -95,7 +104,7 @@ impl Shader<'_> {
         let DirectScratch { receivers, arrivals, .. } = direct;
         for a in arrivals.iter() {
             let m = &tile.points()[a.point as usize];
-            let varies = self.surfaces.varies(tile.faces()[m.face as usize].id);
+            let varies = a.is_close || self.surfaces.varies(tile.faces()[m.face as usize].id);
             for fragment in tile.fragments(m) {
                 match varies {
                     true => receivers.push_with_regions(m.face, corners(tile, m, fragment)),
@@ -122,12 +131,18 @@ impl Shader<'_> {
             let of = LitFragments { tile, face, fragments, lit, first };
             first += fragments.len();
             a.fraction = of.fraction();
-            if a.fraction > 0.0 && a.fraction < 1.0 && self.surfaces.varies(face.id) {
+            let varies = self.surfaces.varies(face.id);
+            if a.fraction > 0.0 && a.fraction < 1.0 && (varies || a.is_close) {
                 a.fraction = lit_parts.collect(&of, shadow, self.surfaces).min(1.0);
-                let point = &points[a.point as usize];
-                let (surface, _) = self.surface(face, &point.place, |each| lit_parts.for_each(each));
-                let lit_part = Point { normal: surface.normal, material: surface.material, ..*point };
-                a.radiance = self.arriving(light, &lit_part, face);
+                let mut lit_part = points[a.point as usize];
+                if varies {
+                    let (surface, _) = self.surface(face, &lit_part.place, |each| lit_parts.for_each(each));
+                    (lit_part.normal, lit_part.material) = (surface.normal, surface.material);
+                }
+                a.radiance = match a.is_close {
+                    true => self.mean_arriving(tile, light, (&lit_part, face), lit_parts.outlines()),
+                    false => self.arriving(light, &lit_part, face),
+                };
             }
         }
     }
