@@ -35,6 +35,9 @@ pub struct Region {
 /// Transmittance below this counts as zero: it changes no bit of a picture.
 const FAINT: f64 = 1e-12;
 
+/// Parts whose areas differ by less, relative to their sum, are halves: which is the larger would be rounding.
+const HALVES: f64 = 1e-9;
+
 /// With more regions than this an occluder no longer divides a region that it overlaps, but scales its transmittance by the
 /// covered share. Reached only where hundreds of occluders overlap in one place that halving does not separate.
 const MOST_REGIONS: usize = 256;
@@ -263,10 +266,22 @@ impl Regions {
             if cut_off.area() > self.negligible {
                 self.outside.push(cut_off);
                 inside = kept;
+            } else if is_less(&kept, &cut_off, half.normal) {
+                return None;
             }
         }
         (inside.area() > self.negligible).then_some(inside)
     }
+}
+
+/// Whether what is inside an edge is the lesser part, or of two halves the one on its left. Where two occluders meet in an edge and neither part is
+/// large enough to be cut off, the whole is inside one of them, and not inside both.
+fn is_less(inside: &ConvexPolygon, outside: &ConvexPolygon, normal: DVec2) -> bool {
+    let (inside, outside) = (inside.area(), outside.area());
+    if (inside - outside).abs() <= HALVES * (inside + outside) {
+        return normal.x < 0.0 || (normal.x == 0.0 && normal.y < 0.0);
+    }
+    inside < outside
 }
 
 #[cfg(test)]
@@ -394,6 +409,27 @@ mod tests {
                     regions.attenuate(&positive, None, |_| 0.25);
                 }
                 assert!((area(&regions) - 0.75).abs() < 1e-15, "{offset}: {}", area(&regions));
+            }
+        }
+    }
+
+    #[test]
+    fn slivers_in_which_two_sheets_meet_are_dimmed_once() {
+        // So small that neither half can be cut off.
+        let cell = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::splat(1e-5));
+        for along in [dvec2(0.0, 1.0), dvec2(1.0, 0.3), dvec2(-0.2, 1.0)] {
+            for shift in [0.0, 1e-6, -2e-6] {
+                let middle = DVec2::splat(5e-6 + shift);
+                let (a, b) = (middle - along, middle + along);
+                let sheets = [[a, b, middle - along.perp()], [b, a, middle + along.perp()]];
+                let mut regions = Regions::default();
+                regions.start(cell, 0.8e-10);
+                for sheet in sheets {
+                    let positive =
+                        if convex::area(&sheet) > 0.0 { sheet } else { [sheet[1], sheet[0], sheet[2]] };
+                    regions.attenuate(&positive, None, |_| 0.25);
+                }
+                assert!((area(&regions) / 1e-10 - 0.75).abs() < 1e-12, "{along} {shift}: {}", area(&regions));
             }
         }
     }

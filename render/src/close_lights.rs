@@ -15,6 +15,10 @@ const CLOSE: f64 = 0.05;
 /// Longest side of a triangle, over its distance from the light, up to which the middles of its sides stand for it.
 const FINE: f64 = 0.5;
 
+/// The same two lengths, over the width of a highlight in radians: its middle is off by the square of this over 24.
+const CLOSE_TO_LOBE: f64 = 0.2;
+const FINE_FOR_LOBE: f64 = 1.0;
+
 /// How often triangles are halved at most: the light may touch the surface.
 const MOST_HALVINGS: u32 = 8;
 
@@ -29,7 +33,8 @@ impl Shader<'_> {
             LensKind::Orthographic => 1.0,
         };
         let slope = f64::from(p.place.face_normal.dot(p.place.to_eye).abs());
-        self.economy.is_none() && depth > CLOSE * slope * tile.lens().scale * p.place.position.distance(from)
+        let close = CLOSE.min(CLOSE_TO_LOBE * lobe_width(p));
+        self.economy.is_none() && depth > close * slope * tile.lens().scale * p.place.position.distance(from)
     }
 
     /// The mean of [`Shader::arriving`] over convex polygons of the picture, each with its weight.
@@ -44,7 +49,8 @@ impl Shader<'_> {
             Source::Position(from) => from,
             _ => return self.arriving(light, point, face),
         };
-        let mut mean = Mean { shader: self, tile, light, from, point, face, sum: Vec3::ZERO };
+        let fine = FINE.min(FINE_FOR_LOBE * lobe_width(point));
+        let mut mean = Mean { shader: self, tile, light, from, point, face, fine, sum: Vec3::ZERO };
         let mut total = 0.0;
         for (outline, weight) in polygons {
             let area = |b: DVec2, c: DVec2| (b - outline[0]).perp_dot(c - outline[0]).abs();
@@ -62,6 +68,14 @@ impl Shader<'_> {
     }
 }
 
+/// Width of a highlight; without one, there is no limit.
+fn lobe_width(p: &Point) -> f64 {
+    match p.material.depends_on_view() {
+        true => f64::from(p.material.lobe(p.normal, p.place.to_eye).width_rad),
+        false => f64::INFINITY,
+    }
+}
+
 /// A sum over triangles of the picture.
 struct Mean<'a> {
     shader: &'a Shader<'a>,
@@ -71,6 +85,8 @@ struct Mean<'a> {
     from: DVec3,
     point: &'a Point,
     face: &'a Face,
+    /// Longest side of a triangle that is not halved, over its distance from the light.
+    fine: f64,
     sum: Vec3,
 }
 
@@ -89,7 +105,7 @@ impl Mean<'_> {
         let ab = middle(a.0, b.0);
         let nearest =
             [a, b, c, ab].map(|p| p.1.distance_squared(self.from)).into_iter().fold(f64::INFINITY, f64::min);
-        if halvings > 0 && side(longest) > FINE * FINE * nearest {
+        if halvings > 0 && side(longest) > self.fine * self.fine * nearest {
             self.add([a, ab, c], 0.5 * weight, halvings - 1);
             self.add([ab, b, c], 0.5 * weight, halvings - 1);
             return;

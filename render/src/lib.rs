@@ -66,6 +66,7 @@ mod casters;
 mod choose;
 mod close_lights;
 mod copies;
+mod curvature;
 mod detail;
 mod detail_maps;
 mod direct;

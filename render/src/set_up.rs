@@ -51,6 +51,9 @@ impl Shader<'_> {
         let Place { position, barycentric, to_eye, face_normal } = *place;
         let described = self.described(face);
         let mut material = self.textured(face, described.surface, &mut outlines);
+        if self.economy.is_none() {
+            material = self.widened_by_curvature(face, material, &mut outlines);
+        }
         if !self.scene.mesh.colors.is_empty() {
             material.diffuse *= self.vertex_color(face.id, barycentric);
         }

@@ -272,11 +272,7 @@ pub fn pieces_may_be_asked_together(
     result.unwrap_or(Ok(()))
 }
 
-/// Points that stand for less of their receiver lie within rounding of an edge, where rays may start on either side of what ends there.
-const SLIVER: f64 = 1e-7;
-
 /// What is seen of a parallelogram agrees with rays to `n`² points of it, each in the middle of its cell, to within `tolerance` of its area.
-/// Points that stand for less than 1e-7 of their receiver are left out.
 ///
 /// # Errors
 /// The first point at which it does not.
@@ -290,7 +286,7 @@ pub fn agrees_with_rays(
     let outline = [corner, corner + u, corner + u + v, corner + v];
     let Some(picture) = seen_picture(soup, view, &outline) else { return Ok(()) };
     let place = |k: u32| (f64::from(k) + 0.5) / f64::from(n);
-    for p in picture.iter().flatten().filter(|p| p.weight >= SLIVER) {
+    for p in picture.iter().flatten() {
         let targets = (0..n * n).map(|k| corner + u * place(k % n) + v * place(k / n));
         let above = targets.filter(|t| p.normal.dot(*t - p.position) > 0.0);
         let area = above.map(|t| transmittance(soup, p.position, t)).sum::<f64>() / f64::from(n * n);
