@@ -36,13 +36,6 @@ pub(crate) struct Part {
     pub(crate) opacity: f32,
 }
 
-impl Part {
-    /// Whether it is the whole cell.
-    pub(crate) fn fills_cell(&self) -> bool {
-        self.vertex_count == 0
-    }
-}
-
 /// Bounds of a part within its cell, in f32 and rounded outward.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
@@ -197,8 +190,8 @@ pub(crate) struct DiceJob<'a> {
     pub(crate) rect: &'a GridRect,
     pub(crate) hidden: &'a HiddenSides,
     pub(crate) opacity: &'a dyn TexturedOpacity,
-    /// Side, in cells, of the smallest squares that cells with masks are divided into.
-    pub(crate) smallest_square: f64,
+    /// Squares on a side of a cell that it is divided into where masks are partly open.
+    pub(crate) squares_per_side: i32,
 }
 
 /// Dices the faces that it is handed.
@@ -359,7 +352,7 @@ impl Dicer {
         if self.refuses(job.lens, i, face, nearness.most) {
             return;
         }
-        let opacity = opacity.unwrap_or_else(|| mean_opacity(job, face, corner, &CELL));
+        let opacity = opacity.unwrap_or_else(|| opacity_in_cell(job, face, corner, &CELL));
         let part = Part {
             next: NONE,
             face: index,
@@ -401,7 +394,7 @@ impl Dicer {
         if area <= 0.0 || area.is_nan() || self.refuses(job.lens, i, face, nearness.most) {
             return;
         }
-        let opacity = opacity.unwrap_or_else(|| mean_opacity(job, face, corner, local));
+        let opacity = opacity.unwrap_or_else(|| opacity_in_cell(job, face, corner, local));
         let part = Part {
             next: NONE,
             face: index,
@@ -620,6 +613,19 @@ impl Dicer {
     pub(crate) fn cell_count(&self) -> usize {
         self.cells.len()
     }
+}
+
+/// Opacity of a mask that may let some light pass, in a cell that will be divided.
+const PARTLY_OPEN: f32 = 0.5;
+
+/// Opacity, 0..=1, of a face over an outline in a cell: the mean, unless the cell is divided where masks vary, and its squares will be asked for.
+fn opacity_in_cell(job: &DiceJob<'_>, face: &Face, corner: DVec2, local: &[DVec2]) -> f32 {
+    if job.squares_per_side == 1 {
+        return mean_opacity(job, face, corner, local);
+    }
+    let surface = &job.geometry.surfaces()[face.surface as usize];
+    let even = face.even_opacity(job.lens, surface, job.opacity, corner, local);
+    even.unwrap_or_else(|| surface.behind_mask(PARTLY_OPEN))
 }
 
 /// Mean opacity, 0..=1, of a face over an outline relative to a cell's corner.

@@ -1,80 +1,91 @@
 //! Cells in which masks are neither open nor closed, divided into squares.
 //!
 //! What is seen through a mask, how it is lit and what it hides all vary over a cell with its holes, and a product of means is not the mean of
-//! the product. In a square of a quarter of the area they vary less, and many masks are open or closed throughout.
+//! the product. In a small square they vary less, and many masks are open or closed throughout.
 
 use crate::dicer::{DiceJob, Dicer, mean_opacity};
 use crate::interval::Interval;
 use crate::resolve::NEGLIGIBLE_AREA;
-use glam::DVec2;
-use pointillist_dice::{ConvexPolygon, convex};
+use glam::{DVec2, IVec2};
+use pointillist_dice::{CellWindow, ConvexPolygon, Cut, cut};
 
-/// A square of a cell.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Square {
-    low: DVec2,
-    side: f64,
+/// The parts in each square of a cell, row by row.
+#[derive(Debug, Default)]
+pub(crate) struct Squares {
+    lists: Vec<Vec<u32>>,
 }
 
-impl Square {
-    pub(crate) const CELL: Self = Self { low: DVec2::ZERO, side: 1.0 };
-
-    /// Its share of the cell.
-    pub(crate) fn area(&self) -> f64 {
-        self.side * self.side
-    }
-
-    pub(crate) fn side(&self) -> f64 {
-        self.side
-    }
-
-    pub(crate) fn quarters(&self) -> [Self; 4] {
-        let side = 0.5 * self.side;
-        [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|at| Self { low: self.low + at * side, side })
-    }
-
-    /// What of the parts `from` is in the square, sorted, in `to`.
-    pub(crate) fn parts_within(
-        &self,
-        dicer: &mut Dicer,
-        job: &DiceJob<'_>,
-        corner: DVec2,
-        from: &[u32],
-        to: &mut Vec<u32>,
-    ) {
-        to.clear();
-        for &p in from {
-            to.extend(self.part_within(dicer, job, corner, p));
+impl Squares {
+    /// Divides the parts `from` of a cell. The numbers that [`Squares::iter`] gives are valid until the dicer forgets them.
+    pub(crate) fn divide(&mut self, dicer: &mut Dicer, job: &DiceJob<'_>, corner: DVec2, from: &[u32]) {
+        let side = job.squares_per_side;
+        self.lists.iter_mut().for_each(Vec::clear);
+        self.lists.resize_with((side * side) as usize, Vec::new);
+        for &number in from {
+            self.divide_part(dicer, job, corner, number);
         }
-        to.sort_unstable_by(|&a, &b| dicer.compare(a, b));
+        for list in &mut self.lists {
+            list.sort_unstable_by(|&a, &b| dicer.compare(a, b));
+        }
     }
 
-    fn part_within(&self, dicer: &mut Dicer, job: &DiceJob<'_>, corner: DVec2, number: u32) -> Option<u32> {
-        let square = ConvexPolygon::rectangle(self.low, self.low + self.side);
-        let part = *dicer.part(number);
-        let outline = dicer.outline(&part);
-        let clipped = match part.fills_cell() {
-            true => square,
-            false => convex::half_planes(square.vertices())
-                .fold(ConvexPolygon::from_vertices(outline), |rest, half| rest.clipped(&half)),
+    /// The parts in each square, nearest first.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &[u32]> {
+        self.lists.iter().map(Vec::as_slice)
+    }
+
+    fn divide_part(&mut self, dicer: &mut Dicer, job: &DiceJob<'_>, corner: DVec2, number: u32) {
+        let side = job.squares_per_side;
+        let (size, part) = (f64::from(side), *dicer.part(number));
+        let mut outline = ConvexPolygon::EMPTY;
+        dicer.outline(&part).iter().for_each(|&v| outline.push(v * size));
+        let window = CellWindow { x0: 0, y0: 0, x1: side, y1: side };
+        let mut add = |square: IVec2, polygon: &ConvexPolygon| {
+            if let Some(piece) = add_piece(dicer, job, (corner, number), polygon) {
+                self.lists[(square.y * side + square.x) as usize].push(piece);
+            }
         };
-        let (area, centroid) = clipped.area_and_centroid();
-        if area <= NEGLIGIBLE_AREA {
-            return None;
-        }
-        let face = &dicer.faces[part.face as usize];
-        let opacity =
-            match job.geometry.surfaces()[face.surface as usize].textured_opacity && part.opacity < 1.0 {
-                true => mean_opacity(job, face, corner, clipped.vertices()),
-                false => part.opacity,
-            };
-        if opacity <= 0.0 {
-            return None;
-        }
-        let mut nearness = Interval::EMPTY;
-        clipped.vertices().iter().for_each(|&v| nearness.include(face.nearness_at(v + corner)));
-        let nearness =
-            Interval { least: part.nearness.clamp(nearness.least), most: part.nearness.clamp(nearness.most) };
-        Some(dicer.add_piece_of(part, clipped.vertices(), (area, centroid), nearness, opacity))
+        cut(outline.vertices(), window, |piece| match piece {
+            Cut::Span { row, first, end } => {
+                for column in first..end {
+                    let low = DVec2::new(column.into(), row.into());
+                    let high = low + 1.0;
+                    add(IVec2::new(column, row), &ConvexPolygon::rectangle(low / size, high / size));
+                }
+            }
+            Cut::Piece { cell, polygon } => {
+                let mut scaled = ConvexPolygon::EMPTY;
+                polygon.vertices().iter().for_each(|&v| scaled.push(v / size));
+                add(cell, &scaled);
+            }
+        });
     }
+}
+
+/// Adds what of a part is in a square; `None` if that is nothing.
+fn add_piece(
+    dicer: &mut Dicer,
+    job: &DiceJob<'_>,
+    (corner, number): (DVec2, u32),
+    polygon: &ConvexPolygon,
+) -> Option<u32> {
+    let (area, centroid) = polygon.area_and_centroid();
+    if area <= NEGLIGIBLE_AREA {
+        return None;
+    }
+    let part = *dicer.part(number);
+    let face = &dicer.faces[part.face as usize];
+    let textured = job.geometry.surfaces()[face.surface as usize].textured_opacity;
+    let opacity = match textured && part.opacity < 1.0 {
+        true => mean_opacity(job, face, corner, polygon.vertices()),
+        false => part.opacity,
+    };
+    if opacity <= 0.0 {
+        return None;
+    }
+    let mut nearness = Interval::EMPTY;
+    polygon.vertices().iter().for_each(|&v| nearness.include(face.nearness_at(v + corner)));
+    let nearness =
+        Interval { least: part.nearness.clamp(nearness.least), most: part.nearness.clamp(nearness.most) };
+    Some(dicer.add_piece_of(part, polygon.vertices(), (area, centroid), nearness, opacity))
 }

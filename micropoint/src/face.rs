@@ -94,6 +94,13 @@ pub trait TexturedOpacity: Sync {
     fn rough_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
         self.mean_opacity(triangle, polygon)
     }
+
+    /// The same if it is found at once that the opacity does not vary over the polygon; `None`, if it may vary or that takes long to find out. What
+    /// is `None` is divided and asked again.
+    fn even_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> Option<f32> {
+        let mean = self.mean_opacity(triangle, polygon);
+        (mean <= 0.0 || mean >= 1.0).then_some(mean)
+    }
 }
 
 /// For scenes without textured opacity.
@@ -121,7 +128,7 @@ impl Face {
         corner: DVec2,
         outline: &[DVec2],
     ) -> f32 {
-        self.opacity_by(lens, surface, corner, outline, |polygon| mask.mean_opacity(self.id, polygon))
+        surface.behind_mask(self.over(lens, corner, outline, |polygon| mask.mean_opacity(self.id, polygon)))
     }
 
     /// The same by [`TexturedOpacity::rough_opacity`].
@@ -134,23 +141,36 @@ impl Face {
         corner: DVec2,
         outline: &[DVec2],
     ) -> f32 {
-        self.opacity_by(lens, surface, corner, outline, |polygon| mask.rough_opacity(self.id, polygon))
+        surface.behind_mask(self.over(lens, corner, outline, |polygon| mask.rough_opacity(self.id, polygon)))
     }
 
-    fn opacity_by(
+    /// The same by [`TexturedOpacity::even_opacity`].
+    #[must_use]
+    pub fn even_opacity(
         &self,
         lens: &Lens,
         surface: &SurfaceOpacity,
+        mask: &dyn TexturedOpacity,
         corner: DVec2,
         outline: &[DVec2],
-        mean: impl FnOnce(&[SurfacePoint]) -> f32,
-    ) -> f32 {
+    ) -> Option<f32> {
+        let even = self.over(lens, corner, outline, |polygon| mask.even_opacity(self.id, polygon));
+        even.map(|opacity| surface.behind_mask(opacity))
+    }
+
+    fn over<T>(
+        &self,
+        lens: &Lens,
+        corner: DVec2,
+        outline: &[DVec2],
+        ask: impl FnOnce(&[SurfacePoint]) -> T,
+    ) -> T {
         let zero = SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO };
         let mut points = [zero; convex::MAX_VERTICES];
         for (to, &v) in points.iter_mut().zip(outline) {
             *to = self.point(lens, v + corner);
         }
-        surface.behind_mask(mean(&points[..outline.len()]))
+        ask(&points[..outline.len()])
     }
 }
 

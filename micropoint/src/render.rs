@@ -186,9 +186,12 @@ impl<'a> Renderer<'a> {
         let mut dicer = std::mem::take(&mut tile.dicer);
         let mut resolve = std::mem::take(&mut tile.resolve);
         let (geometry, lens, opacity) = (self.geometry, &self.lens, self.opacity);
-        let smallest_square = f64::from(cells) / f64::from(self.options.cells_under_masks);
+        let squares_per_side = match self.options.occlusion {
+            Occlusion::Correlated => (self.options.cells_under_masks / cells).max(1) as i32,
+            Occlusion::Paper => 1,
+        };
         let job =
-            DiceJob { geometry, lens, rect: &self.rect, hidden: &self.hidden, opacity, smallest_square };
+            DiceJob { geometry, lens, rect: &self.rect, hidden: &self.hidden, opacity, squares_per_side };
         dicer.dice(&job, window);
         let columns = (window.x1 - window.x0) as usize;
         let share = 1.0 / f64::from(cells * cells);

@@ -1,7 +1,7 @@
 //! From the parts in a cell to what is seen of them.
 
 use crate::dicer::{DiceJob, Dicer, mean_opacity};
-use crate::divide::Square;
+use crate::divide::Squares;
 use crate::front::{Front, Layer, in_front};
 use crate::neighbours::{self, Neighbours};
 use glam::DVec2;
@@ -81,9 +81,12 @@ pub(crate) fn resolve_exactly(
     } else if order.is_empty() {
         dicer.counts.cells_empty += 1;
     } else {
-        let stored = dicer.stored();
-        let compared = resolve_square(dicer, scratch, job, (corner, Square::CELL), &order, &mut emit);
-        dicer.forget_since(stored);
+        let masked = |&p: &u32| Parts { dicer, job, corner }.is_masked(p);
+        let compared = if job.squares_per_side > 1 && order.iter().any(masked) {
+            resolve_divided(dicer, scratch, job, corner, &order, &mut emit)
+        } else {
+            resolve_square(dicer, scratch, job, (corner, 1.0), &order, &mut emit)
+        };
         dicer.counts.cells_single += u64::from(!compared && order.len() == 1);
         dicer.counts.cells_compared += u64::from(compared);
         dicer.counts.cells_apart += u64::from(!compared && order.len() > 1);
@@ -91,27 +94,37 @@ pub(crate) fn resolve_exactly(
     dicer.recycle(order);
 }
 
-/// Resolves a square of a cell in which these parts are, nearest first. Returns whether parts touch one another.
-fn resolve_square(
+/// Resolves a cell square by square. Returns whether parts touch one another.
+fn resolve_divided(
     dicer: &mut Dicer,
     scratch: &mut ResolveScratch,
     job: &DiceJob<'_>,
-    (corner, square): (DVec2, Square),
+    corner: DVec2,
     order: &[u32],
     emit: &mut impl FnMut(&Dicer, Visible<'_>),
 ) -> bool {
-    let masked = |dicer: &Dicer| order.iter().any(|&p| Parts { dicer, job, corner }.is_masked(p));
-    if square.side() > job.smallest_square && masked(dicer) {
-        let mut within = vec![];
-        let mut compared = false;
-        for quarter in square.quarters() {
-            let stored = dicer.stored();
-            quarter.parts_within(dicer, job, corner, order, &mut within);
-            compared |= resolve_square(dicer, scratch, job, (corner, quarter), &within, emit);
-            dicer.forget_since(stored);
-        }
-        return compared;
+    let stored = dicer.stored();
+    let mut squares = std::mem::take(&mut scratch.squares);
+    squares.divide(dicer, job, corner, order);
+    let area = 1.0 / f64::from(job.squares_per_side * job.squares_per_side);
+    let mut compared = false;
+    for order in squares.iter() {
+        compared |= resolve_square(dicer, scratch, job, (corner, area), order, emit);
     }
+    scratch.squares = squares;
+    dicer.forget_since(stored);
+    compared
+}
+
+/// Resolves a cell, or a square of one, with this area, in which these parts are, nearest first. Returns whether parts touch one another.
+fn resolve_square(
+    dicer: &Dicer,
+    scratch: &mut ResolveScratch,
+    job: &DiceJob<'_>,
+    (corner, area): (DVec2, f64),
+    order: &[u32],
+    emit: &mut impl FnMut(&Dicer, Visible<'_>),
+) -> bool {
     if let [only] = *order {
         emit(dicer, Visible::whole(dicer, only));
         return false;
@@ -135,13 +148,13 @@ fn resolve_square(
             Sight::Whole => Visible::whole(dicer, p),
             _ => scratch.cut.in_pieces(&Parts { dicer, job, corner }, p),
         };
-        let visible = visible.fit_into(square.area() - seen);
+        let visible = visible.fit_into(area - seen);
         if visible.weight <= 0.0 {
             continue;
         }
         seen += visible.weight;
         emit(dicer, visible);
-        if seen >= square.area() - FINISHED {
+        if seen >= area - FINISHED {
             break;
         }
     }
@@ -178,6 +191,7 @@ fn behind_a_copy(copy_sight: Sight, dicer: &Dicer, copy: u32, regions: &mut Regi
 /// Memory of [`resolve_exactly`].
 #[derive(Debug, Default)]
 pub(crate) struct ResolveScratch {
+    squares: Squares,
     cut: Cut,
     others: Others,
 }
@@ -259,7 +273,7 @@ impl Occluders for Parts<'_> {
 impl ResolveScratch {
     /// What is seen of part `order[i]` behind the parts in front of it.
     fn hide(&mut self, parts: &Parts<'_>, order: &[u32], i: usize) -> Sight {
-        let Self { cut, others } = self;
+        let Self { cut, others, .. } = self;
         let (dicer, lens) = (parts.dicer, parts.job.lens);
         let least = dicer.part(order[i]).nearness.least;
         // What lies behind by less than rounding coincides, and may be in front by its number.

@@ -93,8 +93,8 @@ fn a_pixel_is_divided_where_a_mask_is_partly_open_only() {
     let geometry = soup.geometry().unwrap();
     let camera = Projection::Orthographic { height: 1.0 };
     let view = View::look_at(DVec3::Z * 9.0, DVec3::ZERO, DVec3::Y, camera, 3, 1).unwrap();
-    for (cells, expected) in [(1, 1), (2, 2), (4, 2)] {
-        // The mask is closed left of the middle of the first pixel: no square of a half is partly open.
+    for (cells, expected) in [(1, 1), (2, 2), (4, 8)] {
+        // The mask is closed left of the middle of the first pixel, and of the others nothing is seen.
         let options = MicropointOptions::DEFAULT.with_cells_under_masks(cells);
         let renderer = Renderer::new(&geometry, &LeftHalf, view, options).unwrap();
         let picture = picture_of(&renderer, [PixelRect { x0: 0, y0: 0, x1: 3, y1: 1 }]);

@@ -209,6 +209,12 @@ impl TexturedOpacity for Surfaces {
     fn rough_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
         self.mask(triangle).map_or(1.0, |mask| self.uvs.rough_mean_of_mask(triangle, polygon, mask) as f32)
     }
+
+    fn even_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> Option<f32> {
+        self.mask(triangle).map_or(Some(1.0), |mask| {
+            self.uvs.uniform_mean_of_mask(triangle, polygon, mask).map(|mean| mean as f32)
+        })
+    }
 }
 
 /// A surface for each material and each kind of object.

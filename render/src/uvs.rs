@@ -44,6 +44,16 @@ impl Uvs {
         mask.rough_mean(self.corners(triangle, polygon, mask.sums()).as_slice())
     }
 
+    /// The mean of a mask if it is uniform ([`MaskSums::uniform_mean`]).
+    pub(crate) fn uniform_mean_of_mask(
+        &self,
+        triangle: u32,
+        polygon: &[SurfacePoint],
+        mask: &MaskSums,
+    ) -> Option<f64> {
+        mask.uniform_mean(self.corners(triangle, polygon, mask.sums()).as_slice())
+    }
+
     fn corners<const N: usize>(
         &self,
         triangle: u32,

@@ -8,7 +8,7 @@ use crate::monitor::Monitor;
 use crate::seen::Seen;
 use crate::shader::{Point, Shader};
 use glam::{DVec3, Vec3};
-use pointillist_micropoint::{Face, LensKind, Tile};
+use pointillist_micropoint::{Face, Tile};
 use pointillist_shade::{Falloff, Interpolation, Lobe, Model, interpolate_color, turn_to};
 use pointillist_shadow::{Receivers, Viewer};
 use std::ops::Range;
@@ -66,11 +66,7 @@ impl Shader<'_> {
             for &owner in &asked[start as usize..end as usize] {
                 let face = &tile.faces()[tile.points()[owner as usize].face as usize];
                 let sum = &mut seen[owner as usize];
-                let mut point = points[owner as usize];
-                if tile.lens().kind == LensKind::Perspective {
-                    point.place.to_eye = (self.eye - part.position()).normalize_or_zero().as_vec3();
-                }
-                sum.0 += self.reflect_whole(light, &point, face, part) * share as f32;
+                sum.0 += self.reflect_whole(light, &points[owner as usize], face, part) * share as f32;
                 sum.1 += share * part.extent();
             }
         };

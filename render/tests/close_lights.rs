@@ -1,4 +1,4 @@
-//! Lights close to a floor that is seen at a grazing angle: they vary over what a pixel sees.
+//! A lamp close to a floor that is seen at a grazing angle: its light varies over what a pixel sees.
 
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_render::shade::{self, Falloff, Light};
@@ -49,17 +49,10 @@ fn worst(light: &Light, with_board: bool) -> f64 {
 
 #[test]
 fn a_pixel_is_the_mean_of_its_parts() {
-    let (falloff, samples, radiance) = (Falloff::InverseSquare, None, Vec3::ONE);
-    let from = dvec3(-0.1, 0.4, 0.0);
-    let tube = Light::Line { from, to: from + 0.2 * DVec3::X, radiance, samples, falloff };
-    let (edge_u, edge_v) = (0.2 * DVec3::X, 0.2 * DVec3::Z);
-    let panel = Light::Rect { corner: dvec3(-0.1, 0.4, -0.1), edge_u, edge_v, radiance, samples, falloff };
-    // The light at the middles of what is seen is off by 0.24 of the brightest.
-    for (light, most) in [(lamp(0.4 * DVec3::Y), 1e-3), (tube, 1e-3), (panel, 1e-3)] {
-        for with_board in [false, true] {
-            let worst = worst(&light, with_board);
-            assert!(worst < most, "{light:?}, {with_board}: {worst:e}");
-        }
+    for with_board in [false, true] {
+        // The light at the middles of what is seen is off by 0.24 of the brightest.
+        let worst = worst(&lamp(0.4 * DVec3::Y), with_board);
+        assert!(worst < 1e-3, "{with_board}: {worst:e}");
     }
 }
 

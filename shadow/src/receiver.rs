@@ -1,8 +1,7 @@
 //! What light falls on: convex pieces of surfaces, as a viewer sees them.
 
-use crate::area::light::Frame;
 use glam::DVec3;
-use pointillist_micropoint::{Face, Fragment, Lens, LensKind, Micropoint, Tile};
+use pointillist_micropoint::{Face, Fragment, Lens, Micropoint, Tile};
 
 /// Convex planar pieces that may be lit. Corners are relative to the viewer's lens, in world axes.
 #[derive(Debug, Default)]
@@ -140,14 +139,4 @@ pub struct Viewer<'a> {
     pub lens: &'a Lens,
     /// The faces that receivers refer to.
     pub faces: &'a [Face],
-}
-
-impl Viewer<'_> {
-    /// Where its rays meet, in the frame of a light; `None` where they are parallel.
-    pub(crate) fn eye(&self, frame: &Frame) -> Option<DVec3> {
-        match self.lens.kind {
-            LensKind::Perspective => Some(frame.local(self.lens.origin)),
-            LensKind::Orthographic => None,
-        }
-    }
 }

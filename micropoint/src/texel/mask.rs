@@ -41,7 +41,9 @@ impl MaskSums {
         self.uniform_mean(corners).unwrap_or_else(|| self.sums.rough_mean(corners)[0])
     }
 
-    fn uniform_mean(&self, corners: &[TexelCorner]) -> Option<f64> {
+    /// The mean over a convex polygon if all texels in its bounding rectangle are equal to the smallest or all to the largest of the mask.
+    #[must_use]
+    pub fn uniform_mean(&self, corners: &[TexelCorner]) -> Option<f64> {
         let [(least, most)] = self.sums.range;
         self.uniform_over(corners).map(|uniform| match uniform {
             Uniform::Least => least,

@@ -3,7 +3,7 @@
 use super::light::{AreaLight, SeenLight, above_horizon};
 use super::masks::Masks;
 use super::outline::Outline;
-use super::piece::{self, Piece, Variation, around};
+use super::piece::{self, Piece, around};
 use super::shaft::Shaft;
 use super::sheets::Sheets;
 use super::sweep::Sweep;
@@ -81,8 +81,7 @@ pub(crate) fn visit(
     stack.extend(0..sheets.list.len() as u32);
     point.outline.start(sheets, light.coincident);
     point.seen.frame = light.frame;
-    let eye = viewer.eye(&light.frame);
-    Groups { light, pieces, corners, eye, sheets, stack, point, counts, has_casters: false, visit }
+    Groups { light, pieces, corners, sheets, stack, point, counts, has_casters: false, visit }
         .divide(targets, 0);
 }
 
@@ -92,8 +91,6 @@ struct Groups<'s, F> {
     /// Those of a receiver, in any order.
     pieces: &'s mut [Piece],
     corners: &'s [DVec3],
-    /// Where the viewer's rays meet, in the light's frame.
-    eye: Option<DVec3>,
     sheets: &'s Sheets,
     stack: &'s mut Vec<u32>,
     point: &'s mut PointScratch,
@@ -156,12 +153,9 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
             let all = own.iter().flat_map(|p| p.corners(corners));
             let around = around(all.clone());
             let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
-            if !self.light.is_crossed_by(around)
-                && !self.point.outline.passes_between(self.sheets, all.copied(), around, &shaft)
-            {
-                let factor = self.cast((middle, target.normal), &shaft);
-                let variation = self.variation(target, middle, radius, halvings);
-                if variation == Variation::Even && !self.moves(target, factor, radius, halvings) {
+            if !self.point.outline.passes_between(self.sheets, all.copied(), around, &shaft) {
+                let factor = self.cast((middle, target.normal), &shaft, (around.0.z, around.1.z));
+                if !self.is_coarse(target, factor, radius, halvings) {
                     return self.report(target, share);
                 }
             }
@@ -174,45 +168,33 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         self.ask_pieces(target, parted..pieces.end, share * (1.0 - share_of_first), halvings + 1);
     }
 
-    /// Asks the middle of a convex piece of a receiver, some points of it, or its halves.
+    /// Asks the middle of a convex piece of a receiver, or the middles of its halves.
     fn ask(&mut self, target: &Target, ring: &[DVec3], share: f64, halvings: u32) {
-        let around = around(ring.iter());
-        if self.light.is_crossed_by(around) {
-            if let Some([(front, own), _]) = piece::parts(ring, (DVec3::ZERO, DVec3::Z), self.eye) {
-                self.ask(target, &front, share * own, halvings);
-            }
-            return;
-        }
         let (middle, radius) = piece::middle(ring);
+        let around = around(ring.iter());
         let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
-        let factor = self.cast((middle, target.normal), &shaft);
-        let variation = self.variation(target, middle, radius, halvings);
-        let divides = variation == Variation::Steep || self.moves(target, factor, radius, halvings);
-        if divides && let Some(halves) = piece::halves(ring, middle, self.eye) {
-            for (half, own) in halves.iter().filter(|(_, own)| *own > 0.0) {
-                self.ask(target, half, share * own, halvings + 1);
+        let factor = self.cast((middle, target.normal), &shaft, (around.0.z, around.1.z));
+        if self.is_coarse(target, factor, radius, halvings) {
+            let halves = piece::halves(ring, middle);
+            let areas = halves.each_ref().map(|h| piece::area(h));
+            let total = areas[0] + areas[1];
+            if total > 0.0 {
+                for (half, own) in halves.iter().zip(areas) {
+                    if own > 0.0 {
+                        self.ask(target, half, share * own / total, halvings + 1);
+                    }
+                }
+                return;
             }
-            return;
         }
-        if variation == Variation::Even {
-            return self.report(target, share);
-        }
-        for (point, own) in piece::points(ring, self.eye) {
-            self.cast((point, target.normal), &shaft);
-            self.report(target, share * own);
-        }
+        self.report(target, share);
     }
 
     /// Whether one point is too few where outlines move by this factor of its way, and all it stands for is within this radius.
-    fn moves(&self, target: &Target, factor: f64, radius: f64, halvings: u32) -> bool {
+    fn is_coarse(&self, target: &Target, factor: f64, radius: f64, halvings: u32) -> bool {
         let options = &self.light.options;
         let shift = factor * radius * target.visibility;
         shift > options.largest_shift * self.light.width && halvings < options.most_halvings
-    }
-
-    /// How the light would vary with nothing in between.
-    fn variation(&self, target: &Target, middle: DVec3, radius: f64, halvings: u32) -> Variation {
-        Variation::over(radius * target.visibility, self.light.distance(middle), halvings)
     }
 
     fn report(&mut self, target: &Target, share: f64) {
@@ -222,13 +204,14 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         }
     }
 
-    /// What a point of a surface sees. Returns the factor of [`Outline::cast`].
-    fn cast(&mut self, (point, normal): (DVec3, DVec3), shaft: &Shaft) -> f64 {
+    /// What a point of a surface sees. Returns the factor of [`Outline::cast`] for points around it between these heights over the light.
+    fn cast(&mut self, (point, normal): (DVec3, DVec3), shaft: &Shaft, (lowest, highest): (f64, f64)) -> f64 {
         let PointScratch { outline, masks, sweep, polygon, seen } = &mut *self.point;
         seen.clear();
         seen.point = point;
         if point.z <= self.light.coincident {
-            return 0.0;
+            // Some of what it stands for may be in front of the light.
+            return if highest > self.light.coincident { f64::INFINITY } else { 0.0 };
         }
         above_horizon(&self.light.outline, point, normal, polygon);
         if convex::area(polygon) <= 0.0 {
@@ -238,6 +221,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         let factor = outline.cast(self.sheets, (point, normal), shaft, sweep);
         sweep.finish(polygon, self.sheets, seen);
         masks.dim(self.light, self.sheets, seen);
-        factor
+        // Some of what it stands for may be behind the light.
+        if lowest < -self.light.coincident { f64::INFINITY } else { factor }
     }
 }

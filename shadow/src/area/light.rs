@@ -174,13 +174,6 @@ impl<'a> AreaLight<'a> {
         self.width * self.width
     }
 
-    /// Distance of a point, in the light's frame, from the rectangle around the light.
-    pub(crate) fn distance(&self, point: DVec3) -> f64 {
-        let (low, high) = convex::bounds(&self.outline);
-        let beside = (low - point.truncate()).max(point.truncate() - high).max(DVec2::ZERO);
-        beside.extend(point.z).length()
-    }
-
     /// What a point of a surface with this unit normal would see with nothing in between.
     #[must_use]
     pub fn whole(&self, position: DVec3, normal: DVec3) -> SeenLight {
@@ -224,11 +217,6 @@ impl AreaLight<'_> {
     /// Whether a triangle is part of the light.
     pub(crate) fn is_own(&self, triangle: u32) -> bool {
         !self.own.is_empty() && self.own.binary_search(&triangle).is_ok()
-    }
-
-    /// Whether a box, in the light's frame, is on both sides of the light's plane.
-    pub(crate) fn is_crossed_by(&self, (low, high): (DVec3, DVec3)) -> bool {
-        low.z < -self.coincident && high.z > self.coincident
     }
 
     /// Whether everything in a box, relative to a point, is behind the light.

@@ -4,7 +4,7 @@ use super::cut::{Interval, LineCaster};
 use super::hull::Hull;
 use super::light::{LineLight, SeenLine, above_horizon};
 use crate::area::masks::surface_point;
-use crate::area::piece::{self, Variation};
+use crate::area::piece;
 use crate::area::targets::{Target, Targets, bounds, split};
 use crate::counts::AreaCounts;
 use crate::receiver::{Receivers, Viewer};
@@ -79,8 +79,7 @@ pub(crate) fn visit(
     }
     stack.clear();
     stack.extend(0..casters.len() as u32);
-    let eye = viewer.eye(&light.frame);
-    Groups { light, pieces, corners, eye, casters, stack, point, counts, visit }.divide(list, 0);
+    Groups { light, pieces, corners, casters, stack, point, counts, visit }.divide(list, 0);
 }
 
 /// Adds what a hull does not miss.
@@ -118,8 +117,6 @@ struct Groups<'s, F> {
     light: &'s LineLight<'s>,
     pieces: &'s [piece::Piece],
     corners: &'s [DVec3],
-    /// Where the viewer's rays meet, in the light's frame.
-    eye: Option<DVec3>,
     casters: &'s [LineCaster],
     stack: &'s mut Vec<u32>,
     point: &'s mut PointScratch,
@@ -160,30 +157,22 @@ impl<F: FnMut(usize, f64, &SeenLine)> Groups<'_, F> {
         }
     }
 
-    /// Asks the middle of a convex piece of a receiver, some points of it, or its halves.
+    /// Asks the middle of a convex piece of a receiver, or the middles of its halves.
     fn ask(&mut self, target: &Target, ring: &[DVec3], share: f64, (first, halvings): (usize, u32)) {
-        let (middle, radius) = piece::middle(ring);
-        let distance = self.light.distance(middle);
-        let variation = Variation::over(radius * target.visibility, distance, halvings);
-        let divides =
-            variation == Variation::Steep || self.is_coarse(target, ring, middle, (first, halvings));
-        if divides && let Some(halves) = piece::halves(ring, middle, self.eye) {
-            for (half, own) in halves.iter().filter(|(_, own)| *own > 0.0) {
-                self.ask(target, half, share * own, (first, halvings + 1));
+        let (middle, _) = piece::middle(ring);
+        if self.is_coarse(target, ring, middle, (first, halvings)) {
+            let halves = piece::halves(ring, middle);
+            let areas = halves.each_ref().map(|h| piece::area(h));
+            let total = areas[0] + areas[1];
+            if total > 0.0 {
+                for (half, own) in halves.iter().zip(areas).filter(|(_, own)| *own > 0.0) {
+                    self.ask(target, half, share * own / total, (first, halvings + 1));
+                }
+                return;
             }
-            return;
         }
-        if variation == Variation::Even {
-            return self.ask_point(target, middle, share, first);
-        }
-        for (point, own) in piece::points(ring, self.eye) {
-            self.ask_point(target, point, share * own, first);
-        }
-    }
-
-    fn ask_point(&mut self, target: &Target, point: DVec3, share: f64, first: usize) {
         let PointScratch { marks, seen, .. } = &mut *self.point;
-        cast(self.light, (point, target.normal), (self.casters, &self.stack[first..]), marks, seen);
+        cast(self.light, (middle, target.normal), (self.casters, &self.stack[first..]), marks, seen);
         self.counts.point(self.stack.len() > first, seen.parts.is_empty());
         if !seen.parts.is_empty() {
             (self.visit)(target.receiver as usize, share, seen);

@@ -71,14 +71,6 @@ impl<'a> LineLight<'a> {
         self.ends[1].length()
     }
 
-    /// Distance of a point, in the light's frame.
-    pub(crate) fn distance(&self, point: DVec3) -> f64 {
-        let [a, b] = self.ends;
-        let along = b - a;
-        let nearest = a + along * ((point - a).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-        point.distance(nearest)
-    }
-
     /// What a point of a surface with this unit normal would see with nothing in between.
     #[must_use]
     pub fn whole(&self, position: DVec3, normal: DVec3) -> SeenLine {
