@@ -94,6 +94,7 @@ mod seen;
 mod set_up;
 mod shader;
 mod shading;
+mod shaft;
 mod solids;
 mod surfaces;
 mod texel_sums;

@@ -1,5 +1,6 @@
 //! The scene's lights as the points and directions that shadows are cast from.
 
+use crate::casters::{Occasion, Origin};
 use crate::emitters::{EmittingPolygon, Side};
 use crate::error::RenderError;
 use crate::prepared::Prepared;
@@ -19,6 +20,8 @@ pub(crate) struct LightSample<'a> {
     pub(crate) sample: u32,
     /// 1 for the channels of the light that it brings, 0 for the others.
     pub(crate) channels: Vec3,
+    pub(crate) occasion: Occasion,
+    pub(crate) origin: Origin,
     /// `None`: casts no shadow.
     pub(crate) shadow: Option<ShadowLight<'a>>,
 }
@@ -31,6 +34,8 @@ pub(crate) struct WholeLight<'a> {
     pub(crate) within: Option<(DVec3, DVec3)>,
     /// 1 for the channels of the light that it brings, 0 for the others.
     pub(crate) channels: Vec3,
+    pub(crate) occasion: Occasion,
+    pub(crate) origin: Origin,
     pub(crate) shape: Shape<'a>,
     /// What the side sends out.
     pub(crate) emission: Emission,
@@ -52,8 +57,20 @@ pub(crate) struct SceneLights<'a> {
     pub(crate) whole: Vec<WholeLight<'a>>,
 }
 
+impl SceneLights<'_> {
+    /// Whether something clear may colour the light of some tiles.
+    pub(crate) fn are_tinted(&self) -> bool {
+        let mut occasions =
+            self.samples.iter().map(|l| l.occasion).chain(self.whole.iter().map(|l| l.occasion));
+        occasions.any(|occasion| occasion != Occasion::Always)
+    }
+}
+
+/// What casts the shadows of some channels of light, and when.
+type Cast<'a> = (Vec3, &'a Geometry, Occasion);
+
 /// All lights, for receivers that `lens` sees. Lights with an area and lines are taken as a whole unless they ask for samples, or `sampled` does. Where
-/// something clear lets colours pass differently, a light comes once for each.
+/// something clear lets colours pass differently, a light comes once for each, and once for tiles where none does.
 pub(crate) fn scene_lights<'a>(
     prepared: &'a Prepared<'_>,
     lens: &Lens,
@@ -62,15 +79,15 @@ pub(crate) fn scene_lights<'a>(
     let (scene, surfaces) = (prepared.scene, &*prepared.surfaces);
     let mut lights = SceneLights::default();
     for (light, source) in scene.lights.iter().enumerate() {
-        let unhindered = (!source.shadow).then_some((Vec3::ONE, &prepared.geometry));
+        let unhindered = (!source.shadow).then_some((Vec3::ONE, &prepared.geometry, Occasion::Always));
         let casters = unhindered.into_iter().chain(prepared.casters().filter(|_| source.shadow));
-        for (channels, geometry) in casters {
+        for cast @ (channels, geometry, occasion) in casters {
             if !sampled && let Some(area) = source.light.exact_area() {
-                lights.whole.extend(whole_light((light, source), area, channels, geometry, surfaces)?);
+                lights.whole.extend(whole_light((light, source), area, cast, surfaces)?);
                 continue;
             }
             if !sampled && let Some(ends) = source.light.exact_line() {
-                lights.whole.push(whole_line((light, source), ends, channels, geometry, surfaces)?);
+                lights.whole.push(whole_line((light, source), ends, cast, surfaces)?);
                 continue;
             }
             for sample in 0..source.light.samples() {
@@ -85,7 +102,12 @@ pub(crate) fn scene_lights<'a>(
                 } else {
                     None
                 };
-                lights.samples.push(LightSample { light, sample, channels, shadow });
+                let origin = match source.light.source(sample) {
+                    Source::Direction(direction) => Origin::Direction(direction),
+                    Source::Position(position) => Origin::Within((position, position)),
+                    _ => unreachable!("light comes from a point or a direction"),
+                };
+                lights.samples.push(LightSample { light, sample, channels, occasion, origin, shadow });
             }
         }
     }
@@ -109,8 +131,7 @@ pub(crate) fn share(channels: Vec3) -> f64 {
 fn whole_light<'a>(
     (light, source): (usize, &LightSource),
     (outline, two_sided): (LightOutline, bool),
-    channels: Vec3,
-    geometry: &'a Geometry,
+    (channels, geometry, occasion): Cast<'a>,
     surfaces: &'a Surfaces,
 ) -> Result<Vec<WholeLight<'a>>, RenderError> {
     let back: Vec<DVec3> = outline.vertices().iter().rev().copied().collect();
@@ -125,7 +146,16 @@ fn whole_light<'a>(
         let radiance = source.light.color() * channels;
         let emission = Emission { front: side.front(), radiance, falloff: source.light.falloff() };
         let shape = Shape::Side(side);
-        found.push(WholeLight { light: Some(light), within: None, channels, shape, emission });
+        let origin = around(vertices);
+        found.push(WholeLight {
+            light: Some(light),
+            within: None,
+            channels,
+            occasion,
+            origin,
+            shape,
+            emission,
+        });
     }
     Ok(found)
 }
@@ -134,8 +164,7 @@ fn whole_light<'a>(
 fn whole_line<'a>(
     (light, source): (usize, &LightSource),
     ends: [DVec3; 2],
-    channels: Vec3,
-    geometry: &'a Geometry,
+    (channels, geometry, occasion): Cast<'a>,
     surfaces: &'a Surfaces,
 ) -> Result<WholeLight<'a>, RenderError> {
     let line =
@@ -144,14 +173,15 @@ fn whole_line<'a>(
     let line = if source.shadow { line } else { line.without_shadows() };
     let radiance = source.light.color() * channels;
     let emission = Emission { front: DVec3::ZERO, radiance, falloff: source.light.falloff() };
-    Ok(WholeLight { light: Some(light), within: None, channels, shape: Shape::Line(line), emission })
+    let (shape, origin) = (Shape::Line(line), around(&ends));
+    Ok(WholeLight { light: Some(light), within: None, channels, occasion, origin, shape, emission })
 }
 
 /// The sides of an emitting polygon that shine.
 fn emitting_sides<'a>(
     prepared: &'a Prepared<'_>,
     emitter: &EmittingPolygon,
-    (channels, geometry): (Vec3, &'a Geometry),
+    (channels, geometry, occasion): Cast<'a>,
     options: AreaOptions,
 ) -> Result<Vec<WholeLight<'a>>, RenderError> {
     let mut found = vec![];
@@ -175,9 +205,16 @@ fn emitting_sides<'a>(
         let side = side.with_options(options.with_largest_shift(shift));
         let radiance = emitter.radiance * channels;
         let emission = Emission { front: side.front(), radiance, falloff: Falloff::InverseSquare };
-        found.push(WholeLight { light: None, within, channels, shape: Shape::Side(side), emission });
+        let (shape, origin) = (Shape::Side(side), around(vertices));
+        found.push(WholeLight { light: None, within, channels, occasion, origin, shape, emission });
     }
     Ok(found)
+}
+
+/// The box around some points of a lamp.
+fn around(points: &[DVec3]) -> Origin {
+    let grow = |(low, high): (DVec3, DVec3), p: &DVec3| (low.min(*p), high.max(*p));
+    Origin::Within(points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), grow))
 }
 
 /// One sample of a light as `pointillist-shadow` takes it. Lights of one point or direction have the single sample 0

@@ -2,7 +2,7 @@
 
 use crate::ambient::Ambient;
 use crate::background::sum_up_environment;
-use crate::casters::{Casters, clear_casters};
+use crate::casters::{Casters, ClearBoxes, Occasion, clear_casters};
 use crate::emitters::{EmittingPolygon, emitting_polygons, radiance_of_triangle};
 use crate::error::RenderError;
 use crate::monitor::{Monitor, go_on, stage};
@@ -20,6 +20,7 @@ pub struct Prepared<'a> {
     pub(crate) geometry: Geometry,
     /// What casts shadows in the place of `geometry`, if anything is clear.
     pub(crate) clear_casters: Vec<Casters>,
+    pub(crate) clear_boxes: Arc<ClearBoxes>,
     /// Polygons of materials that light others.
     pub(crate) emitters: Arc<Vec<EmittingPolygon>>,
     pub(crate) environment: Arc<Option<TexelSums<3>>>,
@@ -44,6 +45,11 @@ impl<'a> Prepared<'a> {
             scene,
             surfaces: Arc::new(surfaces),
             geometry,
+            clear_boxes: Arc::new(if clear_casters.len() > 1 {
+                ClearBoxes::new(scene)
+            } else {
+                ClearBoxes::default()
+            }),
             clear_casters,
             emitters: Arc::new(emitters),
             environment: Arc::new(environment),
@@ -57,6 +63,7 @@ impl<'a> Prepared<'a> {
             scene: self.scene,
             surfaces: self.surfaces.clone(),
             clear_casters: clear_casters(self.scene, &geometry)?,
+            clear_boxes: self.clear_boxes.clone(),
             geometry,
             emitters: self.emitters.clone(),
             environment: self.environment.clone(),
@@ -64,10 +71,17 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    /// What casts shadows, and the channels of light for which it does.
-    pub(crate) fn casters(&self) -> impl Iterator<Item = (Vec3, &Geometry)> {
-        let all = self.clear_casters.is_empty().then_some((Vec3::ONE, &self.geometry));
-        all.into_iter().chain(self.clear_casters.iter().map(|c| (c.channels, &c.geometry)))
+    /// What casts shadows, the channels of light for which it does, and when it is asked.
+    pub(crate) fn casters(&self) -> impl Iterator<Item = (Vec3, &Geometry, Occasion)> {
+        let clear = &self.clear_casters;
+        let (serves_all, occasion) = match &clear[..] {
+            [] => (&self.geometry, Occasion::Always),
+            [alike] => (&alike.geometry, Occasion::Always),
+            [first, ..] => (&first.geometry, Occasion::Untinted),
+        };
+        let divided = clear.iter().filter(|_| clear.len() > 1);
+        std::iter::once((Vec3::ONE, serves_all, occasion))
+            .chain(divided.map(|c| (c.channels, &c.geometry, Occasion::Tinted)))
     }
 
     /// The triangles.

@@ -1,10 +1,12 @@
 //! What shading knows of a scene, and the state of one micropoint while it is shaded.
 
 use crate::ambient::{Ambient, Spot};
+use crate::casters::{ClearBoxes, Occasion, Origin};
 use crate::lights::SceneLights;
 use crate::prepared::Prepared;
 use crate::reflections::Reflections;
 use crate::scene::{NONE, Scene};
+use crate::shaft::Box3;
 use crate::surfaces::Surfaces;
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::Face;
@@ -48,6 +50,7 @@ pub(crate) struct Shader<'a> {
     pub(crate) surfaces: &'a Surfaces,
     pub(crate) reflections: &'a Reflections,
     pub(crate) lights: &'a SceneLights<'a>,
+    pub(crate) clear: &'a ClearBoxes,
     pub(crate) economy: Option<Economy>,
     pub(crate) ambient: Ambient<'a>,
     pub(crate) glow: Glow,
@@ -112,11 +115,21 @@ impl<'a> Shader<'a> {
             surfaces: &prepared.surfaces,
             reflections: &prepared.reflections,
             lights,
+            clear: &prepared.clear_boxes,
             economy,
             ambient,
             glow,
             eye: view.eye(),
             forward: view.forward(),
+        }
+    }
+
+    /// Whether an entry of a light counts for what is in a box.
+    pub(crate) fn counts(&self, occasion: Occasion, origin: Origin, receivers: Box3) -> bool {
+        match occasion {
+            Occasion::Always => true,
+            Occasion::Untinted => !self.clear.may_tint(origin, receivers),
+            Occasion::Tinted => self.clear.may_tint(origin, receivers),
         }
     }
 

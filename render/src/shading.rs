@@ -2,10 +2,12 @@
 
 use crate::background::Background;
 use crate::canvas::Pixels;
-use crate::direct::DirectScratch;
+use crate::direct::{DirectScratch, corners};
 use crate::frame::LayerKind;
 use crate::monitor::Monitor;
 use crate::shader::{Point, Shader};
+use crate::shaft::Box3;
+use glam::DVec3;
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::{SurfacePoint, Tile};
 use pointillist_shadow::{AreaCounts, ShadowCounts};
@@ -48,11 +50,12 @@ impl Shader<'_> {
                 lit.insert(*light, vec![0.0; tile.points().len()]);
             }
         }
-        for light in &self.lights.samples {
+        let within = if self.lights.are_tinted() { self.bounds(tile) } else { (DVec3::ZERO, DVec3::ZERO) };
+        for light in self.lights.samples.iter().filter(|l| self.counts(l.occasion, l.origin, within)) {
             self.add_light(tile, light, points, direct, lit.get_mut(&light.light), monitor);
         }
         let mut asked = None;
-        for light in &self.lights.whole {
+        for light in self.lights.whole.iter().filter(|l| self.counts(l.occasion, l.origin, within)) {
             let layer = light.light.and_then(|number| lit.get_mut(&number));
             if asked != Some(layer.is_some()) {
                 self.ask_for_whole(tile, points, layer.is_some(), direct);
@@ -64,5 +67,13 @@ impl Shader<'_> {
         self.gather_layers(tile, layers, &lit, points, pixels);
         monitor.lap("shade");
         pixels
+    }
+
+    /// The box around all that a tile sees, in the world.
+    fn bounds(&self, tile: &Tile) -> Box3 {
+        let corners =
+            tile.points().iter().flat_map(|m| tile.fragments(m).iter().flat_map(|f| corners(tile, m, f)));
+        let grow = |(low, high): Box3, c: DVec3| (low.min(self.eye + c), high.max(self.eye + c));
+        corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), grow)
     }
 }

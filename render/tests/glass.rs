@@ -97,3 +97,43 @@ fn what_passes_all_light_casts_no_shadow() {
         assert!((seen - open).abs().max_element() < 1e-6 * open.max_element(), "{light:?}");
     }
 }
+
+/// A floor below a small pane of glass; with `screen`, below a clear sheet of opacity 0, too, which neither casts a shadow nor is seen.
+fn half_tinted(light: Light, screen: bool) -> pointillist_render::Frame {
+    let camera = Camera::perspective(dvec3(0.0, 6.0, 9.0), DVec3::ZERO, 0.8);
+    let mut scene = Scene::new(camera, [70, 50]);
+    let white = scene.add_material(Material::new("floor", shade::Material::lambert(Vec3::ONE)));
+    let mut clear = |name: &str, opacity: f32| {
+        let mut details = Details::default();
+        details.transmission = Some(Transmission { color: GLASS, index: 1.0 });
+        let mut surface = shade::Material::lambert(Vec3::ZERO);
+        surface.opacity = opacity;
+        scene.add_material(Material::new(name, surface).with_details(details))
+    };
+    let (glass, air) = (clear("glass", 0.8), clear("air", 0.0));
+    let faces = [[0, 1, 2], [0, 2, 3]];
+    scene.mesh.add(&Part::new("floor", &square(4.0, 0.0, 0.0), &faces).with_material(white)).unwrap();
+    scene.mesh.add(&Part::new("pane", &square(0.7, 1.0, 0.9), &faces).with_material(glass)).unwrap();
+    if screen {
+        scene.mesh.add(&Part::new("air", &square(4.0, 0.5, 0.0), &faces).with_material(air)).unwrap();
+    }
+    scene.lights.push(LightSource::new("light", light));
+    render(&scene, &DrawOptions::DEFAULT, &()).unwrap()
+}
+
+#[test]
+fn asking_each_colour_only_where_glass_may_tint_it_changes_no_bit() {
+    let mut lights = lights();
+    if let Light::Point { position, .. } = &mut lights[1] {
+        *position = dvec3(1.0, 5.0, 1.0);
+    }
+    if let Light::Rect { corner, edge_u, edge_v, .. } = &mut lights[2] {
+        (*corner, *edge_u, *edge_v) = (dvec3(0.5, 4.0, 0.0), dvec3(1.0, 0.0, 0.0), dvec3(0.0, 0.0, 1.0));
+    }
+    for light in lights {
+        let (some, all) = (half_tinted(light, false), half_tinted(light, true));
+        let tinted = some.color.iter().filter(|c| (c[0] - c[2]).abs() > 1e-3).count();
+        assert!(tinted > 20 && tinted < 2000, "{light:?}: {tinted} of 3500 pixels are coloured");
+        assert!(some.color == all.color, "{light:?}");
+    }
+}
