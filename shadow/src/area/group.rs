@@ -144,7 +144,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
     /// Asks one point for some pieces of a receiver that stand for this share of it, or each half of them.
     fn ask_pieces(&mut self, target: &Target, pieces: Range<usize>, share: f64, halvings: u32) {
         let corners = self.corners;
-        let own = &mut self.pieces[pieces.clone()];
+        let own = &self.pieces[pieces.clone()];
         if let [only] = own {
             let ring = only.corners(corners);
             return self.ask(target, ring, share, halvings);
@@ -153,11 +153,10 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
             let all = own.iter().flat_map(|p| p.corners(corners));
             let around = around(all.clone());
             let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
-            if !self.point.outline.passes_between(self.sheets, all.copied(), around, &shaft) {
-                let factor = self.cast((middle, target.normal), &shaft, (around.0.z, around.1.z));
-                if !self.is_coarse(target, factor, radius, halvings) {
-                    return self.report(target, share);
-                }
+            let most = self.most_movement(target, radius, halvings);
+            let passes = self.point.outline.passes_between(self.sheets, all.copied(), around, &shaft);
+            if !passes && self.cast((middle, target.normal), &shaft, (around.0.z, around.1.z), most) {
+                return self.report(target, share);
             }
         }
         let own = &mut self.pieces[pieces.clone()];
@@ -173,8 +172,9 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         let (middle, radius) = piece::middle(ring);
         let around = around(ring.iter());
         let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
-        let factor = self.cast((middle, target.normal), &shaft, (around.0.z, around.1.z));
-        if self.is_coarse(target, factor, radius, halvings) {
+        let heights = (around.0.z, around.1.z);
+        let most = self.most_movement(target, radius, halvings);
+        if !self.cast((middle, target.normal), &shaft, heights, most) {
             let halves = piece::halves(ring, middle);
             let areas = halves.each_ref().map(|h| piece::area(h));
             let total = areas[0] + areas[1];
@@ -186,15 +186,18 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
                 }
                 return;
             }
+            self.cast((middle, target.normal), &shaft, heights, f64::INFINITY);
         }
         self.report(target, share);
     }
 
-    /// Whether one point is too few where outlines move by this factor of its way, and all it stands for is within this radius.
-    fn is_coarse(&self, target: &Target, factor: f64, radius: f64, halvings: u32) -> bool {
+    /// The share of its way by which outlines may move if one point is to be enough for all that is within this radius.
+    fn most_movement(&self, target: &Target, radius: f64, halvings: u32) -> f64 {
         let options = &self.light.options;
-        let shift = factor * radius * target.visibility;
-        shift > options.largest_shift * self.light.width && halvings < options.most_halvings
+        if halvings >= options.most_halvings {
+            return f64::INFINITY;
+        }
+        options.largest_shift * self.light.width / (radius * target.visibility)
     }
 
     fn report(&mut self, target: &Target, share: f64) {
@@ -204,24 +207,36 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         }
     }
 
-    /// What a point of a surface sees. Returns the factor of [`Outline::cast`] for points around it between these heights over the light.
-    fn cast(&mut self, (point, normal): (DVec3, DVec3), shaft: &Shaft, (lowest, highest): (f64, f64)) -> f64 {
+    /// What a point of a surface sees, if it stands for points between these heights over the light and within `shaft`: false if outlines move by
+    /// more than `most` times its way.
+    fn cast(
+        &mut self,
+        (point, normal): (DVec3, DVec3),
+        shaft: &Shaft,
+        (lowest, highest): (f64, f64),
+        most: f64,
+    ) -> bool {
         let PointScratch { outline, masks, sweep, polygon, seen } = &mut *self.point;
         seen.clear();
         seen.point = point;
         if point.z <= self.light.coincident {
             // Some of what it stands for may be in front of the light.
-            return if highest > self.light.coincident { f64::INFINITY } else { 0.0 };
+            return most == f64::INFINITY || highest <= self.light.coincident;
         }
         above_horizon(&self.light.outline, point, normal, polygon);
         if convex::area(polygon) <= 0.0 {
-            return 0.0;
+            return true;
+        }
+        outline.turn_to(self.sheets, point);
+        // Some of what it stands for may be behind the light.
+        let crosses = lowest < -self.light.coincident;
+        if most < f64::INFINITY && (crosses || outline.moves_by_more(most, (point, normal), shaft)) {
+            return false;
         }
         sweep.start(polygon);
-        let factor = outline.cast(self.sheets, (point, normal), shaft, sweep);
+        outline.cast(self.sheets, point, sweep);
         sweep.finish(polygon, self.sheets, seen);
         masks.dim(self.light, self.sheets, seen);
-        // Some of what it stands for may be behind the light.
-        if lowest < -self.light.coincident { f64::INFINITY } else { factor }
+        true
     }
 }

@@ -28,6 +28,21 @@ struct OutlineEdge {
     open: bool,
 }
 
+impl OutlineEdge {
+    /// The height of its higher end.
+    fn top(&self) -> f64 {
+        self.ends[0].z.max(self.ends[1].z)
+    }
+
+    /// What of it counts for the point at hand, and is no higher than `top`.
+    #[inline]
+    fn below(&self, top: f64) -> Option<[DVec3; 2]> {
+        let [a, b] = self.ends;
+        let cut = |p: DVec3| if p.z > top { at_height(a, b, top) } else { p };
+        (self.now != 0 && (a.z <= top || b.z <= top)).then(|| [cut(a), cut(b)])
+    }
+}
+
 /// The edges of a group's sheets, and memory.
 #[derive(Debug, Default)]
 pub(crate) struct Outline {
@@ -35,7 +50,8 @@ pub(crate) struct Outline {
     /// For each edge of the batch, its position in `edges`, or `NONE`.
     position: Vec<u32>,
     numbers: Vec<u32>,
-    /// Edges that may count. Those that cancel for all points of the group do not, nor do those that [`Shaft::is_right_or_beside`] finds.
+    /// Edges that may count, the highest first. Those that cancel for all points of the group do not, nor do those that
+    /// [`Shaft::is_right_or_beside`] finds.
     live: Vec<u32>,
     /// Sheets whose side depends on the point, or that reach above a point of the group.
     open: Vec<u32>,
@@ -84,6 +100,8 @@ impl Outline {
         self.live.clear();
         let counts = |e: &OutlineEdge| (e.open || e.sure != 0) && !shaft.is_right_or_beside(e.ends);
         self.live.extend((0..self.edges.len()).filter(|&i| counts(&self.edges[i])).map(|i| i as u32));
+        let top = |&i: &u32| self.edges[i as usize].top();
+        self.live.sort_unstable_by(|a, b| top(b).total_cmp(&top(a)));
     }
 
     fn add(&mut self, sheets: &Sheets, sheet: &Sheet, mut act: impl FnMut(&mut OutlineEdge, i32)) {
@@ -104,50 +122,63 @@ impl Outline {
         }
     }
 
-    /// Adds the outlines that a point of a surface sees to a sweep. Returns the largest factor by which an outline within `shaft` moves
-    /// when the point moves; outlines below the surface's horizon do not count.
-    pub(crate) fn cast(
-        &mut self,
-        sheets: &Sheets,
-        (point, normal): (DVec3, DVec3),
-        shaft: &Shaft,
-        sweep: &mut Sweep,
-    ) -> f64 {
-        let top = highest_caster(point.z);
+    /// Finds out how edges count for a point.
+    pub(crate) fn turn_to(&mut self, sheets: &Sheets, point: DVec3) {
         for &i in &self.live {
             let edge = &mut self.edges[i as usize];
             edge.now = edge.sure;
         }
-        for i in 0..self.open.len() {
-            let sheet = &sheets.list[self.open[i] as usize];
-            let distance = sheet.normal.dot(point) - sheet.offset;
-            if distance.abs() <= self.coincident {
-                continue;
-            }
-            let side = if distance > 0.0 { 1 } else { -1 };
+        for &s in &self.open {
+            let sheet = &sheets.list[s as usize];
+            let side = self.side(sheet, point);
             for e in sheet.edges() {
                 self.edges[self.position[e.edge() as usize] as usize].now += side * e.turn();
             }
-            self.cast_cut(sheet, point, top, side, sweep);
         }
-        let mut factor = 0.0_f64;
+    }
+
+    /// The side of a sheet that a point is on: 1, −1, or 0 within its plane.
+    fn side(&self, sheet: &Sheet, point: DVec3) -> i32 {
+        let distance = sheet.normal.dot(point) - sheet.offset;
+        i32::from(distance > self.coincident) - i32::from(distance < -self.coincident)
+    }
+
+    /// Whether an outline within `shaft` moves by more than `most` times the way of the point of [`Outline::turn_to`]; outlines below the
+    /// surface's horizon do not count.
+    pub(crate) fn moves_by_more(&self, most: f64, (point, normal): (DVec3, DVec3), shaft: &Shaft) -> bool {
+        let top = highest_caster(point.z);
+        let moves = |height: f64| height / (point.z - height) > most;
         for &i in &self.live {
-            let OutlineEdge { ends: [a, b], now, kind, .. } = self.edges[i as usize];
-            if now == 0 || (a.z > top && b.z > top) {
-                continue;
+            let edge = &self.edges[i as usize];
+            if !moves(edge.top().min(top)) {
+                // Those that follow are lower.
+                return false;
             }
-            let cut = |p: DVec3| if p.z > top { at_height(a, b, top) } else { p };
-            let (a, b) = (cut(a), cut(b));
-            sweep.add(projected(point, a), projected(point, b), now, kind);
-            let below = |p: DVec3| normal.dot(p - point) <= self.coincident;
-            if below(a) && below(b) {
-                continue;
-            }
-            if let Some(nearest) = shaft.highest_within(a, b) {
-                factor = factor.max(nearest / (point.z - nearest));
+            let Some([a, b]) = edge.below(top) else { continue };
+            let below_horizon = |p: DVec3| normal.dot(p - point) <= self.coincident;
+            if !(below_horizon(a) && below_horizon(b)) && shaft.highest_within(a, b).is_some_and(moves) {
+                return true;
             }
         }
-        factor
+        false
+    }
+
+    /// Adds the outlines that the point of [`Outline::turn_to`] sees to a sweep.
+    pub(crate) fn cast(&self, sheets: &Sheets, point: DVec3, sweep: &mut Sweep) {
+        let top = highest_caster(point.z);
+        for &s in &self.open {
+            let sheet = &sheets.list[s as usize];
+            let side = self.side(sheet, point);
+            if side != 0 {
+                self.cast_cut(sheet, point, top, side, sweep);
+            }
+        }
+        for &i in &self.live {
+            let edge = &self.edges[i as usize];
+            if let Some([a, b]) = edge.below(top) {
+                sweep.add(projected(point, a), projected(point, b), edge.now, edge.kind);
+            }
+        }
     }
 
     /// Whether a sheet passes between these corners, which are within a box: there is a shadow's outline there, and no edge for it.
