@@ -5,7 +5,7 @@ use super::masks::Masks;
 use super::outline::Outline;
 use super::piece::{self, Piece, around};
 use super::shaft::Shaft;
-use super::sheets::Sheets;
+use super::sheets::{Beyond, Sheets};
 use super::sweep::Sweep;
 use super::targets::{Box3, Target, Targets, bounds, split};
 use crate::counts::AreaCounts;
@@ -14,8 +14,11 @@ use glam::{DVec2, DVec3};
 use pointillist_dice::convex;
 use std::ops::Range;
 
-/// Groups of this many receivers are not divided further.
+/// Groups of this many receivers are not divided further, unless they have more than `MANY_SHEETS` casters.
 const FEW_RECEIVERS: usize = 8;
+
+/// Groups with more casters than this are divided down to single receivers: each caster costs more in a question than in a test.
+const MANY_SHEETS: usize = 300;
 
 /// Groups with no more casters than this are not divided further.
 const FEW_SHEETS: usize = 12;
@@ -25,6 +28,7 @@ const FEW_SHEETS: usize = 12;
 pub struct AreaScratch {
     targets: Targets,
     sheets: Sheets,
+    beyond: Beyond,
     /// Stack of the sheets of nested groups.
     stack: Vec<u32>,
     point: PointScratch,
@@ -57,7 +61,7 @@ pub(crate) fn visit(
     scratch: &mut AreaScratch,
     visit: &mut impl FnMut(usize, f64, &SeenLight),
 ) {
-    let AreaScratch { targets, sheets, stack, point, counts } = scratch;
+    let AreaScratch { targets, sheets, beyond, stack, point, counts } = scratch;
     // Behind the light, edge-on, or the light below the horizon of all of it.
     let is_lit = |own: &[DVec3], highest: DVec3, normal: DVec3| {
         let towards = light.outline.iter().map(|v| v.extend(0.0));
@@ -77,11 +81,12 @@ pub(crate) fn visit(
     if light.casts {
         sheets.gather(light, &shaft);
     }
+    beyond.start(sheets);
     stack.clear();
     stack.extend(0..sheets.list.len() as u32);
     point.outline.start(sheets, light.coincident);
     point.seen.frame = light.frame;
-    Groups { light, pieces, corners, sheets, stack, point, counts, has_casters: false, visit }
+    Groups { light, pieces, corners, sheets, beyond, stack, point, counts, has_casters: false, visit }
         .divide(targets, 0);
 }
 
@@ -92,6 +97,7 @@ struct Groups<'s, F> {
     pieces: &'s mut [Piece],
     corners: &'s [DVec3],
     sheets: &'s Sheets,
+    beyond: &'s mut Beyond,
     stack: &'s mut Vec<u32>,
     point: &'s mut PointScratch,
     counts: &'s mut AreaCounts,
@@ -107,14 +113,16 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         let around = bounds(targets);
         let shaft = Shaft::new(around, convex::bounds(&self.light.outline));
         let own = self.stack.len();
+        self.beyond.turn_to_next();
         for i in first..own {
             let sheet = self.stack[i];
-            if !shaft.misses(self.sheets.corners(&self.sheets.list[sheet as usize])) {
+            if !self.beyond.misses(self.sheets, &shaft, sheet) {
                 self.stack.push(sheet);
             }
         }
         let count = self.stack.len() - own;
-        if targets.len() <= FEW_RECEIVERS || count <= FEW_SHEETS {
+        let few = if count > MANY_SHEETS { 1 } else { FEW_RECEIVERS };
+        if targets.len() <= few || count <= FEW_SHEETS {
             self.settle(targets, own, (around, &shaft));
         } else {
             let (low, high) = split(targets, around);
@@ -227,7 +235,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         if convex::area(polygon) <= 0.0 {
             return true;
         }
-        outline.turn_to(self.sheets, point);
+        outline.turn_to(point);
         // Some of what it stands for may be behind the light.
         let crosses = lowest < -self.light.coincident;
         if most < f64::INFINITY && (crosses || outline.moves_by_more(most, (point, normal), shaft)) {

@@ -16,6 +16,7 @@ const NEAREST: f64 = 1e-6;
 /// that counts as 0: rounding must not decide.
 const SURE: f64 = 2.0;
 
+/// An edge of a group's sheets.
 #[derive(Clone, Copy, Debug)]
 struct OutlineEdge {
     ends: [DVec3; 2],
@@ -29,6 +30,8 @@ struct OutlineEdge {
 }
 
 impl OutlineEdge {
+    const NOTHING: Self = Self { ends: [DVec3::NEG_INFINITY; 2], kind: 0, sure: 0, now: 0, open: false };
+
     /// The height of its higher end.
     fn top(&self) -> f64 {
         self.ends[0].z.max(self.ends[1].z)
@@ -43,6 +46,20 @@ impl OutlineEdge {
     }
 }
 
+/// A sheet whose side depends on the point, or that reaches above a point of the group.
+#[derive(Clone, Copy, Debug)]
+struct OpenSheet {
+    normal: DVec3,
+    offset: f64,
+    /// Positions among the live edges, and how the sheet goes along them; 0 for edges that do not count.
+    edges: [(u32, i32); 4],
+    /// The side that the point at hand is on: 1, −1, or 0 within its plane.
+    side: i32,
+    /// It may be cut off for some point of the group.
+    rises: bool,
+    number: u32,
+}
+
 /// The edges of a group's sheets, and memory.
 #[derive(Debug, Default)]
 pub(crate) struct Outline {
@@ -51,10 +68,12 @@ pub(crate) struct Outline {
     position: Vec<u32>,
     numbers: Vec<u32>,
     /// Edges that may count, the highest first. Those that cancel for all points of the group do not, nor do those that
-    /// [`Shaft::is_right_or_beside`] finds.
-    live: Vec<u32>,
-    /// Sheets whose side depends on the point, or that reach above a point of the group.
-    open: Vec<u32>,
+    /// [`Shaft::is_right_or_beside`] finds. One more stands for all of these.
+    live: Vec<OutlineEdge>,
+    /// Positions in `edges` of the live ones, and for each of `edges` its position among the live ones.
+    order: Vec<u32>,
+    live_position: Vec<u32>,
+    open: Vec<OpenSheet>,
     coincident: f64,
 }
 
@@ -84,24 +103,21 @@ impl Outline {
         self.edges.clear();
         self.open.clear();
         let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
-        for s in group {
-            let sheet = &sheets.list[s as usize];
+        for number in group {
+            let sheet = &sheets.list[number as usize];
             let middle = sheet.normal.dot(centre) - sheet.offset;
             let reach = sheet.normal.abs().dot(half) + SURE * self.coincident;
-            let below = sheets.corners(sheet).all(|c| c.z <= highest_caster(low.z));
-            if below && middle.abs() > reach {
+            let rises = sheets.corners(sheet).any(|c| c.z > highest_caster(low.z));
+            if !rises && middle.abs() > reach {
                 let side = if middle > 0.0 { 1 } else { -1 };
                 self.add(sheets, sheet, |edge, turn| edge.sure += side * turn);
             } else {
                 self.add(sheets, sheet, |edge, _| edge.open = true);
-                self.open.push(s);
+                let Sheet { normal, offset, .. } = *sheet;
+                self.open.push(OpenSheet { normal, offset, edges: [(0, 0); 4], side: 0, rises, number });
             }
         }
-        self.live.clear();
-        let counts = |e: &OutlineEdge| (e.open || e.sure != 0) && !shaft.is_right_or_beside(e.ends);
-        self.live.extend((0..self.edges.len()).filter(|&i| counts(&self.edges[i])).map(|i| i as u32));
-        let top = |&i: &u32| self.edges[i as usize].top();
-        self.live.sort_unstable_by(|a, b| top(b).total_cmp(&top(a)));
+        self.choose_live(sheets, shaft);
     }
 
     fn add(&mut self, sheets: &Sheets, sheet: &Sheet, mut act: impl FnMut(&mut OutlineEdge, i32)) {
@@ -110,37 +126,51 @@ impl Outline {
             if *position == NONE {
                 *position = self.edges.len() as u32;
                 self.numbers.push(e.edge());
-                self.edges.push(OutlineEdge {
-                    ends: sheets.ends(e.edge()),
-                    kind: sheets.kind_of(e.edge()),
-                    sure: 0,
-                    now: 0,
-                    open: false,
-                });
+                let (ends, kind) = (sheets.ends(e.edge()), sheets.kind_of(e.edge()));
+                self.edges.push(OutlineEdge { ends, kind, ..OutlineEdge::NOTHING });
             }
             act(&mut self.edges[*position as usize], e.turn());
         }
     }
 
-    /// Finds out how edges count for a point.
-    pub(crate) fn turn_to(&mut self, sheets: &Sheets, point: DVec3) {
-        for &i in &self.live {
-            let edge = &mut self.edges[i as usize];
-            edge.now = edge.sure;
+    /// Finds the edges that may count, and where open sheets have theirs.
+    fn choose_live(&mut self, sheets: &Sheets, shaft: &Shaft) {
+        let Self { edges, position, live, order, live_position, open, .. } = self;
+        let counts = |e: &OutlineEdge| (e.open || e.sure != 0) && !shaft.is_right_or_beside(e.ends);
+        order.clear();
+        order.extend((0..edges.len() as u32).filter(|&i| counts(&edges[i as usize])));
+        let top = |&i: &u32| edges[i as usize].top();
+        order.sort_unstable_by(|a, b| top(b).total_cmp(&top(a)));
+        live_position.clear();
+        live_position.resize(edges.len(), order.len() as u32);
+        live.clear();
+        for (place, &i) in order.iter().enumerate() {
+            live_position[i as usize] = place as u32;
+            live.push(edges[i as usize]);
         }
-        for &s in &self.open {
-            let sheet = &sheets.list[s as usize];
-            let side = self.side(sheet, point);
-            for e in sheet.edges() {
-                self.edges[self.position[e.edge() as usize] as usize].now += side * e.turn();
+        live.push(OutlineEdge::NOTHING);
+        for sheet in open {
+            for (own, e) in sheet.edges.iter_mut().zip(sheets.list[sheet.number as usize].edges()) {
+                *own = (live_position[position[e.edge() as usize] as usize], e.turn());
             }
         }
     }
 
-    /// The side of a sheet that a point is on: 1, −1, or 0 within its plane.
-    fn side(&self, sheet: &Sheet, point: DVec3) -> i32 {
-        let distance = sheet.normal.dot(point) - sheet.offset;
-        i32::from(distance > self.coincident) - i32::from(distance < -self.coincident)
+    /// Finds out how edges count for a point.
+    pub(crate) fn turn_to(&mut self, point: DVec3) {
+        for edge in &mut self.live {
+            edge.now = edge.sure;
+        }
+        for sheet in &mut self.open {
+            let distance = sheet.normal.dot(point) - sheet.offset;
+            sheet.side = i32::from(distance > self.coincident) - i32::from(distance < -self.coincident);
+            for (edge, turn) in sheet.edges {
+                self.live[edge as usize].now += sheet.side * turn;
+            }
+        }
+        if let Some(last) = self.live.last_mut() {
+            last.now = 0;
+        }
     }
 
     /// Whether an outline within `shaft` moves by more than `most` times the way of the point of [`Outline::turn_to`]; outlines below the
@@ -148,33 +178,21 @@ impl Outline {
     pub(crate) fn moves_by_more(&self, most: f64, (point, normal): (DVec3, DVec3), shaft: &Shaft) -> bool {
         let top = highest_caster(point.z);
         let moves = |height: f64| height / (point.z - height) > most;
-        for &i in &self.live {
-            let edge = &self.edges[i as usize];
-            if !moves(edge.top().min(top)) {
-                // Those that follow are lower.
-                return false;
-            }
-            let Some([a, b]) = edge.below(top) else { continue };
-            let below_horizon = |p: DVec3| normal.dot(p - point) <= self.coincident;
-            if !(below_horizon(a) && below_horizon(b)) && shaft.highest_within(a, b).is_some_and(moves) {
-                return true;
-            }
-        }
-        false
+        let below_horizon = |p: DVec3| normal.dot(p - point) <= self.coincident;
+        // The first that is too low ends it: those that follow are lower.
+        let high = self.live.iter().take_while(|edge| moves(edge.top().min(top)));
+        high.filter_map(|edge| edge.below(top)).any(|[a, b]| {
+            !(below_horizon(a) && below_horizon(b)) && shaft.highest_within(a, b).is_some_and(moves)
+        })
     }
 
     /// Adds the outlines that the point of [`Outline::turn_to`] sees to a sweep.
     pub(crate) fn cast(&self, sheets: &Sheets, point: DVec3, sweep: &mut Sweep) {
         let top = highest_caster(point.z);
-        for &s in &self.open {
-            let sheet = &sheets.list[s as usize];
-            let side = self.side(sheet, point);
-            if side != 0 {
-                self.cast_cut(sheet, point, top, side, sweep);
-            }
+        for open in self.open.iter().filter(|open| open.rises && open.side != 0) {
+            cast_cut(sheets, &sheets.list[open.number as usize], (point, top), open.side, sweep);
         }
-        for &i in &self.live {
-            let edge = &self.edges[i as usize];
+        for edge in &self.live {
             if let Some([a, b]) = edge.below(top) {
                 sweep.add(projected(point, a), projected(point, b), edge.now, edge.kind);
             }
@@ -192,8 +210,8 @@ impl Outline {
         shaft: &Shaft,
     ) -> bool {
         let shaft = shaft.without_margin();
-        self.open.iter().any(|&s| {
-            let sheet = &sheets.list[s as usize];
+        self.open.iter().any(|open| {
+            let sheet = &sheets.list[open.number as usize];
             let beside = (0..3).any(|axis| {
                 let all = |beyond: &dyn Fn(f64) -> bool| sheets.corners(sheet).all(|c| beyond(c[axis]));
                 all(&|x| x < low[axis]) || all(&|x| x > high[axis])
@@ -205,24 +223,23 @@ impl Outline {
                 && corners.clone().any(|c| distance(c) < -self.coincident)
         })
     }
+}
 
-    /// The edge along which a sheet is cut off at height `top`.
-    fn cast_cut(&self, sheet: &Sheet, point: DVec3, top: f64, side: i32, sweep: &mut Sweep) {
-        let (mut leaves, mut returns, mut kind) = (None, None, 0);
-        for e in sheet.edges() {
-            let OutlineEdge { ends: [a, b], kind: own, .. } =
-                self.edges[self.position[e.edge() as usize] as usize];
-            kind = own;
-            if (a.z > top) != (b.z > top) {
-                let at = Some(at_height(a, b, top));
-                // Upward as the sheet goes along it.
-                let up = (b.z > top) == (e.turn() > 0);
-                if up { leaves = at } else { returns = at }
-            }
+/// The edge along which a sheet is cut off at height `top`, for a point on this side of it.
+fn cast_cut(sheets: &Sheets, sheet: &Sheet, (point, top): (DVec3, f64), side: i32, sweep: &mut Sweep) {
+    let (mut leaves, mut returns, mut kind) = (None, None, 0);
+    for e in sheet.edges() {
+        let [a, b] = sheets.ends(e.edge());
+        kind = sheets.kind_of(e.edge());
+        if (a.z > top) != (b.z > top) {
+            let at = Some(at_height(a, b, top));
+            // Upward as the sheet goes along it.
+            let up = (b.z > top) == (e.turn() > 0);
+            if up { leaves = at } else { returns = at }
         }
-        if let (Some(from), Some(to)) = (leaves, returns) {
-            sweep.add(projected(point, from), projected(point, to), side, kind);
-        }
+    }
+    if let (Some(from), Some(to)) = (leaves, returns) {
+        sweep.add(projected(point, from), projected(point, to), side, kind);
     }
 }
 

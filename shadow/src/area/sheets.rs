@@ -58,9 +58,46 @@ pub(crate) struct Sheets {
     number_of_edge: HashMap<(u64, u32), u32, BuildHasherDefault<Mixer>>,
     /// Triangles of masked sheets; the first has number 1.
     masks: Vec<ClusterFace>,
-    /// Vertices of the cluster at hand, and their numbers or `NONE`.
+    /// Vertices of the cluster at hand, their numbers or `NONE`, and their [`Shaft::beyond`].
     local: Vec<DVec3>,
     numbers: Vec<u32>,
+    beyond: Vec<u8>,
+}
+
+/// Which planes of a shaft vertices lie beyond, each computed once for all sheets that share it.
+#[derive(Debug, Default)]
+pub(crate) struct Beyond {
+    /// For each vertex: the shaft for which its bits are known, and the bits.
+    known: Vec<(u32, u8)>,
+    shaft: u32,
+}
+
+impl Beyond {
+    /// Begins a batch.
+    pub(crate) fn start(&mut self, sheets: &Sheets) {
+        self.known.clear();
+        self.known.resize(sheets.vertices.len(), (0, 0));
+        self.shaft = 0;
+    }
+
+    /// Begins with another shaft.
+    pub(crate) fn turn_to_next(&mut self) {
+        self.shaft += 1;
+    }
+
+    /// Whether the shaft at hand misses a sheet.
+    #[inline]
+    pub(crate) fn misses(&mut self, sheets: &Sheets, shaft: &Shaft, sheet: u32) -> bool {
+        let Sheet { corners, count, .. } = sheets.list[sheet as usize];
+        let bits = |&vertex: &u32| {
+            let known = &mut self.known[vertex as usize];
+            if known.0 != self.shaft {
+                *known = (self.shaft, shaft.beyond(sheets.vertices[vertex as usize]));
+            }
+            known.1
+        };
+        corners[..usize::from(count)].iter().map(bits).fold(!0, |all, own| all & own) != 0
+    }
 }
 
 const NONE: u32 = u32::MAX;
@@ -93,10 +130,13 @@ impl Sheets {
         self.local.extend(cluster.vertices.iter().map(|&v| light.frame.local(v)));
         self.numbers.clear();
         self.numbers.resize(self.local.len(), NONE);
+        self.beyond.clear();
+        self.beyond.extend(self.local.iter().map(|&v| shaft.beyond(v)));
         for face in cluster.faces() {
             let surface = &light.geometry.surfaces()[face.surface as usize];
             let corners = face.corners.map(|c| self.local[c]);
-            if surface.opacity <= 0.0 || shaft.misses(corners.into_iter()) || light.is_own(face.id) {
+            let misses = face.corners.iter().fold(!0, |all, &c| all & self.beyond[c]) != 0;
+            if surface.opacity <= 0.0 || misses || light.is_own(face.id) {
                 continue;
             }
             let mut mask = None;
