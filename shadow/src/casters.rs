@@ -2,8 +2,9 @@
 
 use crate::grid::{Group, LightGrid};
 use glam::DVec2;
-use pointillist_dice::{ConvexPolygon, convex};
+use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
 use pointillist_micropoint::Face;
+use std::ops::Range;
 
 /// A triangle that may stand in the light.
 #[derive(Clone, Debug)]
@@ -11,6 +12,8 @@ pub(crate) struct Caster {
     pub(crate) face: Face,
     pub(crate) bounds: (DVec2, DVec2),
     pub(crate) polygon: ConvexPolygon,
+    /// Those of [`Casters::sides`] that are the half-planes of its edges.
+    pub(crate) sides: Range<usize>,
     /// `None`: textured.
     pub(crate) opacity: Option<f64>,
 }
@@ -38,6 +41,7 @@ struct Link {
 #[derive(Debug, Default)]
 pub(crate) struct Casters {
     pub(crate) list: Vec<Caster>,
+    pub(crate) sides: Vec<HalfPlane>,
     links: Vec<Link>,
 }
 
@@ -45,26 +49,35 @@ impl Casters {
     /// Removes all casters and keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.list.clear();
+        self.sides.clear();
         self.links.clear();
     }
 
     /// Links a caster to the groups that it may darken, and keeps it if there are any. Returns whether it was kept.
-    pub(crate) fn link(&mut self, caster: Caster, grid: &mut LightGrid) -> bool {
+    pub(crate) fn link(&mut self, mut caster: Caster, grid: &mut LightGrid) -> bool {
         let index = self.list.len() as u32;
-        let links = &mut self.links;
+        let Self { links, sides, .. } = self;
+        let first_side = sides.len();
+        sides.extend(convex::half_planes(caster.polygon.vertices()));
+        caster.sides = first_side..sides.len();
+        let own = &sides[first_side..];
         let first = links.len();
-        grid.darken_near(caster.bounds, caster.face.nearness.most, |group| match covers(&caster, group) {
-            Cover::Nothing => false,
-            Cover::All => true,
-            Cover::Some => {
-                links.push(Link { caster: index, next: group.first_link });
-                group.first_link = Some(links.len() as u32 - 1);
-                false
+        grid.darken_near(caster.bounds, caster.face.nearness.most, |group| {
+            match covers(&caster, own, group) {
+                Cover::Nothing => false,
+                Cover::All => true,
+                Cover::Some => {
+                    links.push(Link { caster: index, next: group.first_link });
+                    group.first_link = Some(links.len() as u32 - 1);
+                    false
+                }
             }
         });
         let used = self.links.len() > first;
         if used {
             self.list.push(caster);
+        } else {
+            self.sides.truncate(first_side);
         }
         used
     }
@@ -97,9 +110,9 @@ enum Cover {
     All,
 }
 
-fn covers(caster: &Caster, group: &Group) -> Cover {
+fn covers(caster: &Caster, sides: &[HalfPlane], group: &Group) -> Cover {
     let mut all_inside = true;
-    for half in convex::half_planes(caster.polygon.vertices()) {
+    for half in sides {
         // The corners of the rectangle farthest along the normal, and farthest against it.
         let along = DVec2::select(half.normal.cmpgt(DVec2::ZERO), group.high, group.low);
         let against = group.low + group.high - along;

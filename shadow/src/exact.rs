@@ -6,7 +6,7 @@ use crate::query::{Measure, Query};
 use crate::target::Target;
 use glam::DVec2;
 use pointillist_dice::hide::{Blocker, Occluders, Regions};
-use pointillist_dice::{ConvexPolygon, convex};
+use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
 use pointillist_micropoint::{Face, Front, Layer, in_front};
 use std::cmp::Ordering;
 
@@ -20,10 +20,17 @@ pub(crate) struct Memory {
     blockers: Vec<Blocker>,
     /// Opacities over the whole target that are known already, by caster.
     known: Vec<(u32, f64)>,
-    /// The caster that hid the last target.
-    last_hider: u32,
+    /// Where in the list of its group the caster is that hid the last target.
+    last_hider: Option<usize>,
     /// Targets that had to be cut.
     pub(crate) partial: u64,
+}
+
+impl Memory {
+    /// Begins with the targets of another group.
+    pub(crate) fn start_group(&mut self) {
+        self.last_hider = None;
+    }
 }
 
 /// The lit fraction of a target, 0..=1; of one that is cut, the lit regions go to `regions`.
@@ -80,16 +87,15 @@ fn find_blockers(
     work.known.clear();
     let (low, high) = target.bounds;
     // The caster that hid the last target often hides the next one.
-    let nearby = query.nearby;
-    let last = nearby.iter().position(|n| n.index == work.last_hider);
-    let rest = nearby.iter().enumerate().filter(|(i, _)| Some(*i) != last).map(|(_, n)| n);
-    for near in last.map(|i| &nearby[i]).into_iter().chain(rest) {
+    let first = work.last_hider;
+    for at in first.into_iter().chain((0..query.nearby.len()).filter(|&at| Some(at) != first)) {
+        let near = &query.nearby[at];
         let overlaps = near.bounds.0.cmplt(high).all() && near.bounds.1.cmpgt(low).all();
         if !overlaps || near.nearest < target.nearness.least || near.id == face.id {
             continue;
         }
         let (c, caster) = (near.index, &query.casters[near.index as usize]);
-        let overlap = overlap(&caster.polygon, outline);
+        let overlap = overlap(&query.sides[caster.sides.clone()], outline);
         if overlap == Overlap::Apart || convex::has_separating_edge(outline, caster.polygon.vertices()) {
             continue;
         }
@@ -101,7 +107,7 @@ fn find_blockers(
             // Receivers are small: over most of them a mask is 0 or 1 throughout.
             let opacity = query.opacity(caster, outline);
             if opacity >= 1.0 {
-                work.last_hider = c;
+                work.last_hider = Some(at);
                 return false;
             }
             if opacity <= 0.0 {
@@ -128,9 +134,10 @@ enum Overlap {
     Other,
 }
 
-fn overlap(caster: &ConvexPolygon, target: &[DVec2]) -> Overlap {
+/// Takes the caster by the half-planes of its edges.
+fn overlap(caster: &[HalfPlane], target: &[DVec2]) -> Overlap {
     let mut over = true;
-    for half in convex::half_planes(caster.vertices()) {
+    for half in caster {
         let mut most = f64::NEG_INFINITY;
         for &p in target {
             let value = half.value(p);

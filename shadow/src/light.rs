@@ -9,7 +9,7 @@ use crate::options::{Resolution, ShadowOptions};
 use crate::query::{Measure, Query, is_edge_on};
 use crate::receiver::{Receivers, Viewer};
 use crate::scratch::{RuleMemory, ShadowScratch, Side, Sum};
-use crate::screen::{Emitter, Screens};
+use crate::screen::{Emitter, Screens, sees};
 use crate::target::{Target, Targets};
 use crate::{copies, exact, layers};
 use glam::{DVec2, DVec3};
@@ -113,14 +113,19 @@ impl<'a> ShadowLight<'a> {
             }
             let corners = receivers.corners(r);
             let offset = viewer.lens.origin - self.screens.lenses[0].origin;
-            let sees_all = |s: &usize| corners.iter().all(|&c| self.screens.sees(*s, c + offset));
             let count = self.screens.lenses.len();
             // Where two screens see all of it, the choice must not depend on other receivers.
             let likely = self.screens.facing(corners.first().map_or(DVec3::ZERO, |&c| c + offset));
-            if let Some(screen) = std::iter::once(likely).chain(0..count).find(sees_all) {
+            let ShadowScratch { targets, local, .. } = scratch;
+            let mut sees_all = |&screen: &usize| {
                 let lens = &self.screens.lenses[screen];
-                let outline = corners.iter().map(|&c| placed(lens, lens.local_vector(c + offset)));
-                scratch.targets.push((index as u32, r.face), screen, false, outline);
+                local.clear();
+                local.extend(corners.iter().map(|&c| lens.local_vector(c + offset)));
+                local.iter().all(|&p| sees(lens, p))
+            };
+            if let Some(screen) = std::iter::once(likely).chain(0..count).find(&mut sees_all) {
+                let lens = &self.screens.lenses[screen];
+                targets.push((index as u32, r.face), screen, false, local.iter().map(|&p| placed(lens, p)));
             } else {
                 for screen in 0..count {
                     self.push_clipped((index as u32, r.face), screen, corners, offset, &mut scratch.targets);
@@ -222,7 +227,8 @@ impl<'a> ShadowLight<'a> {
             let order = &grid.order[group.first_target as usize..group.end_target as usize];
             counts.dark_by_group += order.len() as u64 * u64::from(group.dark);
             counts.lit_by_group += order.len() as u64 * u64::from(!group.dark && nearby.is_empty());
-            let query = self.query(screen, &casters.list, nearby);
+            rules.exact.start_group();
+            let query = self.query(screen, casters, nearby);
             for &t in order {
                 let target = &targets.list[t as usize];
                 let (fraction, total) = match settled {
@@ -260,9 +266,10 @@ impl<'a> ShadowLight<'a> {
             && !is_edge_on(viewer.lens, &viewer.faces[target.face as usize])
     }
 
-    fn query<'q>(&'q self, screen: usize, casters: &'q [Caster], nearby: &'q [Nearby]) -> Query<'q> {
+    fn query<'q>(&'q self, screen: usize, casters: &'q Casters, nearby: &'q [Nearby]) -> Query<'q> {
+        let Casters { list, sides, .. } = casters;
         let lens = &self.screens.lenses[screen];
-        Query { lens, geometry: self.geometry, opacity: self.opacity, casters, nearby }
+        Query { lens, geometry: self.geometry, opacity: self.opacity, casters: list, sides, nearby }
     }
 
     fn lit_fraction(
@@ -305,7 +312,8 @@ impl FaceVisitor for Linker<'_> {
     #[inline]
     fn visit(&mut self, face: Face, outline: &[DVec2], opacity: Option<f32>) {
         let polygon = ConvexPolygon::from_vertices(outline);
-        let caster = Caster { face, bounds: polygon.bounds(), polygon, opacity: opacity.map(f64::from) };
+        let (bounds, opacity) = (polygon.bounds(), opacity.map(f64::from));
+        let caster = Caster { face, bounds, polygon, sides: 0..0, opacity };
         if self.casters.link(caster, self.grid) {
             self.linked += 1;
         } else {

@@ -2,6 +2,7 @@
 
 use crate::casters::{Caster, Nearby};
 use glam::{DVec2, DVec3};
+use pointillist_dice::HalfPlane;
 use pointillist_micropoint::{Face, Geometry, Lens, LensKind, TexturedOpacity};
 
 /// A target with the casters that may darken it.
@@ -10,6 +11,8 @@ pub(crate) struct Query<'a> {
     pub(crate) geometry: &'a Geometry,
     pub(crate) opacity: &'a dyn TexturedOpacity,
     pub(crate) casters: &'a [Caster],
+    /// The half-planes of their edges.
+    pub(crate) sides: &'a [HalfPlane],
     /// Those of them that may darken the target's group.
     pub(crate) nearby: &'a [Nearby],
 }

@@ -7,6 +7,7 @@ use crate::grid::LightGrid;
 use crate::lit_regions::{LitRegion, LitRegions};
 use crate::target::Targets;
 use crate::{exact, layers};
+use glam::DVec3;
 use pointillist_micropoint::{Face, VisitMemory};
 
 /// Which side of a face the viewer sees.
@@ -89,6 +90,8 @@ pub struct ShadowScratch {
     pub(crate) counts: ShadowCounts,
     pub(crate) sides: Vec<Side>,
     pub(crate) targets: Targets,
+    /// Corners of the receiver at hand, in the frame of a lens.
+    pub(crate) local: Vec<DVec3>,
     pub(crate) lit_faces: LitFaces,
     pub(crate) sums: Vec<Sum>,
     pub(crate) grid: LightGrid,

@@ -122,16 +122,11 @@ impl Screens {
         };
         axis + usize::from(value < 0.0)
     }
+}
 
-    /// Whether a vector from the light (in world axes) points into this screen.
-    pub(crate) fn sees(&self, screen: usize, v: DVec3) -> bool {
-        let lens = &self.lenses[screen];
-        if lens.kind == LensKind::Orthographic {
-            return true;
-        }
-        let p = lens.local_vector(v);
-        p.z > 0.0 && p.x.abs() <= p.z && p.y.abs() <= p.z
-    }
+/// Whether a vector from the light, in the lens's frame, points into its screen.
+pub(crate) fn sees(lens: &Lens, p: DVec3) -> bool {
+    lens.kind == LensKind::Orthographic || (p.z > 0.0 && p.x.abs() <= p.z && p.y.abs() <= p.z)
 }
 
 #[cfg(test)]
@@ -152,7 +147,8 @@ mod tests {
             let z = 1.0 - (f64::from(i) + 0.5) / 500.0;
             let r = (1.0 - z * z).sqrt();
             let v = dvec3(r * a.cos(), r * a.sin(), z);
-            assert!(screens.sees(screens.facing(v), v));
+            let lens = &screens.lenses[screens.facing(v)];
+            assert!(sees(lens, lens.local_vector(v)));
         }
     }
 }
