@@ -1,5 +1,7 @@
 //! Options of [`bake_probes`](crate::bake_probes).
 
+use pointillist_micropoint::DepthRange;
+
 /// How [`bake_probes`](crate::bake_probes) looks around.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -27,6 +29,8 @@ pub struct BakeOptions {
     pub dering: bool,
     /// Whether probes that see mostly backs of surfaces count like others. Default: they are left out of the light.
     pub keep_buried: bool,
+    /// Surfaces outside of these distances are not seen ([`CaptureOptions::depths`](crate::CaptureOptions::depths)). Default: all are.
+    pub depths: DepthRange,
 }
 
 impl BakeOptions {
@@ -42,6 +46,7 @@ impl BakeOptions {
         thorough: false,
         dering: false,
         keep_buried: false,
+        depths: DepthRange::ALL,
     };
 
     /// Takes pictures of this many pixels on a side.
@@ -111,6 +116,13 @@ impl BakeOptions {
     #[must_use]
     pub const fn with_keep_buried(mut self, keep_buried: bool) -> Self {
         self.keep_buried = keep_buried;
+        self
+    }
+
+    /// Sees only surfaces at these distances.
+    #[must_use]
+    pub const fn with_depths(mut self, depths: DepthRange) -> Self {
+        self.depths = depths;
         self
     }
 }

@@ -175,7 +175,7 @@ fn cancelled_looks_end_before_the_first_position() {
     let ambient = prepared.ambient();
     let look = look_all(&prepared, &places, LookOptions::DEFAULT, ambient, &watch);
     assert!(matches!(look, Err(RenderError::Cancelled)));
-    let marks = fingerprints(&prepared, &places, true, ambient, &watch);
+    let marks = fingerprints(&prepared, &places, LookOptions::DEFAULT.capture, ambient, &watch);
     assert!(matches!(marks, Err(RenderError::Cancelled)));
     assert!(matches!(Prepared::new(&scene, &watch), Err(RenderError::Cancelled)));
 }

@@ -24,6 +24,10 @@ pub enum ProbeCommand {
         pointillist probe bake examples/house.toml probes.json -o baked.json\n  \
         pointillist probe bake examples/house.toml probes.json --bounces 3 --resolution 64 -o baked.probes\n  \
         pointillist probe bake examples/house.toml probes.json --fit 200 --resolution 32 -o fitted.json\n  \
+        pointillist probe bake examples/house.toml probes.json --indirect solve -o baked.json\n  \
+        pointillist radiosity examples/house.toml -o light.json\n  \
+        pointillist probe bake examples/house.toml probes.json --indirect light.json -o baked.json\n  \
+        pointillist probe bake examples/house.toml probes.json --near 0.3 --far 20 -o baked.json\n  \
         pointillist probe bake examples/house.toml probes.json --bounces 0 --part 0/4 -o part0.json\n\n\
         Then draw with it:\n  \
         pointillist render examples/house.toml --set ambient.probes=baked.json -o lit.png")]
@@ -132,9 +136,13 @@ pub struct BakeOptions {
     /// Highest band of the harmonics
     #[arg(long, value_name = "L", default_value_t = 2, value_parser = values::whole::<u8>(0..=sh::MAX_ORDER as u8))]
     pub order: u8,
-    /// Bounces of light between surfaces: in each, surfaces are lit by the probes of the bounce before
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::whole::<u32>(0..=64))]
-    pub bounces: u32,
+    /// Bounces of light between surfaces: in each, surfaces are lit by the probes of the bounce before [default: 1; 0 with --indirect]
+    #[arg(long, value_name = "N", value_parser = values::whole::<u32>(0..=64))]
+    pub bounces: Option<u32>,
+    /// Light surfaces by a radiosity solution of the same scene in the place of bounces: a file that `radiosity` baked, or `solve`
+    /// to have the scene solved on the way. Holds all bounces, and more exactly than probes light surfaces
+    #[arg(long, value_name = "FILE|solve")]
+    pub indirect: Option<Indirect>,
     /// Stop before the last bounce when one changes the light by less than this fraction
     #[arg(long, value_name = "E", default_value_t = 0.005, value_parser = values::not_negative)]
     pub until: f64,
@@ -156,10 +164,17 @@ pub struct BakeOptions {
     /// pixels on a side
     #[arg(long)]
     pub thorough: bool,
+    /// See only surfaces that are at least this far away: objects at the probe itself are left out, and what is behind them is seen.
+    /// Distances are along the axes: what is left out is a cube around the probe. What is not seen still casts shadows
+    #[arg(long, value_name = "D", default_value_t = 0.0, value_parser = values::not_negative)]
+    pub near: f64,
+    /// See only surfaces that are at most this far away, along the axes as with --near, and the background in the place of those beyond
+    #[arg(long, value_name = "D", value_parser = values::positive)]
+    pub far: Option<f64>,
     /// What to do with a probe inside a solid
     #[arg(long, value_name = "WHAT", default_value = "move")]
     pub inside: Inside,
-    /// Bake a part of the probes, from 0; `merge` joins parts. Needs `--bounces 0`
+    /// Bake a part of the probes, from 0; `merge` joins parts. Needs `--bounces 0` or `--indirect`
     #[arg(long, value_name = "I/N")]
     pub part: Option<Tile>,
     /// Bake every probe, whatever the output holds already
@@ -174,6 +189,31 @@ pub struct BakeOptions {
     /// What every command has.
     #[command(flatten)]
     pub common: Common,
+}
+
+impl BakeOptions {
+    /// Bounces between probes.
+    #[must_use]
+    pub fn bounces(&self) -> u32 {
+        self.bounces.unwrap_or(u32::from(self.indirect.is_none()))
+    }
+}
+
+/// `--indirect`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Indirect {
+    /// Solve for it.
+    Solve,
+    /// Read it.
+    File(PathBuf),
+}
+
+impl std::str::FromStr for Indirect {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(if text == "solve" { Self::Solve } else { Self::File(text.into()) })
+    }
 }
 
 /// `--what`.

@@ -1,6 +1,7 @@
 //! `probe` and its commands.
 
 mod bake;
+mod indirect;
 mod inside;
 mod merge;
 mod place;
