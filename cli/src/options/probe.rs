@@ -32,6 +32,20 @@ pub enum ProbeCommand {
         Then draw with it:\n  \
         pointillist render examples/house.toml --set ambient.probes=baked.json -o lit.png")]
     Bake(BakeOptions),
+    /// Turn panoramas that were taken at positions into probes
+    ///
+    /// LIST is JSON: {"captures":[{"image":"hall.hdr","position":[0,1.6,0],"rotate":[0,90,0],"exposure":0}, …]}. Images are named
+    /// relative to the list: equirectangular (row 0 is the zenith, the centre looks along −Z) or a strip of a cube's faces. `rotate`
+    /// turns a picture into the world, in degrees about x, then y, then z. `exposure` (default 0) is the stops by which a picture is
+    /// to be brightened, as --exposure of `probe project`: of several of one position, the darkest has the highest. Those are
+    /// brackets: they are merged, weighted by the light that each collected, without clipped pixels.
+    #[command(after_help = "Examples:\n  \
+        echo '{\"captures\":[{\"image\":\"examples/sky.png\",\"position\":[0,1.6,0],\"rotate\":[0,90,0]}]}' > list.json\n  \
+        pointillist probe capture list.json -o photographed.json\n  \
+        pointillist probe capture list.json --order 4 --response gamma=2.2 -o photographed.probes\n\n\
+        Then draw with it:\n  \
+        pointillist render examples/house.toml --set ambient.probes=photographed.json -o lit.png")]
+    Capture(CaptureOptions),
     /// Turn an environment map into spherical harmonics
     #[command(after_help = "Examples:\n  \
         pointillist probe project examples/sky.png\n  \
@@ -234,6 +248,31 @@ impl What {
             Self::Indirect => "indirect",
         }
     }
+}
+
+/// `probe capture`.
+#[derive(Debug, clap::Args)]
+pub struct CaptureOptions {
+    /// The list of panoramas (JSON), or `-` for standard input
+    pub list: PathBuf,
+    /// Highest band of the harmonics
+    #[arg(long, value_name = "L", default_value_t = 2, value_parser = values::whole::<u8>(0..=sh::MAX_ORDER as u8))]
+    pub order: u8,
+    /// How much each texel counts
+    #[arg(long, value_name = "RULE", default_value = "gregory")]
+    pub weights: WeightRule,
+    /// How a photograph's 8-bit values follow the light: srgb, linear, gamma=2.2, or a file with the radiance of each of the 256 levels
+    #[arg(long, value_name = "CURVE", default_value = "srgb", value_parser = values::response)]
+    pub response: values::ResponseCurve,
+    /// Damp the harmonics so that irradiance is nowhere below 0
+    #[arg(long)]
+    pub dering: bool,
+    /// The probes: .json, .probes (binary), or `-` for standard output
+    #[arg(short, long, value_name = "PATH", default_value = "probes.json")]
+    pub output: PathBuf,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
 }
 
 /// `probe project`.
