@@ -120,6 +120,13 @@ fn a_constant_sky_lights_everything_alike() {
         let wanted = [0.8, 0.4, 0.2].map(|l| l * PI);
         assert!(rgb.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 2e-3), "{line}");
     }
+    // Above the block the sky is open, and so is what query says of it.
+    for line in folder.prints(&["probe", "query", "b.json", "q.txt", "--sky"]).lines() {
+        let share: f64 = line.split(' ').nth(3).unwrap().parse().unwrap();
+        assert!((share - 1.0).abs() < 2e-3, "{line}");
+    }
+    folder.write("blind.json", "{\"probes\":[{\"position\":[0,0,0],\"sh\":[[1,1,1]]}]}");
+    folder.fails(&["probe", "query", "blind.json", "q.txt", "--sky"], 3, &["blind.json", "`sky`", "bake"]);
     let sky = json(&folder, "b.json")["probes"][0]["sky"][0].as_f64().unwrap() / (2.0 * PI.sqrt());
     assert!((sky - 1.0).abs() < 1e-2);
     // And the block before it reflects half of that.

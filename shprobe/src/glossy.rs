@@ -5,6 +5,7 @@ use crate::field::{check_radiance, expect_count};
 use crate::sh::{Lobe, MAX_COUNT, MAX_ORDER, Sh, basis, coefficient_count};
 use crate::{Field, ProbeError};
 use glam::{DVec3, Vec3};
+use std::f64::consts::FRAC_1_PI;
 
 /// What comes from about a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,6 +131,21 @@ impl Field {
         }
         let sky = self.glossy.sky.is_some().then(|| sky.clamp(0.0, 1.0));
         Ok(Glossy { radiance: radiance.max(Vec3::ZERO), sky })
+    }
+
+    /// The share of an even sky's irradiance that arrives at a surface (ambient occlusion): 1 in the open, 0 where no sky is seen; `None` if the
+    /// probes do not know ([`Field::with_sky`]). `normal` has length 1.
+    ///
+    /// # Errors
+    /// As [`Field::glossy`].
+    pub fn sky_share(
+        &self,
+        position: DVec3,
+        normal: Vec3,
+        hint: &mut Hint,
+    ) -> Result<Option<f32>, ProbeError> {
+        let cosine = Lobe::new(Lobe::COSINE.bands().map(|a| a * FRAC_1_PI)).unwrap_or(Lobe::COSINE);
+        Ok(self.glossy(position, normal, normal, &cosine, hint)?.sky)
     }
 
     /// The basis in a direction, each band times the lobe's factor.

@@ -64,7 +64,8 @@ pub enum ProbeCommand {
     #[command(after_help = "Examples:\n  \
         pointillist probe place examples/house.toml --grid 6x3x4 -o probes.json\n  \
         pointillist probe bake examples/house.toml probes.json -o baked.json\n  \
-        echo '-2 1 0  0 1 0' | pointillist probe query baked.json -")]
+        echo '-2 1 0  0 1 0' | pointillist probe query baked.json -\n  \
+        echo '-2 1 0  0 1 0' | pointillist probe query baked.json - --sky")]
     Query(QueryOptions),
 }
 
@@ -361,6 +362,9 @@ pub struct QueryOptions {
     /// After each irradiance, which probes it comes from: `number:share`, the largest share first
     #[arg(long)]
     pub shares: bool,
+    /// After each irradiance, the share of an even sky's light that arrives: 1 in the open, 0 where no sky is seen (ambient occlusion)
+    #[arg(long)]
+    pub sky: bool,
     /// Where results go.
     #[command(flatten)]
     pub output: TextOutput,

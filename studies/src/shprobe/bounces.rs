@@ -2,18 +2,18 @@
 
 use std::fmt::Write as _;
 
+use cpu_time::ThreadTime;
 use glam::DVec3;
 use pointillist_render::{
     Ambient, BakeOptions, IndirectOptions, Prepared, ProbeBake, Scene, Solids, bake_probes, bake_probes_in,
     solve_indirect,
 };
-use pointillist_shade::{Falloff, Light};
 use pointillist_sh::Irradiance;
+use pointillist_shade::{Falloff, Light};
 use rayon::prelude::*;
 
 use crate::common::paths::{Random, irradiance};
 use crate::common::ray_reference::Tree;
-use crate::common::report::Clock;
 use crate::common::rooms::{WALL, two_rooms};
 use crate::shprobe::site::{Ground, Site};
 use crate::shprobe::truth::normals;
@@ -48,14 +48,15 @@ pub(crate) fn measure(quick: bool) -> Result<Found, Fault> {
 }
 
 /// Irradiance at each position for each normal.
-type Light = Vec<Vec<DVec3>>;
+type Arriving = Vec<Vec<DVec3>>;
 
 fn errors(paths: u32) -> Result<(String, f64), Fault> {
     let site = Site::two_rooms();
     let ground = Ground::new(&site)?;
     let places = ground.random(PLACES, 11);
     let [a, b] = [1, 2].map(|seed| reference(&site.scene, &places, paths, seed));
-    let truth: Light = a.iter().zip(&b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| 0.5 * (*a + *b)).collect()).collect();
+    let truth: Arriving =
+        a.iter().zip(&b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| 0.5 * (*a + *b)).collect()).collect();
     let table = Table { places: &places, truth: &truth };
     let mut text = format!(
         "The two rooms, {PLACES} positions, 26 normals: irradiance with all bounces, against {} paths of rays from each. Probes at the positions \
@@ -64,8 +65,10 @@ fn errors(paths: u32) -> Result<(String, f64), Fault> {
         2 * paths
     );
     // Half of the difference of two halves is what their mean is off by.
-    let half: Light = a.iter().zip(&truth).map(|(a, t)| a.iter().zip(t).map(|(a, t)| *a - *t).collect()).collect();
-    let noise: Light = half.iter().zip(&truth).map(|(h, t)| h.iter().zip(t).map(|(h, t)| *h + *t).collect()).collect();
+    let half: Arriving =
+        a.iter().zip(&truth).map(|(a, t)| a.iter().zip(t).map(|(a, t)| *a - *t).collect()).collect();
+    let noise: Arriving =
+        half.iter().zip(&truth).map(|(h, t)| h.iter().zip(t).map(|(h, t)| *h + *t).collect()).collect();
     text += &table.row("(noise of the paths)", &noise);
     let prepared = &ground.prepared;
     let solids = Solids::new(prepared);
@@ -89,7 +92,7 @@ fn errors(paths: u32) -> Result<(String, f64), Fault> {
         text += &table.row(&format!("radiosity, {patches} patches across"), &seen);
         if patches == IndirectOptions::DEFAULT.patches_across {
             error = table.error(&seen, |_| true).0;
-            let high: Light = bake(&options.with_order(6))?
+            let high: Arriving = bake(&options.with_order(6))?
                 .probes
                 .iter()
                 .map(|p| normals().iter().map(|&n| p.seen.radiance.irradiance(n)).collect())
@@ -101,7 +104,7 @@ fn errors(paths: u32) -> Result<(String, f64), Fault> {
     Ok((text, error))
 }
 
-fn reference(scene: &Scene, places: &[DVec3], paths: u32, seed: u64) -> Light {
+fn reference(scene: &Scene, places: &[DVec3], paths: u32, seed: u64) -> Arriving {
     let tree = Tree::new(scene);
     let normals = normals();
     let one = |(i, &p): (usize, &DVec3)| {
@@ -110,7 +113,7 @@ fn reference(scene: &Scene, places: &[DVec3], paths: u32, seed: u64) -> Light {
     places.par_iter().enumerate().map(one).collect()
 }
 
-fn light_of(bake: &ProbeBake) -> Light {
+fn light_of(bake: &ProbeBake) -> Arriving {
     let one = |radiance: &pointillist_sh::Sh| {
         let light = Irradiance::new(radiance);
         normals().iter().map(|n| light.at(n.as_vec3()).as_dvec3()).collect()
@@ -120,12 +123,12 @@ fn light_of(bake: &ProbeBake) -> Light {
 
 struct Table<'a> {
     places: &'a [DVec3],
-    truth: &'a Light,
+    truth: &'a Arriving,
 }
 
 impl Table<'_> {
     /// Root mean square of the error over that of the light, and how far off the mean is.
-    fn error(&self, light: &Light, counts: impl Fn(DVec3) -> bool) -> (f64, f64) {
+    fn error(&self, light: &Arriving, counts: impl Fn(DVec3) -> bool) -> (f64, f64) {
         let (mut squares, mut all, mut sum, mut whole) = (0.0, 0.0, 0.0, 0.0);
         for (i, truth) in self.truth.iter().enumerate().filter(|(i, _)| counts(self.places[*i])) {
             for (found, truth) in light[i].iter().zip(truth) {
@@ -138,14 +141,11 @@ impl Table<'_> {
         ((squares / all).sqrt(), sum / whole)
     }
 
-    fn row(&self, name: &str, light: &Light) -> String {
+    fn row(&self, name: &str, light: &Arriving) -> String {
         let all = self.error(light, |_| true).0;
         let rooms = [false, true].map(|dark| self.error(light, |p| (p.x > WALL[1]) == dark));
         let [(lit, lit_mean), (dark, dark_mean)] = rooms.map(|(e, m)| (100.0 * e, 100.0 * m));
-        format!(
-            "| {name} | {:.2} | {lit:.2}, {lit_mean:+.2} | {dark:.2}, {dark_mean:+.2} |\n",
-            100.0 * all
-        )
+        format!("| {name} | {:.2} | {lit:.2}, {lit_mean:+.2} | {dark:.2}, {dark_mean:+.2} |\n", 100.0 * all)
     }
 }
 
@@ -178,9 +178,9 @@ fn times() -> Result<(String, f64), Fault> {
             for (i, thorough) in [false, true].into_iter().enumerate() {
                 let options = BakeOptions::DEFAULT.with_thorough(thorough);
                 let (seconds, bake) = pool.install(|| {
-                    let start = Clock::Processor.now();
+                    let start = ThreadTime::now();
                     let bake = bake_probes(&prepared, &solids, &place, &options, &());
-                    (Clock::Processor.now() - start, bake)
+                    (start.elapsed().as_secs_f64(), bake)
                 });
                 best[i] = best[i].min(seconds);
                 lights[i] = light_of(&bake?);
