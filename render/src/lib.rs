@@ -97,6 +97,7 @@ mod set_up;
 mod shader;
 mod shading;
 mod solids;
+mod split_surfaces;
 mod surfaces;
 mod texel_sums;
 mod uvs;

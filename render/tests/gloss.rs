@@ -120,7 +120,7 @@ fn mirrors_indoors_see_what_probes_hold_and_not_the_sky_through_walls() {
     let dim = Sh::constant(DVec3::splat(0.05), 2).unwrap();
     let no_sky = Sh::zero(2).unwrap();
     for roughness in [0.0, 0.4] {
-        let indoors = lit_by(probe(&dim).with_sky(&[no_sky.clone()]).unwrap());
+        let indoors = lit_by(probe(&dim).with_sky(std::slice::from_ref(&no_sky)).unwrap());
         let seen = shown(&under_a_map(roughness, indoors));
         let even = shown(&under_a_map(roughness, AmbientLight::Color(Vec3::ZERO)));
         let wanted = shown(&mirror(roughness, AmbientLight::Color(Vec3::splat(0.05))));
