@@ -3,7 +3,7 @@
 //! 1. Probes, and further places if probes are to be fitted to them, look around.
 //! 2. For each bounce: what was seen makes a field of probes, and all look around again in its light. Only light that does not come
 //!    straight from lights is looked at again ([`look_again`]).
-//! 3. In the end the probes look once more at the light of the last bounce if that shows something else: with all pixels, or without
+//! 3. In the end the probes look once more at the light of the last bounce if that shows something else: with more pixels, or without
 //!    glowing surfaces.
 
 use crate::ambient::Ambient;
@@ -99,7 +99,9 @@ impl Rounds<'_> {
         let bounces = if self.probes == 0 { 0 } else { options.bounces };
         let glows = self.prepared.scene.materials.iter().any(|m| m.surface.emission != Vec3::ZERO);
         let wanted = options.emission || !glows;
-        let more = bounces > 0 && (!wanted || self.pixels(ENOUGH) < options.resolution);
+        // Bounced light is smooth: half of the pixels on a side show it to the error of all.
+        let last = (options.resolution / 2).max(ENOUGH);
+        let more = bounces > 0 && (!wanted || self.pixels(ENOUGH) < self.pixels(last));
         let looks = (bounces as usize + 1 + usize::from(more)) * self.places.len();
         self.monitor.begin(looks as u64);
         let mut seen = self.look(wanted || bounces > 0)?;
@@ -112,8 +114,8 @@ impl Rounds<'_> {
             }
             let field = self.field(&seen)?;
             if bounce == bounces && wanted {
-                // What is seen now is held, and needs all pixels.
-                let next = self.look_again(&field, true, u32::MAX, &seen)?;
+                // What is seen now is held.
+                let next = self.look_again(&field, true, last, &seen)?;
                 changes.push(change(&seen, &next));
                 self.skip_rounds(u32::from(more));
                 seen = next;
@@ -126,7 +128,7 @@ impl Rounds<'_> {
             if change < options.until || bounce == bounces {
                 self.skip_rounds(bounces - bounce);
                 if more {
-                    seen = self.look_again(&field, wanted, u32::MAX, &seen)?;
+                    seen = self.look_again(&field, wanted, last, &seen)?;
                 }
                 break;
             }

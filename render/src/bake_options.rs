@@ -6,8 +6,8 @@ use pointillist_micropoint::DepthRange;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BakeOptions {
-    /// Pixels on a side of each of the six pictures that a probe sees in the end. Default: 128. What bounces, and what is seen at the
-    /// places of `fit`, is taken at 32 at most unless `thorough` is set.
+    /// Pixels on a side of each of the six pictures of what lights send to surfaces. Default: 128. Light that bounced is seen with half of
+    /// them; what bounces further, and what is seen at the places of `fit`, with 32 at most; all with all if `thorough` is set.
     pub resolution: u32,
     /// Highest band of the harmonics. Default: 2.
     pub order: usize,
@@ -23,7 +23,7 @@ pub struct BakeOptions {
     /// Whether probes hold what surfaces send out by themselves. Default: they do not; such light still bounces.
     pub emission: bool,
     /// Whether every shadow and texel within a pixel is computed, and all captures have all pixels. Default: as finely as the sum over
-    /// a capture needs, with at most 32 pixels before the last bounce.
+    /// a capture needs, with half of the pixels on a side for bounced light, and at most 32 before the last bounce.
     pub thorough: bool,
     /// Whether harmonics are damped where irradiance would be negative. Default: they are not.
     pub dering: bool,

@@ -175,8 +175,8 @@ pub struct BakeOptions {
     #[arg(long)]
     pub dering: bool,
     /// Compute every shadow and texel within a pixel, and capture with all pixels throughout. Otherwise shadows and texels are
-    /// computed as finely as the sum over a capture needs, and captures before the last bounce, and those of --fit, have at most 32
-    /// pixels on a side
+    /// computed as finely as the sum over a capture needs, bounced light is captured with half of the pixels on a side, and captures
+    /// before the last bounce, and those of --fit, have at most 32
     #[arg(long)]
     pub thorough: bool,
     /// See only surfaces that are at least this far away: objects at the probe itself are left out, and what is behind them is seen.

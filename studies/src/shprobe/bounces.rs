@@ -22,7 +22,7 @@ type Fault = Box<dyn std::error::Error + Send + Sync>;
 
 /// Positions, paths from each in either half of the reference, and pixels on a side of what probes see.
 const PLACES: usize = 60;
-const PATHS: u32 = 16_384;
+const PATHS: u32 = 8_192;
 const RESOLUTION: u32 = 64;
 /// Bounces between probes, if light goes from probe to probe.
 const BOUNCES: u32 = 12;
