@@ -13,6 +13,8 @@ pub(crate) enum JsonKind {
     Radiosity,
     /// `probe project`.
     Harmonics,
+    /// What `probe capture` reads.
+    Captures,
     /// A scene file, as far as one can tell.
     Scene,
 }
@@ -24,6 +26,7 @@ impl JsonKind {
         match () {
             () if has("probes") => Self::Probes,
             () if has("geometry") && has("irradiance") => Self::Radiosity,
+            () if has("captures") => Self::Captures,
             () if has("sh") => Self::Harmonics,
             () => Self::Scene,
         }
@@ -41,6 +44,7 @@ impl JsonKind {
             Self::Probes => "light probes",
             Self::Radiosity => "baked radiosity",
             Self::Harmonics => "spherical harmonics of one environment map",
+            Self::Captures => "a list of panoramas",
             Self::Scene => "a scene",
         }
     }
@@ -53,6 +57,7 @@ impl JsonKind {
             }
             Self::Radiosity => "a scene names it by [ambient] radiosity = \"FILE\"",
             Self::Harmonics => "`pointillist info FILE` says what it holds",
+            Self::Captures => "`pointillist probe capture FILE` makes light probes of it",
             Self::Scene => "`pointillist render FILE` draws it",
         }
     }

@@ -120,6 +120,13 @@ fn a_constant_sky_lights_everything_alike() {
         let wanted = [0.8, 0.4, 0.2].map(|l| l * PI);
         assert!(rgb.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 2e-3), "{line}");
     }
+    // Above the block the sky is open, and so is what query says of it.
+    for line in folder.prints(&["probe", "query", "b.json", "q.txt", "--sky"]).lines() {
+        let share: f64 = line.split(' ').nth(3).unwrap().parse().unwrap();
+        assert!((share - 1.0).abs() < 2e-3, "{line}");
+    }
+    folder.write("blind.json", "{\"probes\":[{\"position\":[0,0,0],\"sh\":[[1,1,1]]}]}");
+    folder.fails(&["probe", "query", "blind.json", "q.txt", "--sky"], 3, &["blind.json", "`sky`", "bake"]);
     let sky = json(&folder, "b.json")["probes"][0]["sky"][0].as_f64().unwrap() / (2.0 * PI.sqrt());
     assert!((sky - 1.0).abs() < 1e-2);
     // And the block before it reflects half of that.
@@ -362,4 +369,133 @@ fn deringed_probes_light_nothing_negatively() {
     let (plain, damped) = (sh(&[]), sh(&["--dering"]));
     assert!(least(&plain) < -1e-3 * plain.irradiance(-glam::DVec3::Z).x, "{}", least(&plain));
     assert!(least(&damped) > -1e-9, "{}", least(&damped));
+}
+
+/// A closed room of which two walls differ, with a lamp.
+fn lit_room(folder: &Folder) {
+    folder.write("room.obj", block().lines().map(turned_back).collect::<String>());
+    folder.write(
+        "room.toml",
+        "[camera]\neye = [0, 0, 0.9]\ntarget = [0, 0, 0]\n[image]\nsize = [8, 8]\n\
+         [[light]]\ntype = \"point\"\nposition = [0.3, 0.4, 0.2]\nintensity = [1, 1, 1]\n\
+         [[object]]\nmesh = \"room.obj\"\nmaterial = \"grey\"\n[material.grey]\ndiffuse = [0.6, 0.5, 0.3]\n",
+    );
+}
+
+fn turned_back(line: &str) -> String {
+    match line.strip_prefix("f ") {
+        Some(corners) => format!("f {}\n", corners.split(' ').rev().collect::<Vec<_>>().join(" ")),
+        None => format!("{line}\n"),
+    }
+}
+
+#[test]
+fn bounces_come_from_a_radiosity_solution_read_or_solved_on_the_way() {
+    let folder = folder();
+    lit_room(&folder);
+    folder.write("p.json", "{\"probes\":[{\"position\":[-0.2,0.1,0.3]},{\"position\":[0.4,-0.3,-0.5]}]}");
+    folder.prints(&["radiosity", "room.toml", "-o", "light.json"]);
+    let bake = |output: &str, more: &[&str]| {
+        let line = ["probe", "bake", "room.toml", "p.json", "--resolution", "32", "-o", output];
+        folder.prints(&[&line, more].concat());
+        let file = json(&folder, output);
+        (radiance(&file), file)
+    };
+    let (read, file) = bake("read.json", &["--indirect", "light.json"]);
+    assert_eq!((file["bounces"].as_u64(), file["indirect"].as_str().map(str::len)), (Some(0), Some(16)));
+    let (solved, file) = bake("solved.json", &["--indirect", "solve"]);
+    assert_eq!(file["indirect"], "solve");
+    let (bounced, _) = bake("bounced.json", &["--bounces", "12", "--until", "0"]);
+    let (direct, _) = bake("direct.json", &["--bounces", "0"]);
+    for i in 0..2 {
+        assert!((read[i] / solved[i] - 1.0).abs() < 0.01, "{} {}", read[i], solved[i]);
+        // Two probes light the walls roughly, but there is as much light in the room.
+        assert!((read[i] / bounced[i] - 1.0).abs() < 0.1, "{} {}", read[i], bounced[i]);
+        assert!(read[i] > 1.4 * direct[i], "{} {}", read[i], direct[i]);
+    }
+    // What is there already is kept for the same light only.
+    let kept = |more: &[&str]| {
+        let line = [
+            "probe",
+            "bake",
+            "room.toml",
+            "p.json",
+            "--resolution",
+            "32",
+            "-o",
+            "read.json",
+            "--stats",
+            "s.json",
+        ];
+        folder.prints(&[&line, more].concat());
+        2 - json(&folder, "s.json")["counts"]["probes"].as_u64().unwrap_or(0)
+    };
+    assert_eq!(kept(&["--indirect", "light.json"]), 2);
+    assert_eq!(kept(&["--bounces", "0"]), 0);
+    // Parts are possible, since no probe depends on another.
+    for part in ["0/2", "1/2"] {
+        bake(&format!("{}.json", &part[..1]), &["--indirect", "light.json", "--part", part]);
+    }
+    folder.prints(&["merge", "0.json", "1.json", "-o", "joined.json"]);
+    assert_eq!(radiance(&json(&folder, "joined.json")), read);
+}
+
+#[test]
+fn light_of_another_scene_is_refused() {
+    let folder = folder();
+    lit_room(&folder);
+    folder.write("p.json", "{\"probes\":[{\"position\":[0,0,0]}]}");
+    folder.prints(&["radiosity", "room.toml", "-o", "light.json"]);
+    let bake = ["probe", "bake", "room.toml", "p.json", "--resolution", "8", "-o", "b.json"];
+    let fails = |more: &[&str], code: i32, words: &[&str]| folder.fails(&[&bake, more].concat(), code, words);
+    let other = ["--indirect", "light.json", "--set"];
+    fails(
+        &[&other[..], &["material.grey.diffuse=[0.1,0.1,0.1]"]].concat(),
+        4,
+        &["light.json", "lights or materials"],
+    );
+    folder.write(
+        "room.obj",
+        std::fs::read_to_string(folder.path("room.obj")).unwrap().replace("-1 -1 -1", "-1.1 -1 -1"),
+    );
+    fails(&["--indirect", "light.json"], 4, &["light.json", "another scene", "triangles", "radiosity"]);
+    fails(&["--indirect", "p.json"], 3, &["p.json", "light probes", "baked radiosity"]);
+    fails(&["--indirect", "none.json"], 3, &["none.json"]);
+    fails(&["--indirect", "solve", "--bounces", "2"], 2, &["--bounces"]);
+    fails(&["--indirect", "solve", "--set", "material.grey.diffuse=[1.2,1,1]"], 3, &["grey", "below 1"]);
+    fails(&["--order", "9"], 2, &["--order"]);
+}
+
+#[test]
+fn near_and_far_say_which_surfaces_probes_see() {
+    let folder = folder();
+    // The glowing box of 2 around the probe, in a sky.
+    let scene = format!("{BOX_SCENE}[ambient]\ncolor = [0, 0, 0]\n")
+        .replace("[8, 8]", "[8, 8]\nbackground = [3, 3, 3]");
+    folder.write("box.toml", scene);
+    folder.write("p.json", "{\"probes\":[{\"position\":[0,0,0]}]}");
+    let light = |more: &[&str]| {
+        let line =
+            ["probe", "bake", "box.toml", "p.json", "--what", "total", "--resolution", "8", "--bounces", "0"];
+        folder.prints(&[&line, more, &["-o", "b.json"]].concat());
+        let file = json(&folder, "b.json");
+        (radiance(&file)[0], file["probes"][0]["sky"][0].as_f64().unwrap() / (2.0 * PI.sqrt()))
+    };
+    let close = |(a, b): (f64, f64), (c, d): (f64, f64)| (a - c).abs() < 1e-4 && (b - d).abs() < 1e-4;
+    for (range, wanted) in [
+        (&[][..], (1.0, 0.0)),
+        (&["--near", "0.5"], (1.0, 0.0)),
+        (&["--near", "0.5", "--far", "1.5"], (1.0, 0.0)),
+        (&["--near", "1.5"], (3.0, 1.0)),
+        (&["--far", "0.5"], (3.0, 1.0)),
+    ] {
+        let found = light(range);
+        assert!(close(found, wanted), "{range:?}: {found:?}");
+    }
+    let file = json(&folder, "b.json");
+    assert_eq!((file["near"].as_f64(), file["far"].as_f64()), (None, Some(0.5)));
+    let line = ["probe", "bake", "box.toml", "p.json", "-o", "b.json"];
+    folder.fails(&[&line[..], &["--near", "2", "--far", "1"]].concat(), 2, &["--far", "--near"]);
+    folder.fails(&[&line[..], &["--near=-1"]].concat(), 2, &["--near"]);
+    folder.fails(&[&line[..], &["--far", "0"]].concat(), 2, &["--far"]);
 }

@@ -4,6 +4,7 @@
 use arbitrary::Arbitrary;
 use glam::{DQuat, DVec3, dvec3};
 use libfuzzer_sys::fuzz_target;
+use pointillist_sh::invariants::brackets_stay_within;
 use pointillist_sh::{CubeMap, CubeProjector, IrradianceMatrix, Panorama, PanoramaProjector, Sh, Weights};
 
 #[derive(Arbitrary, Debug)]
@@ -14,6 +15,7 @@ struct Input {
     turn: [i8; 4],
     towards: [i8; 3],
     cube: bool,
+    photographs: Vec<(Vec<[u8; 3]>, f32)>,
 }
 
 fn project(input: &Input, weights: Weights) -> Option<Sh> {
@@ -29,6 +31,7 @@ fn project(input: &Input, weights: Weights) -> Option<Sh> {
 }
 
 fuzz_target!(|input: Input| {
+    brackets_stay_within(&input.photographs).unwrap();
     let weights = [Weights::Gregory, Weights::Exact, Weights::Paper][usize::from(input.weights % 3)];
     let Some(sh) = project(&input, weights) else { return };
     let largest = input.texels.iter().flatten().fold(0.0_f64, |m, v| m.max(f64::from(v.abs())));

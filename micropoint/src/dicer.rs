@@ -1,7 +1,7 @@
 //! The bucket of cells that one thread finishes: faces diced into parts, nearest first.
 
 use crate::bounds::Bounds;
-use crate::face::{Face, GridRect, ProjectedVertex, Setup, TexturedOpacity};
+use crate::face::{DepthRange, Face, GridRect, ProjectedVertex, Setup, TexturedOpacity};
 use crate::geometry::{Geometry, HiddenSides, SurfaceOpacity};
 use crate::interval::Interval;
 use crate::lens::{Lens, LensKind};
@@ -192,6 +192,7 @@ pub(crate) struct DiceJob<'a> {
     pub(crate) opacity: &'a dyn TexturedOpacity,
     /// Squares on a side of a cell that it is divided into where masks are partly open.
     pub(crate) squares_per_side: i32,
+    pub(crate) depths: DepthRange,
 }
 
 /// Dices the faces that it is handed.
@@ -230,11 +231,12 @@ impl Dicer {
         let low = DVec2::new(f64::from(window.x0), f64::from(window.y0));
         let high = DVec2::new(f64::from(window.x1), f64::from(window.y1));
         let (lens, rect, hidden) = (job.lens, job.rect, job.hidden);
-        let setup = Setup { lens, rect, hidden, keeps_backs: false };
+        let range = job.depths;
+        let setup = Setup { lens, rect, hidden, keeps_backs: false, range };
         let mut memory = std::mem::take(&mut self.memory);
         let mut faces = DicedFaces { dicer: self, job };
         let seen =
-            job.geometry.visit_faces(&setup, &GridRect { low, high }, f64::INFINITY, &mut memory, &mut faces);
+            job.geometry.visit_faces(&setup, &GridRect { low, high }, range.far, &mut memory, &mut faces);
         self.memory = memory;
         self.counts.clusters += seen.clusters;
         self.counts.clusters_skipped += seen.clusters_skipped;

@@ -64,6 +64,14 @@ pub enum MicropointError {
     /// Cells per pixel side under masks must be 1, 2 or 4.
     #[error("{0} cells per pixel side under masks; 1, 2 and 4 are possible")]
     BadCellsUnderMasks(u32),
+    /// A range of depths must begin at 0 or later and end beyond its beginning.
+    #[error("depths from {near} to {far}: 0 ≤ near < far is possible")]
+    BadDepths {
+        /// Where the range begins.
+        near: f64,
+        /// Where it ends.
+        far: f64,
+    },
     /// Tiles must be 4 to 64 pixels on a side.
     #[error("tiles of {0} pixels; 4 to 64 are possible")]
     BadTileSize(u32),

@@ -224,6 +224,38 @@ impl ProjectedVertex {
     }
 }
 
+/// The depths that a lens takes in, in its own unit: what is nearer or farther is cut away, along planes across the view direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthRange {
+    /// Smallest depth, at least 0.
+    pub near: f64,
+    /// Largest depth, above `near`; may be infinite.
+    pub far: f64,
+}
+
+impl DepthRange {
+    /// Everything before the lens.
+    pub const ALL: Self = Self { near: 0.0, far: f64::INFINITY };
+
+    /// Whether it is a range that [`MicropointOptions`](crate::MicropointOptions) may have: 0 ≤ near < far, and near finite.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        self.near >= 0.0 && self.near < self.far
+    }
+
+    /// Whether nothing of a triangle before the lens is cut away.
+    #[inline]
+    fn holds(&self, corners: &[DVec3; 3]) -> bool {
+        corners.iter().all(|p| p.z >= self.near && p.z <= self.far)
+    }
+}
+
+impl Default for DepthRange {
+    fn default() -> Self {
+        Self::ALL
+    }
+}
+
 /// A rectangle of the grid that holds everything of interest; faces that reach behind the lens are
 /// clipped to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -237,9 +269,12 @@ pub struct GridRect {
 /// The outline of a face on the grid, in positive order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outline {
-    vertices: [DVec2; 8],
+    vertices: [DVec2; MOST_CORNERS],
     len: usize,
 }
+
+/// Corners of a triangle that is cut by two planes of depth and four sides, each of which adds one.
+const MOST_CORNERS: usize = 9;
 
 impl Outline {
     /// The vertices; fewer than three if nothing is visible.
@@ -281,6 +316,8 @@ pub struct Setup<'a> {
     pub hidden: &'a HiddenSides,
     /// Whether the backs of single-sided surfaces count: not for a viewer, but they still cast shadow.
     pub keeps_backs: bool,
+    /// Depths outside of which faces are cut away.
+    pub range: DepthRange,
 }
 
 /// Sets up a triangle for a lens: culls it, clips it if it reaches behind the lens, and gives the
@@ -294,7 +331,7 @@ pub(crate) fn set_up_face(
     v: [&ProjectedVertex; 3],
     surface: &SurfaceOpacity,
 ) -> Option<(Face, Outline)> {
-    let Setup { lens, rect, hidden, keeps_backs } = *setup;
+    let Setup { lens, hidden, keeps_backs, range, .. } = *setup;
     let corners = [v[0].local, v[1].local, v[2].local];
     let front = match v.iter().all(|p| p.in_front) {
         // The frame (right, down, forward) turns counter-clockwise into negative area.
@@ -325,30 +362,26 @@ pub(crate) fn set_up_face(
     if (solid != 0 && !outward_front) || (!front && !surface.two_sided && !keeps_backs) {
         return None;
     }
-    let (outline, nearness) = if v.iter().all(|p| p.in_front) {
+    let (outline, nearness) = if v.iter().all(|p| p.in_front) && range.holds(&corners) {
         let (a, b, c) = (v[0].grid, v[1].grid, v[2].grid);
         let ring = if front { [a, c, b] } else { [a, b, c] };
-        let mut outline = Outline { vertices: [DVec2::ZERO; 8], len: 3 };
+        let mut outline = Outline { vertices: [DVec2::ZERO; MOST_CORNERS], len: 3 };
         outline.vertices[..3].copy_from_slice(&ring);
         let q = corners.map(|p| lens.nearness(p.z));
         let nearness = Interval { least: q[0].min(q[1]).min(q[2]), most: q[0].max(q[1]).max(q[2]) };
         (outline, nearness)
     } else {
-        clip_outline(lens, rect, corners, front)?
+        clip_outline(setup, corners, front)?
     };
     let plane = lens.plane(corners);
     let (id, surface) = (triangle.id, triangle.surface);
     Some((Face { id, surface, source, front, corners, plane, nearness }, outline))
 }
 
-/// Clips a triangle against the near plane and the sides of the rectangle, in the lens's frame.
+/// Clips a triangle against the planes of the depth range and the sides of the rectangle, in the lens's frame.
 #[cold]
-fn clip_outline(
-    lens: &Lens,
-    rect: &GridRect,
-    corners: [DVec3; 3],
-    front: bool,
-) -> Option<(Outline, Interval)> {
+fn clip_outline(setup: &Setup<'_>, corners: [DVec3; 3], front: bool) -> Option<(Outline, Interval)> {
+    let Setup { lens, rect, range, .. } = *setup;
     let size = corners.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
     let perspective = lens.kind == LensKind::Perspective;
     let side = move |p: DVec3, axis: DVec3, line: f64, sign: f64| {
@@ -356,13 +389,16 @@ fn clip_outline(
         sign * (axis.dot(p) - if perspective { line * p.z } else { line })
     };
     let (x, y) = (DVec3::X * lens.scale, DVec3::Y * lens.scale);
-    let near = if perspective { 2.0 * NEAR * size } else { 0.0 };
-    let mut ring = [DVec3::ZERO; 8];
+    let near = range.near.max(if perspective { 2.0 * NEAR * size } else { 0.0 });
+    let mut ring = [DVec3::ZERO; MOST_CORNERS];
     ring[..3].copy_from_slice(&corners);
     let mut len = 3;
-    for cut in 0..5 {
+    for cut in 0..6 {
         let value = |p: DVec3| match cut {
             0 => p.z - near,
+            // No plane cuts at infinity, and a difference from it has no use as a weight.
+            5 if range.far.is_finite() => range.far - p.z,
+            5 => 1.0,
             1 => side(p, x, rect.low.x - lens.centre.x, 1.0),
             2 => side(p, x, rect.high.x - lens.centre.x, -1.0),
             3 => side(p, y, rect.low.y - lens.centre.y, 1.0),
@@ -370,7 +406,7 @@ fn clip_outline(
         };
         (ring, len) = clipped(&ring[..len], value);
     }
-    let mut outline = Outline { vertices: [DVec2::ZERO; 8], len };
+    let mut outline = Outline { vertices: [DVec2::ZERO; MOST_CORNERS], len };
     let mut nearness = Interval::EMPTY;
     for (to, p) in outline.vertices.iter_mut().zip(&ring[..len]) {
         *to = lens.project(*p).clamp(rect.low, rect.high);
@@ -387,8 +423,8 @@ fn clip_outline(
 }
 
 /// The part of a ring on one side of a plane; crossings do not depend on the direction of the edge.
-fn clipped(ring: &[DVec3], value: impl Fn(DVec3) -> f64) -> ([DVec3; 8], usize) {
-    let mut out = [DVec3::ZERO; 8];
+fn clipped(ring: &[DVec3], value: impl Fn(DVec3) -> f64) -> ([DVec3; MOST_CORNERS], usize) {
+    let mut out = [DVec3::ZERO; MOST_CORNERS];
     let mut len = 0;
     let crossing = |a: (DVec3, f64), b: (DVec3, f64)| {
         let swap = b.0.to_array() < a.0.to_array();
@@ -396,7 +432,7 @@ fn clipped(ring: &[DVec3], value: impl Fn(DVec3) -> f64) -> ([DVec3; 8], usize) 
         p + (q - p) * share_before_crossing(vp, vq)
     };
     clip_ring(ring, value, crossing, |p| {
-        // A convex ring gains one vertex per plane, so eight are enough; rounding may invent another.
+        // A convex ring gains one vertex per plane, so these are enough; rounding may invent another.
         if len < out.len() {
             out[len] = p;
             len += 1;

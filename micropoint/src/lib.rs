@@ -63,7 +63,9 @@ pub use glam;
 pub use bounds::Bounds;
 pub use dicer::TileCounts;
 pub use error::MicropointError;
-pub use face::{Face, GridRect, PlainOpacity, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity};
+pub use face::{
+    DepthRange, Face, GridRect, PlainOpacity, ProjectedVertex, Setup, SurfacePoint, TexturedOpacity,
+};
 pub use front::{Front, Layer, in_front};
 pub use geometry::{ClusterTriangle, Geometry, HiddenSides, SurfaceOpacity};
 pub use interval::Interval;

@@ -2,7 +2,7 @@
 
 use crate::dicer::{DiceJob, Dicer, TileCounts};
 use crate::error::MicropointError;
-use crate::face::{GridRect, TexturedOpacity};
+use crate::face::{DepthRange, GridRect, TexturedOpacity};
 use crate::geometry::{Geometry, HiddenSides};
 use crate::lens::Lens;
 use crate::resolve::{Occlusion, Visible, resolve_by_layers, resolve_exactly};
@@ -26,6 +26,9 @@ pub struct MicropointOptions {
     /// Skip the back faces of closed opaque components. Default: true. Never changes a correlated
     /// picture; under the paper's rule it removes the coverage that silhouettes would count twice.
     pub cull_solids: bool,
+    /// Depths outside of which surfaces are cut away, along planes across the view direction. A solid that is cut shows no inside: its
+    /// back faces stay skipped with `cull_solids`. Default: all.
+    pub depths: DepthRange,
 }
 
 impl MicropointOptions {
@@ -35,6 +38,7 @@ impl MicropointOptions {
         cells_under_masks: 4,
         occlusion: Occlusion::Correlated,
         cull_solids: true,
+        depths: DepthRange::ALL,
     };
 
     /// Sets the number of cells per pixel side.
@@ -64,6 +68,13 @@ impl MicropointOptions {
         self.cull_solids = cull;
         self
     }
+
+    /// Cuts away what is nearer or farther.
+    #[must_use]
+    pub const fn with_depths(mut self, depths: DepthRange) -> Self {
+        self.depths = depths;
+        self
+    }
 }
 
 impl Default for MicropointOptions {
@@ -87,7 +98,7 @@ impl<'a> Renderer<'a> {
     /// Prepares a view.
     ///
     /// # Errors
-    /// [`MicropointError::BadCellsPerPixel`], [`MicropointError::BadCellsUnderMasks`].
+    /// [`MicropointError::BadCellsPerPixel`], [`MicropointError::BadCellsUnderMasks`], [`MicropointError::BadDepths`].
     pub fn new(
         geometry: &'a Geometry,
         opacity: &'a dyn TexturedOpacity,
@@ -100,6 +111,10 @@ impl<'a> Renderer<'a> {
         }
         if !matches!(options.cells_under_masks, 1 | 2 | 4) {
             return Err(MicropointError::BadCellsUnderMasks(options.cells_under_masks));
+        }
+        if !options.depths.is_valid() {
+            let DepthRange { near, far } = options.depths;
+            return Err(MicropointError::BadDepths { near, far });
         }
         let mut lens = Lens::of_view(&view, cells);
         let bounds = geometry.bounds();
@@ -190,8 +205,16 @@ impl<'a> Renderer<'a> {
             Occlusion::Correlated => (self.options.cells_under_masks / cells).max(1) as i32,
             Occlusion::Paper => 1,
         };
-        let job =
-            DiceJob { geometry, lens, rect: &self.rect, hidden: &self.hidden, opacity, squares_per_side };
+        let depths = self.options.depths;
+        let job = DiceJob {
+            geometry,
+            lens,
+            rect: &self.rect,
+            hidden: &self.hidden,
+            opacity,
+            squares_per_side,
+            depths,
+        };
         dicer.dice(&job, window);
         let columns = (window.x1 - window.x0) as usize;
         let share = 1.0 / f64::from(cells * cells);

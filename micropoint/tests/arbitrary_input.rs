@@ -2,9 +2,9 @@
 
 use glam::{DAffine3, DMat3, DVec2, DVec3, dvec2};
 use pointillist_micropoint::{
-    Bounds, Face, FaceVisitor, Geometry, GridRect, HiddenSides, Lens, MicropointError, MicropointOptions,
-    Occlusion, PixelRect, PlainOpacity, ProjectedVertex, Projection, Renderer, Setup, SurfaceOpacity,
-    TexelCorner, TexelSums, TexelWrap, Tile, View, VisitMemory,
+    Bounds, DepthRange, Face, FaceVisitor, Geometry, GridRect, HiddenSides, Lens, MicropointError,
+    MicropointOptions, Occlusion, PixelRect, PlainOpacity, ProjectedVertex, Projection, Renderer, Setup,
+    SurfaceOpacity, TexelCorner, TexelSums, TexelWrap, Tile, View, VisitMemory,
 };
 use proptest::prelude::*;
 use testkit::numbers::{finite, number, vector};
@@ -119,7 +119,7 @@ proptest! {
         let Ok(geometry) = Geometry::new(&v, &[[0, 1, 2]], &[0], &[SurfaceOpacity::default()]) else { return Ok(()) };
         let _ = geometry.hidden_sides(&lens);
         let picture = GridRect { low: DVec2::ZERO, high: DVec2::splat(4.0) };
-        let setup = Setup { lens: &lens, rect: &picture, hidden: &HiddenSides::default(), keeps_backs: true };
+        let setup = Setup { lens: &lens, rect: &picture, hidden: &HiddenSides::default(), keeps_backs: true, range: DepthRange::ALL };
         for farthest in [f64::INFINITY, target.x] {
             let mut seen = Faces { farthest: eye.x, count: 0 };
             let counts = geometry.visit_faces(&setup, &rect, farthest, &mut VisitMemory::default(), &mut seen);

@@ -3,7 +3,7 @@
 //! 1. Probes, and further places if probes are to be fitted to them, look around.
 //! 2. For each bounce: what was seen makes a field of probes, and all look around again in its light. Only light that does not come
 //!    straight from lights is looked at again ([`look_again`]).
-//! 3. In the end the probes look once more at the light of the last bounce if that shows something else: with all pixels, or without
+//! 3. In the end the probes look once more at the light of the last bounce if that shows something else: with more pixels, or without
 //!    glowing surfaces.
 
 use crate::ambient::Ambient;
@@ -59,15 +59,34 @@ pub fn bake_probes(
     options: &BakeOptions,
     monitor: &dyn Monitor,
 ) -> Result<ProbeBake, RenderError> {
+    bake_probes_in(prepared, solids, positions, prepared.ambient(), options, monitor)
+}
+
+/// As [`bake_probes`], with surfaces lit by `ambient` in the place of the scene's ambient light: by light between surfaces that is known
+/// already ([`Ambient::Radiosity`], see [`solve_indirect`](crate::solve_indirect)), with no bounces in the options. Bounces that are asked
+/// for begin with what surfaces show in that light, and replace it.
+///
+/// # Errors
+/// As [`bake_probes`].
+pub fn bake_probes_in(
+    prepared: &Prepared<'_>,
+    solids: &Solids<'_>,
+    positions: &[DVec3],
+    ambient: Ambient<'_>,
+    options: &BakeOptions,
+    monitor: &dyn Monitor,
+) -> Result<ProbeBake, RenderError> {
     let more = between(positions, options.fit, solids);
     let places = positions.iter().copied().chain(more).collect();
-    Rounds { prepared, options, monitor, places, probes: positions.len() }.run()
+    Rounds { prepared, options, ambient, monitor, places, probes: positions.len() }.run()
 }
 
 /// All that looking around needs.
 struct Rounds<'a> {
     prepared: &'a Prepared<'a>,
     options: &'a BakeOptions,
+    /// What lights surfaces, beside lights, before the first bounce.
+    ambient: Ambient<'a>,
     monitor: &'a dyn Monitor,
     /// Where probes are, and after them other places whose light the probes are fitted to.
     places: Vec<DVec3>,
@@ -80,7 +99,9 @@ impl Rounds<'_> {
         let bounces = if self.probes == 0 { 0 } else { options.bounces };
         let glows = self.prepared.scene.materials.iter().any(|m| m.surface.emission != Vec3::ZERO);
         let wanted = options.emission || !glows;
-        let more = bounces > 0 && (!wanted || self.pixels(ENOUGH) < options.resolution);
+        // Bounced light is smooth: half of the pixels on a side show it to the error of all.
+        let last = (options.resolution / 2).max(ENOUGH);
+        let more = bounces > 0 && (!wanted || self.pixels(ENOUGH) < self.pixels(last));
         let looks = (bounces as usize + 1 + usize::from(more)) * self.places.len();
         self.monitor.begin(looks as u64);
         let mut seen = self.look(wanted || bounces > 0)?;
@@ -92,6 +113,14 @@ impl Rounds<'_> {
                 break;
             }
             let field = self.field(&seen)?;
+            if bounce == bounces && wanted {
+                // What is seen now is held.
+                let next = self.look_again(&field, true, last, &seen)?;
+                changes.push(change(&seen, &next));
+                self.skip_rounds(u32::from(more));
+                seen = next;
+                break;
+            }
             let next = self.look_again(&field, true, ENOUGH, &seen)?;
             let change = change(&seen, &next);
             changes.push(change);
@@ -99,7 +128,7 @@ impl Rounds<'_> {
             if change < options.until || bounce == bounces {
                 self.skip_rounds(bounces - bounce);
                 if more {
-                    seen = self.look_again(&field, wanted, u32::MAX, &seen)?;
+                    seen = self.look_again(&field, wanted, last, &seen)?;
                 }
                 break;
             }
@@ -115,9 +144,8 @@ impl Rounds<'_> {
     /// The first look: the probes with all pixels, places between them with [`ENOUGH`].
     fn look(&self, emission: bool) -> Result<Vec<Seen>, RenderError> {
         let (probes, between) = self.places.split_at(self.probes);
-        let ambient = self.prepared.ambient();
         let all = |places: &[DVec3], most: u32| {
-            look_all(self.prepared, places, self.options_of(emission, most), ambient, self.monitor)
+            look_all(self.prepared, places, self.options_of(emission, most), self.ambient, self.monitor)
         };
         stage(self.monitor, "bake", || {
             let mut seen = all(probes, u32::MAX)?;
@@ -154,16 +182,17 @@ impl Rounds<'_> {
     }
 
     fn options_of(&self, emission: bool, most: u32) -> LookOptions {
-        let BakeOptions { order, distances, thorough, .. } = *self.options;
-        let capture = CaptureOptions { resolution: self.pixels(most), emission, lights: true, thorough };
+        let BakeOptions { order, distances, thorough, depths, .. } = *self.options;
+        let capture =
+            CaptureOptions { resolution: self.pixels(most), emission, lights: true, thorough, depths };
         LookOptions { capture, order, distances }
     }
 
     /// The light of the bounce before.
     fn field(&self, seen: &[Seen]) -> Result<Field, RenderError> {
-        let Known { places, distances, probes, .. } = self.known(seen);
+        let Known { places, sky, distances, probes, .. } = self.known(seen);
         let radiance = self.radiance(seen)?;
-        let field = Field::new(&places[..probes], &radiance)?;
+        let field = Field::new(&places[..probes], &radiance)?.with_sky(&sky[..probes])?;
         Ok(match distances {
             Some(mut maps) => {
                 maps.truncate(probes);
@@ -175,7 +204,7 @@ impl Rounds<'_> {
 
     /// What the probes hold that do not lie inside of walls.
     fn radiance(&self, seen: &[Seen]) -> Result<Vec<Sh>, RenderError> {
-        let Known { places, radiance, distances, probes } = self.known(seen);
+        let Known { places, radiance, distances, probes, .. } = self.known(seen);
         if places.len() == probes || probes == 0 {
             return Ok(radiance);
         }
@@ -208,6 +237,7 @@ impl Rounds<'_> {
         Known {
             places: free.iter().map(|&i| self.places[i]).collect(),
             radiance: free.iter().map(|&i| seen[i].radiance.clone()).collect(),
+            sky: free.iter().map(|&i| seen[i].sky.clone()).collect(),
             distances: free.iter().map(|&i| seen[i].distances.clone()).collect(),
             probes: free.iter().filter(|&&i| i < self.probes).count(),
         }
@@ -222,6 +252,7 @@ impl Rounds<'_> {
 struct Known {
     places: Vec<DVec3>,
     radiance: Vec<Sh>,
+    sky: Vec<Sh<f64>>,
     distances: Option<Vec<DistanceMap>>,
     /// How many of the places are those of probes.
     probes: usize,

@@ -1,11 +1,13 @@
 //! Options of [`bake_probes`](crate::bake_probes).
 
+use pointillist_micropoint::DepthRange;
+
 /// How [`bake_probes`](crate::bake_probes) looks around.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BakeOptions {
-    /// Pixels on a side of each of the six pictures that a probe sees in the end. Default: 128. What bounces, and what is seen at the
-    /// places of `fit`, is taken at 32 at most unless `thorough` is set.
+    /// Pixels on a side of each of the six pictures of what lights send to surfaces. Default: 128. Light that bounced is seen with half of
+    /// them; what bounces further, and what is seen at the places of `fit`, with 32 at most; all with all if `thorough` is set.
     pub resolution: u32,
     /// Highest band of the harmonics. Default: 2.
     pub order: usize,
@@ -21,12 +23,14 @@ pub struct BakeOptions {
     /// Whether probes hold what surfaces send out by themselves. Default: they do not; such light still bounces.
     pub emission: bool,
     /// Whether every shadow and texel within a pixel is computed, and all captures have all pixels. Default: as finely as the sum over
-    /// a capture needs, with at most 32 pixels before the last bounce.
+    /// a capture needs, with half of the pixels on a side for bounced light, and at most 32 before the last bounce.
     pub thorough: bool,
     /// Whether harmonics are damped where irradiance would be negative. Default: they are not.
     pub dering: bool,
     /// Whether probes that see mostly backs of surfaces count like others. Default: they are left out of the light.
     pub keep_buried: bool,
+    /// Surfaces outside of these distances are not seen ([`CaptureOptions::depths`](crate::CaptureOptions::depths)). Default: all are.
+    pub depths: DepthRange,
 }
 
 impl BakeOptions {
@@ -42,6 +46,7 @@ impl BakeOptions {
         thorough: false,
         dering: false,
         keep_buried: false,
+        depths: DepthRange::ALL,
     };
 
     /// Takes pictures of this many pixels on a side.
@@ -111,6 +116,13 @@ impl BakeOptions {
     #[must_use]
     pub const fn with_keep_buried(mut self, keep_buried: bool) -> Self {
         self.keep_buried = keep_buried;
+        self
+    }
+
+    /// Sees only surfaces at these distances.
+    #[must_use]
+    pub const fn with_depths(mut self, depths: DepthRange) -> Self {
+        self.depths = depths;
         self
     }
 }

@@ -1,6 +1,7 @@
 //! What a material has beyond its constants, at one micropoint: further maps, tilted normals, mirrored surroundings.
 
 use crate::detail_maps::{DetailMaps, DetailMeans};
+use crate::reflections::Mirrored;
 use crate::scene::{BumpHeight, Details};
 use crate::shader::{ShadedSurface, Shader};
 use glam::Vec3;
@@ -96,11 +97,13 @@ impl Shader<'_> {
         light * occlusion
     }
 
-    /// What comes from a direction. Without a map of the surroundings, ambient light stands for it.
+    /// What comes from about a direction. Without a map of the surroundings, it is ambient light from there.
     fn seen_towards(&self, details: &Details, s: &ShadedSurface, direction: Vec3, hint: &mut Hint) -> Vec3 {
+        let (spot, roughness) = (s.spot(s.normal), s.material.roughness);
         match self.reflections.of(self.scene, details, s.triangle) {
-            Some(map) => map.radiance(direction, s.material.roughness),
-            None => self.ambient.at(&s.spot(direction), hint),
+            Some(Mirrored::Around(map)) => map.radiance(direction, roughness),
+            Some(Mirrored::Scene(map)) => self.ambient.towards_map(&spot, direction, roughness, map, hint),
+            None => self.ambient.towards(&spot, direction, roughness, hint),
         }
     }
 }

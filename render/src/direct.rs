@@ -37,6 +37,8 @@ pub(crate) struct DirectScratch {
     pub(crate) lit: Vec<f64>,
     pub(crate) arrivals: Vec<Arrival>,
     pub(crate) lit_parts: LitParts,
+    /// What each receiver counts in the mean of its pixel, if not all are asked.
+    asked_weights: Vec<f64>,
     /// Arrivals of a pixel that share the mean fraction of some receivers.
     shared: Vec<(Range<usize>, Range<usize>)>,
     /// Fragments of one pixel: its micropoint and what it counts.
@@ -170,16 +172,17 @@ pub(crate) fn corners<'t>(
     tile.outline(fragment).iter().map(|&v| tile.position(v, face.nearness_at(v)))
 }
 
-/// At most `count` fragments of each pixel, taken at even steps of what they would send to the eye: their mean
-/// fraction stands for all.
+/// Asks for shadows of each pixel's fragments: of all if there are no more than `count`, else of `count` at even steps of what they would
+/// send to the eye. Their mean fraction, weighted by what each would send, stands for all.
 fn ask_for_some(tile: &Tile, count: usize, scratch: &mut DirectScratch) {
-    let DirectScratch { receivers, arrivals, shared, candidates, .. } = scratch;
+    let DirectScratch { receivers, arrivals, shared, candidates, asked_weights, .. } = scratch;
     shared.clear();
+    asked_weights.clear();
     let pixel = |a: &Arrival| {
         let m = &tile.points()[a.point as usize];
         (m.x, m.y)
     };
-    let (mut first, mut asked) = (0, 0);
+    let mut first = 0;
     for group in arrivals.chunk_by(|a, b| pixel(a) == pixel(b)) {
         candidates.clear();
         for a in group {
@@ -187,27 +190,46 @@ fn ask_for_some(tile: &Tile, count: usize, scratch: &mut DirectScratch) {
             let bright = f64::from(a.radiance.element_sum());
             candidates.extend(tile.fragments(m).iter().map(|f| (a.point, *f, f.weight * bright)));
         }
-        let total: f64 = candidates.iter().map(|c| c.2).sum();
-        let (mut sum, mut taken) = (0.0, 0);
-        for (point, fragment, weight) in candidates.iter() {
-            sum += weight;
-            while taken < count && sum * count as f64 > (taken as f64 + 0.5) * total {
-                let m = &tile.points()[*point as usize];
-                receivers.push(m.face, corners(tile, m, fragment));
-                taken += 1;
-            }
-        }
-        shared.push((first..first + group.len(), asked..asked + taken));
+        let asked = asked_weights.len();
+        choose_asked(candidates, count, |point, fragment, weight| {
+            let m = &tile.points()[point as usize];
+            receivers.push(m.face, corners(tile, m, fragment));
+            asked_weights.push(weight);
+        });
+        shared.push((first..first + group.len(), asked..asked_weights.len()));
         first += group.len();
-        asked += taken;
+    }
+}
+
+/// Calls `ask` with fragments and their weights, each fragment at most once.
+fn choose_asked(candidates: &[(u32, Fragment, f64)], count: usize, mut ask: impl FnMut(u32, &Fragment, f64)) {
+    if candidates.len() <= count {
+        candidates.iter().for_each(|(point, fragment, weight)| ask(*point, fragment, *weight));
+        return;
+    }
+    let total: f64 = candidates.iter().map(|c| c.2).sum();
+    let (mut sum, mut taken) = (0.0, 0);
+    for (point, fragment, weight) in candidates {
+        sum += weight;
+        let before = taken;
+        while taken < count && sum * count as f64 > (taken as f64 + 0.5) * total {
+            taken += 1;
+        }
+        if taken > before {
+            ask(*point, fragment, (taken - before) as f64);
+        }
     }
 }
 
 /// What [`ask_for_some`] asked for.
 fn shared_fractions(scratch: &mut DirectScratch) {
-    let DirectScratch { arrivals, shared, lit, .. } = scratch;
+    let DirectScratch { arrivals, shared, lit, asked_weights, .. } = scratch;
     for (group, asked) in shared.iter() {
-        let mean = lit[asked.clone()].iter().sum::<f64>() / asked.len().max(1) as f64;
+        let (lit, weights) = (&lit[asked.clone()], &asked_weights[asked.clone()]);
+        let total: f64 = weights.iter().sum();
+        let sum: f64 = lit.iter().zip(weights).map(|(lit, weight)| lit * weight).sum();
+        // Where nothing arrives anyway, there is nothing to be asked.
+        let mean = if total > 0.0 { sum / total } else { 0.0 };
         arrivals[group.clone()].iter_mut().for_each(|a| a.fraction = mean);
     }
 }

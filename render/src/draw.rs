@@ -12,7 +12,7 @@ use crate::monitor::{Monitor, go_on};
 use crate::prepared::Prepared;
 use crate::shader::{Glow, Shader, Style};
 use crate::shading::ShaderScratch;
-use pointillist_micropoint::{Renderer, TileCounts};
+use pointillist_micropoint::{DepthRange, Renderer, TileCounts};
 use pointillist_shadow::{AreaCounts, ShadowCounts};
 use pointillist_view::{PixelRect, View};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -71,7 +71,8 @@ impl Prepared<'_> {
         options: &DrawOptions,
         monitor: &dyn Monitor,
     ) -> Result<Frame, RenderError> {
-        let style = Style { ambient: self.ambient(), glow: Glow::Everything, lights: true, economy: None };
+        let (ambient, depths) = (self.ambient(), DepthRange::ALL);
+        let style = Style { ambient, glow: Glow::Everything, lights: true, economy: None, depths };
         self.draw_styled(view, &style, options, monitor)
     }
 
@@ -87,15 +88,14 @@ impl Prepared<'_> {
         self.check_layers(layers)?;
         let window = options.window.unwrap_or(view.picture()).intersection(&view.picture());
         monitor.begin(window.tiles(TILE_SIZE).count() as u64);
-        let mut micropoints = self.scene.render.micropoints();
+        let mut micropoints = self.scene.render.micropoints().with_depths(style.depths);
         if style.economy.is_some() {
             micropoints = micropoints.with_cells_under_masks(1);
         }
         let renderer = Renderer::new(&self.geometry, &*self.surfaces, view, micropoints)?;
         monitor.start_lap();
         let lights = if style.lights {
-            // Pictures that are only summed up have points in the place of areas.
-            let sampled = style.economy.is_some();
+            let sampled = style.economy.is_some_and(|economy| economy.samples_areas);
             scene_lights(self, renderer.lens(), sampled)?
         } else {
             SceneLights::default()

@@ -76,6 +76,8 @@ mod error;
 pub mod fingerprint;
 mod frame;
 mod gather;
+mod gloss;
+mod indirect;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod joined;
@@ -96,19 +98,21 @@ mod shader;
 mod shading;
 mod shaft;
 mod solids;
+mod split_surfaces;
 mod surfaces;
 mod texel_sums;
 mod uvs;
 mod whole;
 
 pub use ambient::Ambient;
-pub use bake::{BakedProbe, ProbeBake, bake_probes};
+pub use bake::{BakedProbe, ProbeBake, bake_probes, bake_probes_in};
 pub use bake_options::BakeOptions;
 pub use capture::{Capture, CaptureOptions};
 pub use choose::{ChooseOptions, Chosen, choose_places};
 pub use draw::DrawOptions;
 pub use error::RenderError;
 pub use frame::{Frame, Layer, LayerKind};
+pub use indirect::{IndirectError, IndirectOptions, solve_indirect};
 pub use lamps::{Lamps, with_lamps};
 pub use lightmap::{BakedLight, BakedSide, Lightmap, LightmapError, baked_sides};
 pub use lights::emitter;
@@ -134,7 +138,7 @@ pub use pointillist_shade as shade;
 /// Fields of light probes.
 pub use pointillist_shprobe as shprobe;
 
-pub use pointillist_micropoint::{Bounds, Geometry, MicropointError, Occlusion};
+pub use pointillist_micropoint::{Bounds, DepthRange, Geometry, MicropointError, Occlusion};
 pub use pointillist_shadow::{Emitter, Resolution, ShadowError};
 pub use pointillist_view::{PixelRect, Projection, View, ViewError};
 

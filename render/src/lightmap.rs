@@ -167,15 +167,24 @@ impl Lightmap {
     ) -> Result<Self, LightmapError> {
         light.check(sides, triangles_of_scene)?;
         let mut map = Self { surfaces: vec![], of_face: vec![[None; 2]; triangles_of_scene] };
+        // Pieces of one surface have the same faces, and are one map.
+        let mut pieces: Vec<Vec<[u32; 3]>> = vec![];
         let mut first = 0;
         for side in sides {
             let list = &light.triangles[first..first + side.count];
             first += side.count;
-            for &face in side.faces {
-                map.of_face[face as usize][usize::from(side.back)] = Some(map.surfaces.len() as u32);
+            let slot = |face: &u32| (*face as usize, usize::from(side.back));
+            let known = side.faces.first().map(slot).and_then(|(face, back)| map.of_face[face][back]);
+            let number = known.unwrap_or(pieces.len() as u32);
+            if number as usize == pieces.len() {
+                pieces.push(vec![]);
             }
-            map.surfaces.push(Map::new(light, list));
+            pieces[number as usize].extend_from_slice(list);
+            for (face, back) in side.faces.iter().map(slot) {
+                map.of_face[face][back] = Some(number);
+            }
         }
+        map.surfaces = pieces.iter().map(|list| Map::new(light, list)).collect();
         Ok(map)
     }
 

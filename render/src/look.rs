@@ -13,7 +13,7 @@ use std::hash::Hasher as _;
 use twox_hash::XxHash3_64;
 
 /// How probes look around.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LookOptions {
     /// The six pictures.
     pub capture: CaptureOptions,
@@ -152,18 +152,19 @@ fn seen(
 /// pixel, however small it is.
 const WATCHED: u32 = 16;
 
-/// A hash of everything that is seen from each position: surfaces and their sides, their light and their shadows.
+/// A hash of everything that is seen from each position: surfaces and their sides, their light and their shadows, as `capture` has it
+/// show them; its resolution is not used.
 ///
 /// # Errors
 /// As [`look_all`].
 pub fn fingerprints(
     prepared: &Prepared<'_>,
     positions: &[DVec3],
-    emission: bool,
+    capture: CaptureOptions,
     ambient: Ambient<'_>,
     monitor: &dyn Monitor,
 ) -> Result<Vec<u64>, RenderError> {
-    let options = CaptureOptions { resolution: WATCHED, emission, lights: true, thorough: false };
+    let options = CaptureOptions { resolution: WATCHED, ..capture };
     at_all(positions, monitor, |position| {
         let capture = prepared.capture(position, options, ambient, monitor)?;
         let mut hash = XxHash3_64::default();

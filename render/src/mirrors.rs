@@ -65,8 +65,12 @@ impl<'a> Prepared<'a> {
         for ((object, material), (low, high)) in found {
             let geometry = self.surfaces.geometry_without(self.scene, object)?;
             let others = self.with_geometry(geometry)?;
-            let options =
-                CaptureOptions { resolution: RESOLUTION, emission: true, lights: true, thorough: true };
+            let options = CaptureOptions {
+                resolution: RESOLUTION,
+                emission: true,
+                thorough: true,
+                ..CaptureOptions::DEFAULT
+            };
             let middle = low + 0.5 * (high - low);
             let capture = others.look_around(middle, options, others.ambient(), Glow::Everything, monitor)?;
             let [r, g, b] = &capture.radiance;

@@ -4,6 +4,7 @@
 //! material: constants times the means of whole textures times the mean of its vertices' colours.
 
 use crate::scene::{Details, Map, Material, Mesh, Scene, SceneError, Texture};
+use crate::split_surfaces::split_where_they_cross;
 use glam::{DVec3, DVec4, Vec3, Vec4};
 use pointillist_radiosity::Surface;
 use std::cell::OnceCell;
@@ -20,13 +21,13 @@ const FLAT: f64 = 1e-9;
 pub struct SceneSurfaces {
     /// For `pointillist_radiosity`.
     pub surfaces: Vec<Surface>,
-    /// One or two triangles of the scene's mesh for each.
+    /// One or two triangles of the scene's mesh for each; pieces of one surface follow one another and have the same.
     pub faces: Vec<Vec<u32>>,
     /// Triangles that were left out because they let light through.
     pub translucent: usize,
 }
 
-/// The surfaces of a scene.
+/// The surfaces of a scene, cut where they run through each other: no patch is then half inside of a wall.
 ///
 /// # Errors
 /// [`SceneError`] if lists do not fit one another, or with the first material whose diffuse albedo, maps and vertices' colours included, is not in 0 to 1.
@@ -70,6 +71,7 @@ pub fn scene_surfaces(scene: &Scene) -> Result<SceneSurfaces, SceneError> {
         found.surfaces.push(surface);
         found.faces.push(faces);
     }
+    split_where_they_cross(&mut found);
     Ok(found)
 }
 

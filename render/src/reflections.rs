@@ -4,6 +4,7 @@ use crate::error::RenderError;
 use crate::monitor::{Monitor, go_on, stage};
 use crate::scene::{AmbientLight, Details, Material, Scene, Surroundings};
 use glam::Vec3;
+use pointillist_sh::{Panorama, PanoramaProjector, Sh, Weights};
 use pointillist_shade::{CubeMap, Environment, Equirectangular, Model, SMALLEST_ROUGHNESS};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -14,10 +15,25 @@ const LARGEST_FACE: u32 = 1024;
 /// The maps of a scene. Clones share them.
 #[derive(Clone, Default)]
 pub(crate) struct Reflections {
-    scene: Option<Arc<Environment>>,
+    scene: Option<Arc<SceneMap>>,
     textures: HashMap<usize, Arc<Environment>>,
     /// By object and material.
     captured: HashMap<(u32, u32), Arc<Environment>>,
+}
+
+/// The scene's own map.
+pub(crate) struct SceneMap {
+    pub(crate) environment: Environment,
+    /// What of it probes hold that see all of it, if there are probes.
+    pub(crate) bands: Option<Sh>,
+}
+
+/// What a triangle mirrors.
+pub(crate) enum Mirrored<'a> {
+    /// A map of what is around it.
+    Around(&'a Environment),
+    /// The scene's own map, as far as it is seen from the triangle.
+    Scene(&'a SceneMap),
 }
 
 /// Whether a material mirrors anything or shows what is behind it.
@@ -48,7 +64,8 @@ impl Reflections {
             let rough = scene.materials.iter().filter(mirrors_scene).any(is_rough);
             maps.scene = Some(stage(monitor, "environment", || {
                 let map = environment(scene, texture, rough);
-                Arc::new(if ambient { map.with_irradiance() } else { map })
+                let environment = if ambient { map.with_irradiance() } else { map };
+                Arc::new(SceneMap { environment, bands: bands_of_probes(scene, texture) })
             }));
         }
         for material in &scene.materials {
@@ -66,7 +83,7 @@ impl Reflections {
 
     /// The scene's own map, if anything needs it.
     pub(crate) fn of_scene(&self) -> Option<&Environment> {
-        self.scene.as_deref()
+        self.scene.as_ref().map(|map| &map.environment)
     }
 
     /// Adds what an object mirrors with a material that has its surroundings captured.
@@ -78,17 +95,31 @@ impl Reflections {
     }
 
     /// What a triangle mirrors. Captured surroundings that are not there (yet) are those of the scene.
-    pub(crate) fn of(&self, scene: &Scene, details: &Details, triangle: u32) -> Option<&Environment> {
-        match details.surroundings {
-            Surroundings::Scene => self.of_scene(),
-            Surroundings::Texture(texture) => self.textures.get(&texture).map(Arc::as_ref),
+    pub(crate) fn of(&self, scene: &Scene, details: &Details, triangle: u32) -> Option<Mirrored<'_>> {
+        let own = match details.surroundings {
+            Surroundings::Scene => None,
+            Surroundings::Texture(texture) => {
+                return self.textures.get(&texture).map(|map| Mirrored::Around(map));
+            }
             Surroundings::Capture => {
                 let mesh = &scene.mesh;
-                let key = (mesh.object_of[triangle as usize], mesh.material_of[triangle as usize]);
-                self.captured.get(&key).or(self.scene.as_ref()).map(Arc::as_ref)
+                self.captured.get(&(mesh.object_of[triangle as usize], mesh.material_of[triangle as usize]))
             }
-        }
+        };
+        own.map(|map| Mirrored::Around(map)).or(self.scene.as_deref().map(Mirrored::Scene))
     }
+}
+
+/// What probes hold of an equirectangular texture where all of it is seen.
+fn bands_of_probes(scene: &Scene, texture: usize) -> Option<Sh> {
+    let AmbientLight::Probes { field, .. } = &scene.ambient else { return None };
+    let t = &scene.textures[texture];
+    let pixel = |(x, y)| t.texel(x, y).truncate().to_array();
+    let pixels: Vec<[f32; 3]> =
+        (0..t.height).flat_map(|y| (0..t.width).map(move |x| (x, y))).map(pixel).collect();
+    let (width, height) = (t.width as usize, t.height as usize);
+    let map = Panorama::new(width, height, &pixels).ok()?;
+    PanoramaProjector::new(width, height, field.order(), Weights::Exact).ok()?.project(&map).ok()
 }
 
 /// An equirectangular texture as a cube with about as many texels to a degree.

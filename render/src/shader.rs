@@ -9,7 +9,7 @@ use crate::scene::{NONE, Scene};
 use crate::shaft::Box3;
 use crate::surfaces::Surfaces;
 use glam::{DVec3, Vec3};
-use pointillist_micropoint::Face;
+use pointillist_micropoint::{DepthRange, Face};
 use pointillist_shade::Material;
 use pointillist_view::View;
 
@@ -24,6 +24,8 @@ pub(crate) struct Style<'a> {
     pub(crate) lights: bool,
     /// For pictures that are only summed up: fewer questions about details within a pixel.
     pub(crate) economy: Option<Economy>,
+    /// Surfaces at other depths are not seen.
+    pub(crate) depths: DepthRange,
 }
 
 /// Whose emission is seen.
@@ -42,6 +44,8 @@ pub(crate) struct Economy {
     pub(crate) shadows_per_pixel: usize,
     /// Fragments of a micropoint, the heaviest, whose texels are averaged.
     pub(crate) textures_per_micropoint: usize,
+    /// Whether lights with an area are taken as points.
+    pub(crate) samples_areas: bool,
 }
 
 /// What all tiles share.

@@ -3,7 +3,11 @@
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_render::sh::Irradiance;
 use pointillist_render::shade;
-use pointillist_render::{BakeOptions, Camera, Material, Part, Prepared, Scene, Solids, bake_probes};
+use pointillist_render::{
+    Ambient, BakeOptions, Camera, CaptureOptions, DepthRange, IndirectOptions, Lamps, LightSource, Material,
+    Part, Prepared, Scene, Solids, bake_probes, bake_probes_in, radiosity, scene_surfaces, solve_indirect,
+    with_lamps,
+};
 use std::f32::consts::PI;
 
 /// The corners of a box and its triangles, seen from outside, or from inside.
@@ -175,14 +179,13 @@ fn cancelled_looks_end_before_the_first_position() {
     let ambient = prepared.ambient();
     let look = look_all(&prepared, &places, LookOptions::DEFAULT, ambient, &watch);
     assert!(matches!(look, Err(RenderError::Cancelled)));
-    let marks = fingerprints(&prepared, &places, true, ambient, &watch);
+    let marks = fingerprints(&prepared, &places, LookOptions::DEFAULT.capture, ambient, &watch);
     assert!(matches!(marks, Err(RenderError::Cancelled)));
     assert!(matches!(Prepared::new(&scene, &watch), Err(RenderError::Cancelled)));
 }
 
 #[test]
 fn captures_refuse_what_cannot_be_seen_from_even_where_nothing_is() {
-    use pointillist_render::CaptureOptions;
     let scene = Scene::new(Camera::perspective(DVec3::Z, DVec3::ZERO, 1.0), [8, 8]);
     let prepared = Prepared::new(&scene, &()).unwrap();
     let capture = |position, resolution| {
@@ -192,4 +195,161 @@ fn captures_refuse_what_cannot_be_seen_from_even_where_nothing_is() {
     assert!(capture(DVec3::ZERO, 4).is_ok());
     assert!(capture(DVec3::NAN, 4).is_err() && capture(DVec3::INFINITY, 4).is_err());
     assert!(capture(DVec3::ZERO, 0).is_err() && capture(DVec3::ZERO, u32::MAX).is_err());
+}
+
+/// A grey room of 4 × 3 × 4 with a lamp, of which one wall is red.
+fn lamp_room(light: shade::Light) -> Scene {
+    let mut scene = Scene::new(Camera::perspective(DVec3::ONE, DVec3::ZERO, 1.0), [8, 8]);
+    let grey = scene.add_material(Material::new("grey", shade::Material::lambert(Vec3::splat(0.7))));
+    let red = scene.add_material(Material::new("red", shade::Material::lambert(Vec3::new(0.8, 0.2, 0.1))));
+    let (positions, triangles) = cuboid(dvec3(-2.0, -1.5, -2.0), dvec3(2.0, 1.5, 2.0), true);
+    scene.mesh.add(&Part::new("wall", &positions, &triangles[..2]).with_material(red)).unwrap();
+    scene.mesh.add(&Part::new("room", &positions, &triangles[2..]).with_material(grey)).unwrap();
+    let (positions, triangles) = cuboid(dvec3(-1.0, -1.5, -1.0), dvec3(-0.4, 0.1, 0.2), false);
+    scene.mesh.add(&Part::new("block", &positions, &triangles).with_material(grey)).unwrap();
+    scene.lights.push(LightSource::new("lamp", light));
+    scene
+}
+
+fn bulb() -> shade::Light {
+    let (position, intensity) = (dvec3(0.8, 0.9, -0.3), Vec3::splat(10.0));
+    shade::Light::Point { position, intensity, falloff: shade::Falloff::InverseSquare }
+}
+
+/// Irradiance for some normals.
+fn irradiance(radiance: &pointillist_render::sh::Sh) -> Vec<Vec3> {
+    let normals = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+    normals.iter().map(|&n| Irradiance::new(radiance).at(n)).collect()
+}
+
+/// Root mean square of differences over that of what is wanted.
+fn off(found: &[Vec3], wanted: &[Vec3]) -> f32 {
+    let squares: f32 = found.iter().zip(wanted).map(|(a, b)| (*a - *b).length_squared()).sum();
+    (squares / wanted.iter().map(|b| b.length_squared()).sum::<f32>()).sqrt()
+}
+
+#[test]
+fn probes_in_the_light_of_a_radiosity_solution_hold_all_bounces() {
+    let scene = lamp_room(bulb());
+    let surfaces = scene_surfaces(&scene).unwrap();
+    let settings = radiosity::SceneOptions::DEFAULT.with_patch(0.2).with_tolerance(Some(0.003));
+    let mut patches = radiosity::Scene::new(&surfaces.surfaces, &settings).unwrap();
+    let direct = with_lamps(&Lamps::new(&scene), |lamps| patches.direct(lamps)).unwrap();
+    let transport = patches.transport(&direct).unwrap();
+    let solution = transport.gauss_seidel(&radiosity::SolveOptions::DEFAULT).unwrap();
+    let places = [dvec3(1.2, 0.3, 1.1), dvec3(-1.5, -0.9, 0.9), dvec3(0.1, 0.2, -1.6)];
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    let light = solve_indirect(&scene, &IndirectOptions::DEFAULT, &()).unwrap();
+    let solids = Solids::new(&prepared);
+    let options = options(0).with_resolution(32);
+    let ambient = Ambient::Radiosity(&light);
+    let known = bake_probes_in(&prepared, &solids, &places, ambient, &options, &()).unwrap();
+    let bounced = bake_probes(&prepared, &solids, &places, &options.with_bounces(8), &()).unwrap();
+    let (mut found, mut by_probes, mut wanted) = (vec![], vec![], vec![]);
+    for (i, place) in places.iter().enumerate() {
+        for n in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z] {
+            let e = solution.irradiance(*place, n, true).unwrap();
+            wanted.push(Vec3::from_array(e.map(|v| v as f32)));
+        }
+        found.extend(irradiance(&known.probes[i].seen.radiance));
+        by_probes.extend(irradiance(&bounced.probes[i].seen.radiance));
+    }
+    let (error, error_by_probes) = (off(&found, &wanted), off(&by_probes, &wanted));
+    assert!(error < 0.02, "{error}");
+    assert!(error_by_probes > 2.0 * error, "bounces by three probes are off by {error_by_probes}");
+}
+
+#[test]
+fn economy_asks_for_no_more_shadows_than_thorough_pictures_and_errs_little() {
+    let area = shade::Light::Rect {
+        corner: dvec3(0.4, 1.4, -0.6),
+        edge_u: dvec3(0.8, 0.0, 0.0),
+        edge_v: dvec3(0.0, 0.0, 0.8),
+        radiance: Vec3::splat(10.0),
+        samples: None,
+        falloff: shade::Falloff::InverseSquare,
+    };
+    for light in [bulb(), area] {
+        let scene = lamp_room(light);
+        let prepared = Prepared::new(&scene, &()).unwrap();
+        let look = |thorough: bool| {
+            let counts = Counts::default();
+            let options = options(0).with_resolution(48).with_thorough(thorough);
+            let places = [dvec3(1.2, 0.3, 1.1)];
+            let bake = bake_probes(&prepared, &Solids::new(&prepared), &places, &options, &counts).unwrap();
+            (irradiance(&bake.probes[0].seen.radiance), counts.0.into_inner())
+        };
+        let ((quick, asked), (all, asked_by_all)) = (look(false), look(true));
+        assert!(asked > 0 && asked <= asked_by_all, "{asked} {asked_by_all}");
+        assert!(off(&quick, &all) < 2e-4, "{}", off(&quick, &all));
+    }
+}
+
+/// Shadows that were asked for.
+#[derive(Default)]
+struct Counts(std::sync::atomic::AtomicU64);
+
+impl pointillist_render::Monitor for Counts {
+    fn count(&self, what: &'static str, n: u64) {
+        if ["shadow_receivers", "area_light_points"].contains(&what) {
+            self.0.fetch_add(n, std::sync::atomic::Ordering::Relaxed);
+        }
+    }
+}
+
+#[test]
+fn a_range_of_distances_tells_the_sky_the_room_and_what_is_in_it_apart() {
+    // A glowing cube of 4 around a dark one of 1 about the probe, under a sky of 3.
+    let mut scene = glowing_room();
+    scene.image.background = Vec3::splat(3.0);
+    let dark = scene.add_material(Material::new("dark", shade::Material::lambert(Vec3::ZERO)));
+    let (positions, triangles) = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5), true);
+    scene.mesh.add(&Part::new("shell", &positions, &triangles).with_material(dark)).unwrap();
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    let solids = Solids::new(&prepared);
+    let mean = |near: f64, far: f64| {
+        let options = options(0).with_depths(DepthRange { near, far }).with_keep_buried(true);
+        let bake = bake_probes(&prepared, &solids, &[DVec3::ZERO], &options, &()).unwrap();
+        let seen = &bake.probes[0].seen;
+        (seen.radiance.mean().x, seen.sky.mean())
+    };
+    let close = |(a, b): (f64, f64), (c, d): (f64, f64)| (a - c).abs() < 1e-4 && (b - d).abs() < 1e-4;
+    let all = mean(0.0, f64::INFINITY);
+    assert!(close(all, (0.0, 0.0)), "the shell hides all: {all:?}");
+    let room = mean(0.6, f64::INFINITY);
+    assert!(close(room, (1.0, 0.0)), "without the shell the room glows: {room:?}");
+    let sky = mean(2.1, f64::INFINITY);
+    assert!(close(sky, (3.0, 1.0)), "without the room there is the sky: {sky:?}");
+    assert!(close(mean(0.0, 0.4), (3.0, 1.0)), "nothing is as near as that");
+    assert!(close(mean(0.0, 1.0), (0.0, 0.0)) && close(mean(0.6, 2.1), (1.0, 0.0)));
+    for (near, far) in [(1.0, 1.0), (2.0, 1.0), (-1.0, 1.0), (f64::NAN, 1.0), (0.0, f64::NAN)] {
+        let options = options(0).with_depths(DepthRange { near, far });
+        assert!(bake_probes(&prepared, &solids, &[DVec3::ZERO], &options, &()).is_err(), "{near} {far}");
+    }
+}
+
+#[test]
+fn a_wall_that_the_range_cuts_is_seen_as_far_as_it_is_within() {
+    // A glowing plane at z = −1 that reaches far: of the face towards it all is nearer than 2; of each neighbouring face, depths from 2 on are
+    // left: a half space from slope 1/2 on.
+    let mut scene = Scene::new(Camera::perspective(DVec3::Z, DVec3::ZERO, 1.0), [8, 8]);
+    let mut surface = shade::Material::lambert(Vec3::ZERO);
+    surface.emission = Vec3::ONE;
+    scene.add_material(Material::new("wall", surface));
+    let corners = [(-1e4, -1e4), (1e4, -1e4), (1e4, 1e4), (-1e4, 1e4)].map(|(x, y)| dvec3(x, y, -1.0));
+    scene.mesh.add(&Part::new("wall", &corners, &[[0, 1, 2], [0, 2, 3]])).unwrap();
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    let open = |near: f64, far: f64| {
+        let options =
+            CaptureOptions { resolution: 64, depths: DepthRange { near, far }, ..CaptureOptions::DEFAULT };
+        let capture = prepared.capture(DVec3::ZERO, options, prepared.ambient(), &()).unwrap();
+        let face = |f: usize| capture.sky[f * 64 * 64..][..64 * 64].iter().sum::<f32>() / (64.0 * 64.0);
+        (face(5), face(0))
+    };
+    let (towards, beside) = open(0.0, f64::INFINITY);
+    assert!(towards < 1e-5 && (beside - 0.5).abs() < 1e-4, "{towards} {beside}");
+    let (towards, beside) = open(2.0, f64::INFINITY);
+    assert!((towards - 1.0).abs() < 1e-5 && (beside - 0.75).abs() < 1e-4, "{towards} {beside}");
+    let (towards, beside) = open(0.0, 2.0);
+    assert!(towards < 1e-5 && (beside - 0.75).abs() < 1e-4, "{towards} {beside}");
 }

@@ -124,6 +124,14 @@ pub enum ShError {
         /// The first sample that is wrong or missing.
         index: usize,
     },
+    /// Pictures of one scene that have different numbers of pixels.
+    #[error("a picture of {count} pixels among pictures of {expected}")]
+    BracketSize {
+        /// How many it has.
+        count: usize,
+        /// How many the first has.
+        expected: usize,
+    },
     /// An exposure out of its range.
     #[error("an exposure of {exposure_ev} EV is not from −64 to 64")]
     Exposure {

@@ -15,9 +15,9 @@
 //! ```
 
 use crate::{
-    Channel, CubeMap, CubePoint, CubeProjector, IrradianceMatrix, Lobe, MAX_ORDER, Panorama,
-    PanoramaProjector, Product, Sh, SphereQuadrature, Weights, basis, coefficient_count, cube_direction,
-    cube_point, gauss_legendre, texel_solid_angle,
+    Brackets, Channel, CubeMap, CubePoint, CubeProjector, IrradianceMatrix, Lobe, MAX_ORDER, Panorama,
+    PanoramaProjector, Product, Response, Sh, SphereQuadrature, Weights, basis, coefficient_count,
+    cube_direction, cube_point, gauss_legendre, texel_solid_angle,
 };
 use glam::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -268,4 +268,40 @@ pub fn reconstruction_error(sh: &Sh, size: usize, weights: Weights) -> Result<f6
     let cube = CubeMap::from_fn(size, |direction| sh.at(direction)).map_err(text)?;
     let back = CubeProjector::new(size, sh.order(), weights).and_then(|p| p.project(&cube)).map_err(text)?;
     Ok(difference(sh, &back))
+}
+
+/// Photographs of one scene at several exposures, merged: each channel is at least the least and at most the largest radiance that any of
+/// them stands for there, whichever of them comes first.
+///
+/// # Errors
+/// The first channel that is outside.
+pub fn brackets_stay_within(photographs: &[(Vec<[u8; 3]>, f32)]) -> Result<(), String> {
+    let response = Response::srgb();
+    let (mut merged, mut turned) = (Brackets::new(), Brackets::new());
+    let mut bounds = vec![];
+    for (pixels, exposure) in photographs {
+        if merged.add_photograph(pixels, &response, *exposure).is_err() {
+            return Ok(());
+        }
+        bounds.resize(pixels.len(), [(f32::INFINITY, f32::NEG_INFINITY); 3]);
+        for (bounds, pixel) in bounds.iter_mut().zip(pixels) {
+            for (bound, &level) in bounds.iter_mut().zip(pixel) {
+                let radiance = response.radiance(level, *exposure);
+                *bound = (bound.0.min(radiance), bound.1.max(radiance));
+            }
+        }
+    }
+    for (pixels, exposure) in photographs.iter().rev() {
+        turned.add_photograph(pixels, &response, *exposure).map_err(|e| e.to_string())?;
+    }
+    let ((merged, _), (turned, _)) = (merged.merged(), turned.merged());
+    let all = merged.iter().flatten().zip(turned.iter().flatten()).zip(bounds.iter().flatten());
+    for (i, ((&value, &other), &(least, most))) in all.enumerate() {
+        let slack = 1e-6 * most.abs();
+        check(value >= least - slack && value <= most + slack, || {
+            format!("channel {i} is {value}, not {least} to {most}")
+        })?;
+        check((value - other).abs() <= slack, || format!("channel {i} is {value}, or {other} by order"))?;
+    }
+    Ok(())
 }

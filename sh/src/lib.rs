@@ -20,7 +20,7 @@
 //! [`MAX_ORDER`]. Coefficients are those of radiance, L_lm = ∫ L·Y_lm dω.
 //!
 //! * Images: [`CubeMap`] and [`Panorama`], projected by [`CubeProjector`] and [`PanoramaProjector`]; [`Response`]
-//!   inverts the response of a camera. [`Weights`] are the quadrature weights of texels.
+//!   inverts the response of a camera, [`Brackets`] join exposures. [`Weights`] are the quadrature weights of texels.
 //! * [`Sh`]: coefficients, of colors or of one number (visibility); evaluated, blended, turned ([`Rotation`]),
 //!   multiplied ([`Product`]).
 //! * Use: [`Sh::irradiance`] for any order, [`IrradianceMatrix`] and [`Irradiance`] to evaluate it quickly, [`Lobe`]
@@ -55,6 +55,7 @@
 #![forbid(unsafe_code)]
 
 mod basis;
+mod brackets;
 mod channel;
 mod clipping;
 mod coefficients;
@@ -88,6 +89,7 @@ mod weights;
 mod window;
 
 pub use basis::{MAX_COUNT, MAX_ORDER, basis, basis_l2, coefficient_count, coefficient_index};
+pub use brackets::Brackets;
 pub use channel::Channel;
 pub use clipping::Clipping;
 pub use coefficients::Sh;

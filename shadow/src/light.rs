@@ -15,8 +15,8 @@ use crate::{copies, exact, layers};
 use glam::{DVec2, DVec3};
 use pointillist_dice::{ConvexPolygon, clip_ring, share_before_crossing};
 use pointillist_micropoint::{
-    Bounds, Face, FaceVisitor, Geometry, GridRect, Interval, Lens, LensKind, Occlusion, ProjectedVertex,
-    Setup, SurfaceOpacity, TexturedOpacity,
+    Bounds, DepthRange, Face, FaceVisitor, Geometry, GridRect, Interval, Lens, LensKind, Occlusion,
+    ProjectedVertex, Setup, SurfaceOpacity, TexturedOpacity,
 };
 
 /// A light with its screens, ready to be asked from any thread.
@@ -199,7 +199,13 @@ impl<'a> ShadowLight<'a> {
         let (low, high) = grid.bounds();
         let all = self.options.occlusion == Occlusion::Paper;
         let farthest = if all { f64::INFINITY } else { lens.depth(grid.least_nearness) };
-        let setup = Setup { lens, rect: &self.screens.rect, hidden: &self.screens.hidden, keeps_backs: true };
+        let setup = Setup {
+            lens,
+            rect: &self.screens.rect,
+            hidden: &self.screens.hidden,
+            keeps_backs: true,
+            range: DepthRange::ALL,
+        };
         let mut linker = Linker { lens, farthest, grid, casters, linked: 0, unlinked: 0 };
         let seen = self.geometry.visit_faces(&setup, &GridRect { low, high }, farthest, visit, &mut linker);
         counts.clusters += seen.clusters;

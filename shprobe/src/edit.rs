@@ -17,6 +17,7 @@ impl Field {
         let count = coefficient_count(self.order);
         self.irradiance[index * count..][..count].copy_from_slice(&irradiance_of(radiance));
         self.lights[index] = Irradiance::new(radiance);
+        self.glossy.set(index, radiance);
         Ok(())
     }
 
@@ -51,6 +52,7 @@ impl Field {
         self.divide([&self.positions, positions].concat())?;
         self.irradiance.extend(radiance.iter().flat_map(irradiance_of));
         self.lights.extend(radiance.iter().map(Irradiance::new));
+        self.glossy.extend(radiance);
         if let Some(maps) = &mut self.distances {
             maps.extend(distances);
         }
@@ -77,6 +79,7 @@ impl Field {
         self.irradiance =
             left.iter().flat_map(|i| &self.irradiance[of(i) * count..][..count]).copied().collect();
         self.lights = left.iter().map(|i| self.lights[of(i)]).collect();
+        self.glossy.keep(&left, count);
         if let Some(maps) = &mut self.distances {
             let mut kept = gone.iter().map(|gone| !gone);
             maps.retain(|_| kept.next().unwrap_or(false));
@@ -104,7 +107,7 @@ impl Field {
         self.distances.as_deref()
     }
 
-    fn index(&self, probe: u32) -> Result<usize, ProbeError> {
+    pub(crate) fn index(&self, probe: u32) -> Result<usize, ProbeError> {
         let index = probe as usize;
         if index < self.probe_count() { Ok(index) } else { Err(ProbeError::NoSuchProbe { index: probe }) }
     }

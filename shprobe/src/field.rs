@@ -1,6 +1,7 @@
 //! Light interpolated between probes.
 
 use crate::delaunay::{Delaunay, Hint, Locator, Partition};
+use crate::glossy::GlossyLight;
 use crate::sh::{Irradiance, Lobe, MAX_COUNT, Sh, basis, coefficient_count};
 use crate::sight::{Near, Shares, by_sight};
 use crate::{DistanceMap, ProbeError, parallel};
@@ -18,6 +19,8 @@ pub struct Field {
     pub(crate) order: usize,
     /// Coefficients of irradiance, probe after probe.
     pub(crate) irradiance: Vec<Vec3>,
+    /// What mirrors see.
+    pub(crate) glossy: GlossyLight,
     /// The same up to band 2, for objects.
     pub(crate) lights: Vec<Irradiance>,
     pub(crate) distances: Option<Vec<DistanceMap>>,
@@ -97,6 +100,7 @@ impl Field {
             partition,
             order,
             irradiance: radiance.iter().flat_map(irradiance_of).collect(),
+            glossy: GlossyLight::new(radiance),
             lights: radiance.iter().map(Irradiance::new).collect(),
             distances: None,
             near: Near::default(),
@@ -184,7 +188,7 @@ impl Field {
         Ok(self.weigh(position, hint)?.iter().collect())
     }
 
-    fn weigh(&self, position: DVec3, hint: &mut Hint) -> Result<Shares, ProbeError> {
+    pub(crate) fn weigh(&self, position: DVec3, hint: &mut Hint) -> Result<Shares, ProbeError> {
         let cell = self.locator.locate(position, hint)?;
         let Some(distances) = &self.distances else { return Ok(Shares::of_cell(&cell)) };
         let at = |probe: u32| self.positions[probe as usize];

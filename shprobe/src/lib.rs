@@ -58,6 +58,7 @@ mod distance;
 mod edit;
 mod error;
 mod field;
+mod glossy;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod octahedron;
@@ -69,6 +70,7 @@ use pointillist_parallel as parallel;
 pub use distance::{DEFAULT_DISTANCE_SIZE, DistanceMap};
 pub use error::ProbeError;
 pub use field::{Field, LitObject};
+pub use glossy::Glossy;
 /// The cells between probes.
 pub use pointillist_delaunay as delaunay;
 pub use pointillist_delaunay::Hint;

@@ -14,7 +14,7 @@ use crate::memory;
 use crate::mesh_io::gltf::read_gltf;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::options::InfoOptions;
-use crate::probe_io::{ProbeEntry, ProbeFile, read_probes};
+use crate::probe_io::{CaptureEntry, CaptureList, ProbeEntry, ProbeFile, read_captures, read_probes};
 use crate::scene::{self, LoadedScene, Material, Overrides, Projection};
 use glam::DVec3;
 use pointillist_shade::Model;
@@ -102,8 +102,20 @@ fn of_json(path: &Path, text: &[u8]) -> Result<Value, InputError> {
         Some(JsonKind::Probes) => Ok(of_probes(&read_probes(path)?)),
         Some(JsonKind::Radiosity) => Ok(of_radiosity(&read_baked(path)?)),
         Some(JsonKind::Harmonics) => of_harmonics(&input::name_of(path), text),
+        Some(JsonKind::Captures) => Ok(of_captures(&read_captures(path)?)),
         Some(JsonKind::Scene) | None => Ok(of_scene(&scene::load(path, &Overrides::default())?)),
     }
+}
+
+fn of_captures(list: &CaptureList) -> Value {
+    let positions: Vec<DVec3> = list.captures.iter().map(CaptureEntry::position).collect();
+    json!({
+        "kind": "captures",
+        "pictures": list.captures.len(),
+        "positions": list.brackets().len(),
+        "bounds": bounds(&positions),
+        "units": { "bounds": "as the scene", "rotate": "degrees about x, then y, then z", "exposure": "stops" },
+    })
 }
 
 fn of_radiosity(file: &BakedFile) -> Value {
@@ -156,6 +168,9 @@ fn of_probes(file: &ProbeFile) -> Value {
         "resolution": file.resolution,
         "what": file.what,
         "bounces": file.bounces,
+        "indirect": file.indirect,
+        "near": file.near,
+        "far": file.far,
         "fit": file.fit,
         "part": file.part,
         "bounds": bounds(&file.positions()),

@@ -13,8 +13,8 @@ mod values;
 pub use common::{Common, Progressive, TextOutput};
 pub use points::{PointLayerRequest, layer_list};
 pub use probe::{
-    BakeOptions, Inside, PlaceOptions, ProbeCommand, ProjectOptions, QueryOptions, Strategy, TetraOptions,
-    WeightRule, What,
+    BakeOptions, CaptureOptions, Indirect, Inside, PlaceOptions, ProbeCommand, ProjectOptions, QueryOptions,
+    Strategy, TetraOptions, WeightRule, What,
 };
 pub use radiosity::{
     FactorsOptions, FormFactorKind, LinkKind, RadiosityBakeOptions, RadiosityCommand, RadiosityOptions,

@@ -24,10 +24,28 @@ pub enum ProbeCommand {
         pointillist probe bake examples/house.toml probes.json -o baked.json\n  \
         pointillist probe bake examples/house.toml probes.json --bounces 3 --resolution 64 -o baked.probes\n  \
         pointillist probe bake examples/house.toml probes.json --fit 200 --resolution 32 -o fitted.json\n  \
+        pointillist probe bake examples/house.toml probes.json --indirect solve -o baked.json\n  \
+        pointillist radiosity examples/house.toml -o light.json\n  \
+        pointillist probe bake examples/house.toml probes.json --indirect light.json -o baked.json\n  \
+        pointillist probe bake examples/house.toml probes.json --near 0.3 --far 20 -o baked.json\n  \
         pointillist probe bake examples/house.toml probes.json --bounces 0 --part 0/4 -o part0.json\n\n\
         Then draw with it:\n  \
         pointillist render examples/house.toml --set ambient.probes=baked.json -o lit.png")]
     Bake(BakeOptions),
+    /// Turn panoramas that were taken at positions into probes
+    ///
+    /// LIST is JSON: {"captures":[{"image":"hall.hdr","position":[0,1.6,0],"rotate":[0,90,0],"exposure":0}, …]}. Images are named
+    /// relative to the list: equirectangular (row 0 is the zenith, the centre looks along −Z) or a strip of a cube's faces. `rotate`
+    /// turns a picture into the world, in degrees about x, then y, then z. `exposure` (default 0) is the stops by which a picture is
+    /// to be brightened, as --exposure of `probe project`: of several of one position, the darkest has the highest. Those are
+    /// brackets: they are merged, weighted by the light that each collected, without clipped pixels.
+    #[command(after_help = "Examples:\n  \
+        echo '{\"captures\":[{\"image\":\"examples/sky.png\",\"position\":[0,1.6,0],\"rotate\":[0,90,0]}]}' > list.json\n  \
+        pointillist probe capture list.json -o photographed.json\n  \
+        pointillist probe capture list.json --order 4 --response gamma=2.2 -o photographed.probes\n\n\
+        Then draw with it:\n  \
+        pointillist render examples/house.toml --set ambient.probes=photographed.json -o lit.png")]
+    Capture(CaptureOptions),
     /// Turn an environment map into spherical harmonics
     #[command(after_help = "Examples:\n  \
         pointillist probe project examples/sky.png\n  \
@@ -46,7 +64,8 @@ pub enum ProbeCommand {
     #[command(after_help = "Examples:\n  \
         pointillist probe place examples/house.toml --grid 6x3x4 -o probes.json\n  \
         pointillist probe bake examples/house.toml probes.json -o baked.json\n  \
-        echo '-2 1 0  0 1 0' | pointillist probe query baked.json -")]
+        echo '-2 1 0  0 1 0' | pointillist probe query baked.json -\n  \
+        echo '-2 1 0  0 1 0' | pointillist probe query baked.json - --sky")]
     Query(QueryOptions),
 }
 
@@ -132,9 +151,13 @@ pub struct BakeOptions {
     /// Highest band of the harmonics
     #[arg(long, value_name = "L", default_value_t = 2, value_parser = values::whole::<u8>(0..=sh::MAX_ORDER as u8))]
     pub order: u8,
-    /// Bounces of light between surfaces: in each, surfaces are lit by the probes of the bounce before
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::whole::<u32>(0..=64))]
-    pub bounces: u32,
+    /// Bounces of light between surfaces: in each, surfaces are lit by the probes of the bounce before [default: 1; 0 with --indirect]
+    #[arg(long, value_name = "N", value_parser = values::whole::<u32>(0..=64))]
+    pub bounces: Option<u32>,
+    /// Light surfaces by a radiosity solution of the same scene in the place of bounces: a file that `radiosity` baked, or `solve`
+    /// to have the scene solved on the way. Holds all bounces, and more exactly than probes light surfaces
+    #[arg(long, value_name = "FILE|solve")]
+    pub indirect: Option<Indirect>,
     /// Stop before the last bounce when one changes the light by less than this fraction
     #[arg(long, value_name = "E", default_value_t = 0.005, value_parser = values::not_negative)]
     pub until: f64,
@@ -152,14 +175,21 @@ pub struct BakeOptions {
     #[arg(long)]
     pub dering: bool,
     /// Compute every shadow and texel within a pixel, and capture with all pixels throughout. Otherwise shadows and texels are
-    /// computed as finely as the sum over a capture needs, and captures before the last bounce, and those of --fit, have at most 32
-    /// pixels on a side
+    /// computed as finely as the sum over a capture needs, bounced light is captured with half of the pixels on a side, and captures
+    /// before the last bounce, and those of --fit, have at most 32
     #[arg(long)]
     pub thorough: bool,
+    /// See only surfaces that are at least this far away: objects at the probe itself are left out, and what is behind them is seen.
+    /// Distances are along the axes: what is left out is a cube around the probe. What is not seen still casts shadows
+    #[arg(long, value_name = "D", default_value_t = 0.0, value_parser = values::not_negative)]
+    pub near: f64,
+    /// See only surfaces that are at most this far away, along the axes as with --near, and the background in the place of those beyond
+    #[arg(long, value_name = "D", value_parser = values::positive)]
+    pub far: Option<f64>,
     /// What to do with a probe inside a solid
     #[arg(long, value_name = "WHAT", default_value = "move")]
     pub inside: Inside,
-    /// Bake a part of the probes, from 0; `merge` joins parts. Needs `--bounces 0`
+    /// Bake a part of the probes, from 0; `merge` joins parts. Needs `--bounces 0` or `--indirect`
     #[arg(long, value_name = "I/N")]
     pub part: Option<Tile>,
     /// Bake every probe, whatever the output holds already
@@ -174,6 +204,31 @@ pub struct BakeOptions {
     /// What every command has.
     #[command(flatten)]
     pub common: Common,
+}
+
+impl BakeOptions {
+    /// Bounces between probes.
+    #[must_use]
+    pub fn bounces(&self) -> u32 {
+        self.bounces.unwrap_or(u32::from(self.indirect.is_none()))
+    }
+}
+
+/// `--indirect`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Indirect {
+    /// Solve for it.
+    Solve,
+    /// Read it.
+    File(PathBuf),
+}
+
+impl std::str::FromStr for Indirect {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(if text == "solve" { Self::Solve } else { Self::File(text.into()) })
+    }
 }
 
 /// `--what`.
@@ -194,6 +249,31 @@ impl What {
             Self::Indirect => "indirect",
         }
     }
+}
+
+/// `probe capture`.
+#[derive(Debug, clap::Args)]
+pub struct CaptureOptions {
+    /// The list of panoramas (JSON), or `-` for standard input
+    pub list: PathBuf,
+    /// Highest band of the harmonics
+    #[arg(long, value_name = "L", default_value_t = 2, value_parser = values::whole::<u8>(0..=sh::MAX_ORDER as u8))]
+    pub order: u8,
+    /// How much each texel counts
+    #[arg(long, value_name = "RULE", default_value = "gregory")]
+    pub weights: WeightRule,
+    /// How a photograph's 8-bit values follow the light: srgb, linear, gamma=2.2, or a file with the radiance of each of the 256 levels
+    #[arg(long, value_name = "CURVE", default_value = "srgb", value_parser = values::response)]
+    pub response: values::ResponseCurve,
+    /// Damp the harmonics so that irradiance is nowhere below 0
+    #[arg(long)]
+    pub dering: bool,
+    /// The probes: .json, .probes (binary), or `-` for standard output
+    #[arg(short, long, value_name = "PATH", default_value = "probes.json")]
+    pub output: PathBuf,
+    /// What every command has.
+    #[command(flatten)]
+    pub common: Common,
 }
 
 /// `probe project`.
@@ -282,6 +362,9 @@ pub struct QueryOptions {
     /// After each irradiance, which probes it comes from: `number:share`, the largest share first
     #[arg(long)]
     pub shares: bool,
+    /// After each irradiance, the share of an even sky's light that arrives: 1 in the open, 0 where no sky is seen (ambient occlusion)
+    #[arg(long)]
+    pub sky: bool,
     /// Where results go.
     #[command(flatten)]
     pub output: TextOutput,

@@ -60,6 +60,14 @@ impl ProbeEntry {
         let Some(sh) = &self.sh else { return Err("is missing: the probe is not baked".to_owned()) };
         Sh::new(sh.iter().map(|&c| DVec3::from_array(c)).collect()).map_err(|error| error.to_string())
     }
+
+    /// The share of sky, if it is known.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn sky_share(&self) -> Result<Option<Sh<f64>>, String> {
+        self.sky.as_ref().map(|sky| Sh::new(sky.clone()).map_err(|error| error.to_string())).transpose()
+    }
 }
 
 impl Distances {

@@ -30,6 +30,15 @@ pub struct ProbeFile {
     /// How often light was sent on from surface to surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bounces: Option<u32>,
+    /// What surfaces were lit by in the place of bounces: a hash of a file of radiosity, or `solve`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub indirect: Option<String>,
+    /// How near surfaces were seen, if not all were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub near: Option<f64>,
+    /// How far surfaces were seen, if not all were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub far: Option<f64>,
     /// Whether probes inside of walls light like others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<bool>,
@@ -94,6 +103,17 @@ impl ProbeFile {
         self.lit().map(one).collect()
     }
 
+    /// How much of the sky they see, if all of them say so.
+    fn sky(&self) -> Result<Option<Vec<Sh<f64>>>, (String, String)> {
+        let mut shares = Vec::with_capacity(self.probes.len());
+        for (i, probe) in self.lit() {
+            let share = probe.sky_share().map_err(|message| (format!("probes[{i}].sky"), message))?;
+            let Some(share) = share else { return Ok(None) };
+            shares.push(share);
+        }
+        Ok(Some(shares))
+    }
+
     /// How far they see, if all of them say so.
     fn distances(&self) -> Result<Option<Vec<DistanceMap>>, (String, String)> {
         let mut maps = Vec::with_capacity(self.probes.len());
@@ -120,6 +140,12 @@ impl ProbeFile {
         let positions: Vec<DVec3> = self.lit().map(|(_, p)| DVec3::from_array(p.position)).collect();
         let field = Field::new(&positions, &self.radiance().map_err(of_field)?)
             .map_err(|error| refused(name, &error))?;
+        let field = match self.sky().map_err(of_field)? {
+            Some(sky) => field.with_sky(&sky).map_err(|error| {
+                InputError::of_file(name, format!("`sky`: {error}")).with_help("bake it again")
+            })?,
+            None => field,
+        };
         match self.distances().map_err(of_field)? {
             Some(maps) => field.with_distances(maps).map_err(|error| refused(name, &error)),
             None => Ok(field),
@@ -210,6 +236,9 @@ impl ProbeFile {
             resolution: self.resolution,
             what: self.what.clone(),
             bounces: self.bounces,
+            indirect: self.indirect.clone(),
+            near: self.near,
+            far: self.far,
             fit: self.fit,
             keep: self.keep,
             fingerprint: self.fingerprint.clone(),

@@ -72,7 +72,8 @@ fn radiance(seen: &[Seen]) -> Vec<Sh> {
 }
 
 fn look(prepared: &Prepared<'_>, at: &[DVec3], ambient: Ambient<'_>) -> Result<Vec<Seen>, Fault> {
-    let capture = CaptureOptions { resolution: RESOLUTION, emission: true, lights: true, thorough: true };
+    let capture =
+        CaptureOptions { resolution: RESOLUTION, emission: true, thorough: true, ..CaptureOptions::DEFAULT };
     let options = LookOptions { capture, order: 2, distances: 0 };
     Ok(look_all(prepared, at, options, ambient, &())?)
 }

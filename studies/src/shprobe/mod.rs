@@ -1,5 +1,6 @@
 //! `shprobe`: light probes: projection, tetrahedra, placement, pictures.
 
+mod bounces;
 mod canvas;
 mod delaunay;
 mod layouts;

@@ -233,7 +233,7 @@ impl<'a> Ground<'a> {
         if self.site.eye == Eye::Rays {
             return Ok(look_by_rays(&self.site.scene, &self.tree, p, resolution));
         }
-        let options = CaptureOptions { resolution, emission: false, lights: true, thorough };
+        let options = CaptureOptions { resolution, thorough, ..CaptureOptions::DEFAULT };
         Ok(self.prepared.capture(p, options, Ambient::Color(Vec3::ZERO), &())?.into())
     }
 

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use crate::common::data;
 use crate::common::report::{Limit, Outcome, Row, chart_along, chart_of, machine, verdict, write, write_csv};
+use crate::shprobe::bounces;
 use crate::shprobe::delaunay;
 use crate::shprobe::layouts::{ADAPTIVE, FITTED, GRID, HEAD, Layout, Survey, TRILINEAR, line};
 use crate::shprobe::maps;
@@ -53,7 +54,11 @@ pub(crate) fn run_with(out_dir: &Path, arguments: &[&str]) -> Outcome {
             print!("{text}");
             true
         }),
-        _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe pictures DIR".into()),
+        ["bounces"] => bounces::measure(false).map(|found| {
+            print!("{}", found.text);
+            true
+        }),
+        _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe bounces, or shprobe pictures DIR".into()),
     }
 }
 
@@ -96,6 +101,7 @@ fn measure(wish: &Wish, out_dir: &Path) -> Outcome {
     projection(&mut report, wish, out_dir)?;
     maps(&mut report, wish)?;
     points(&mut report, wish)?;
+    bounced(&mut report, wish)?;
     placement(&mut report, wish, out_dir)?;
     if let Some(folder) = &wish.pictures {
         report.section("Moving through Sponza", &pictures::all(folder)?);
@@ -187,6 +193,15 @@ fn points(report: &mut Report, wish: &Wish) -> Result<(), Fault> {
     let [objects, goals] = objects::table()?;
     report.goals += &goals;
     report.section("Lighting", &objects);
+    Ok(())
+}
+
+fn bounced(report: &mut Report, wish: &Wish) -> Result<(), Fault> {
+    let found = bounces::measure(wish.quick)?;
+    let what = "two rooms: a probe at each position, all bounces by radiosity, error";
+    report.goal(what, Limit::AtMost(bounces::LIMIT), found.error);
+    report.goal("one probe at 128², default in thorough, CPU", Limit::AtMost(1.0), found.time);
+    report.section("Bounces", &found.text);
     Ok(())
 }
 

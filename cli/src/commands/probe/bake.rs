@@ -1,5 +1,6 @@
 //! `probe bake`.
 
+use super::indirect::{self, KnownLight};
 use super::inside::{self, Outcome};
 use super::{check_output, failed, overrides, write};
 use crate::commands::Report;
@@ -7,11 +8,12 @@ use crate::commands::report::name_of_output;
 use crate::error::CliError;
 use crate::job::Watch;
 use crate::memory;
-use crate::options::{BakeOptions, Inside, What};
+use crate::options::{BakeOptions, Indirect, Inside, What};
 use crate::probe_io::{Distances, ProbeEntry, ProbeFile, read_probes};
 use crate::scene::{self, Scene};
 use glam::DVec3;
-use pointillist_render::{BakedProbe, Prepared, ProbeBake, Solids, bake_probes, fingerprint, fingerprints};
+use pointillist_render::{BakedProbe, CaptureOptions, DepthRange, Prepared, ProbeBake, Solids};
+use pointillist_render::{bake_probes_in, fingerprint, fingerprints};
 use std::collections::HashMap;
 use std::hash::Hasher as _;
 use std::ops::Range;
@@ -19,29 +21,32 @@ use std::path::Path;
 use twox_hash::XxHash3_64;
 
 pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
+    let indirect = match &options.indirect {
+        Some(Indirect::File(path)) => Some(path),
+        _ => None,
+    };
     let report = Report::new(&options.common)?
-        .reading([&options.scene, &options.probes])?
+        .reading([&options.scene, &options.probes].into_iter().chain(indirect))?
         .writing([&options.output])?;
     check_output(&options.output)?;
-    if options.part.is_some() && options.bounces > 0 {
-        let message = "--part needs --bounces 0: a bounce needs the light of all probes; \
-                       for one more bounce, bake again with [ambient] probes naming the merged file";
-        return Err(CliError::Usage(message.to_owned()));
-    }
-    if options.part.is_some() && options.fit > 0 {
-        let message = "--part and --fit do not go together: probes are fitted to one another, too";
-        return Err(CliError::Usage(message.to_owned()));
-    }
-    let loaded = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
+    check(options)?;
+    // Light between surfaces that `--indirect` brings takes the place of what the scene names.
+    let load = if options.indirect.is_some() { scene::load_to_bake } else { scene::load };
+    let loaded = report.stats.stage("load", || load(&options.scene, &overrides(&options.set)))?;
     loaded.warnings.iter().for_each(|warning| report.warn(warning));
     let scene = loaded.scene;
     let given = report.stats.stage("load", || read_probes(&options.probes))?;
     check_memory(given.probes.len(), options)?;
     let prepared = Prepared::new(&scene, &report.stats).map_err(failed)?;
     let solids = Solids::new(&prepared);
-    let (mut file, positions) = settled(&given, &solids, &scene, options, &report)?;
+    let (mut file, positions) = settled(&given, &solids, options, &report)?;
+    let known = indirect::known_light(options, &scene, &report)?;
+    file.indirect = known.as_ref().map(|known| known.name.clone());
+    let known = known.as_ref();
+    let mark = fingerprint(&scene, options, known);
+    file.fingerprint = Some(mark.clone());
     let bake =
-        Bake { prepared: &prepared, solids: &solids, scene: &scene, options, report: &report, positions };
+        Bake { prepared: &prepared, solids: &solids, known, mark, options, report: &report, positions };
     let old = if options.overwrite { None } else { Old::read(&options.output, options) };
     let (kept, marks) = bake.unchanged(old.as_ref())?;
     bake.fill(&mut file, old.as_ref(), &kept, &marks)?;
@@ -54,6 +59,23 @@ pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
         file.probes.len()
     ));
     report.finish()
+}
+
+/// Refuses options that do not go together.
+fn check(options: &BakeOptions) -> Result<(), CliError> {
+    let message = if options.indirect.is_some() && options.bounces() > 0 {
+        "--indirect holds all bounces: leave --bounces out"
+    } else if options.part.is_some() && options.bounces() > 0 {
+        "--part needs --bounces 0: a bounce needs the light of all probes; \
+         for one more bounce, bake again with [ambient] probes naming the merged file"
+    } else if options.part.is_some() && options.fit > 0 {
+        "--part and --fit do not go together: probes are fitted to one another, too"
+    } else if options.far.is_some_and(|far| far <= options.near) {
+        "--far must be farther away than --near"
+    } else {
+        return Ok(());
+    };
+    Err(CliError::Usage(message.to_owned()))
 }
 
 /// Refuses more harmonics and distances than memory can hold.
@@ -83,7 +105,7 @@ impl Old {
         let file = read_probes(path).ok()?;
         let same = file.order == Some(options.order.into())
             && file.resolution == Some(options.resolution)
-            && file.bounces == Some(options.bounces)
+            && file.bounces == Some(options.bounces())
             && file.fit.unwrap_or(0) == options.fit
             && file.what.as_deref() == Some(options.what.name());
         let baked = |(i, p): (usize, &ProbeEntry)| p.sh.is_some().then(|| (bits(p.position), i));
@@ -102,7 +124,6 @@ impl Old {
 fn settled(
     given: &ProbeFile,
     solids: &Solids<'_>,
-    scene: &Scene,
     options: &BakeOptions,
     report: &Report<'_>,
 ) -> Result<(ProbeFile, Vec<DVec3>), CliError> {
@@ -111,10 +132,13 @@ fn settled(
         order: Some(options.order.into()),
         resolution: Some(options.resolution),
         what: Some(options.what.name().to_owned()),
-        bounces: Some(options.bounces),
+        bounces: Some(options.bounces()),
+        indirect: None,
+        near: (options.near > 0.0).then_some(options.near),
+        far: options.far,
         fit: (options.fit > 0).then_some(options.fit),
         keep: (options.inside == Inside::Keep).then_some(true),
-        fingerprint: Some(format!("{:016x}", fingerprint(scene, options))),
+        fingerprint: None,
         part: options.part.map(|part| part.to_string()),
         first: options.part.map(|_| range.start),
         total: options.part.map(|_| given.probes.len()),
@@ -156,19 +180,26 @@ fn part(count: usize, options: &BakeOptions) -> Result<Range<usize>, CliError> {
     Ok(count * part.first as usize / parts..count * (part.last as usize + 1) / parts)
 }
 
-/// Stands for the scene and the settings.
-fn fingerprint(scene: &Scene, options: &BakeOptions) -> u64 {
+/// Stands for the scene, the settings and light that is known already.
+fn fingerprint(scene: &Scene, options: &BakeOptions, known: Option<&KnownLight>) -> String {
     let mut hash = XxHash3_64::default();
     hash.write(&fingerprint::of_light(scene).to_le_bytes());
     let numbers =
-        [options.resolution, options.bounces, options.fit, options.distances, u32::from(options.order)];
+        [options.resolution, options.bounces(), options.fit, options.distances, u32::from(options.order)];
     numbers.iter().for_each(|n| hash.write(&n.to_le_bytes()));
-    hash.write(&options.until.to_le_bytes());
+    let lengths = [options.until, options.near, options.far.unwrap_or(f64::INFINITY)];
+    lengths.iter().for_each(|n| hash.write(&n.to_le_bytes()));
+    hash.write(known.map_or("", |known| &known.name).as_bytes());
     let keep = options.inside == Inside::Keep;
     hash.write(&[options.thorough, options.dering, keep].map(u8::from));
     hash.write(options.what.name().as_bytes());
     hash.write(env!("CARGO_PKG_VERSION").as_bytes());
-    hash.finish()
+    format!("{:016x}", hash.finish())
+}
+
+/// Where surfaces are seen.
+fn depths(options: &BakeOptions) -> DepthRange {
+    DepthRange { near: options.near, far: options.far.unwrap_or(f64::INFINITY) }
 }
 
 /// What the renderer is asked for.
@@ -177,20 +208,23 @@ fn look_options(options: &BakeOptions) -> pointillist_render::BakeOptions {
         .with_resolution(options.resolution)
         .with_order(options.order.into())
         .with_distances(options.distances as usize)
-        .with_bounces(options.bounces)
+        .with_bounces(options.bounces())
         .with_until(options.until)
         .with_fit(options.fit as usize)
         .with_emission(options.what == What::Total)
         .with_thorough(options.thorough)
         .with_dering(options.dering)
         .with_keep_buried(options.inside == Inside::Keep)
+        .with_depths(depths(options))
 }
 
 /// One run.
 struct Bake<'a> {
     prepared: &'a Prepared<'a>,
     solids: &'a Solids<'a>,
-    scene: &'a Scene,
+    known: Option<&'a KnownLight>,
+    /// Stands for the scene and the settings.
+    mark: String,
     options: &'a BakeOptions,
     report: &'a Report<'a>,
     positions: Vec<DVec3>,
@@ -204,11 +238,10 @@ impl Bake<'_> {
     /// counts, too.
     fn unchanged(&self, old: Option<&Old>) -> Result<(Vec<bool>, Vec<String>), CliError> {
         let Self { options, report, positions, .. } = self;
-        let same = format!("{:016x}", fingerprint(self.scene, options));
         let before = |i: usize| old.and_then(|old| old.at(positions[i]));
         let fresh = (0..positions.len()).filter(|&i| before(i).is_none());
-        if old.is_some_and(|old| old.file.fingerprint.as_ref() == Some(&same))
-            && (options.bounces + options.fit == 0 || fresh.clone().next().is_none())
+        if old.is_some_and(|old| old.file.fingerprint.as_ref() == Some(&self.mark))
+            && (options.bounces() + options.fit == 0 || fresh.clone().next().is_none())
         {
             let marks = |i: usize| before(i).and_then(|p| p.fingerprint.clone());
             let mut marks: Vec<Option<String>> = (0..positions.len()).map(marks).collect();
@@ -226,17 +259,21 @@ impl Bake<'_> {
         };
         let mut kept: Vec<bool> = (0..positions.len()).map(same).collect();
         let as_many = old.is_some_and(|old| old.file.probes.len() == positions.len());
-        if options.bounces > 0 && !(as_many && kept.iter().all(|&k| k)) {
+        if options.bounces() > 0 && !(as_many && kept.iter().all(|&k| k)) {
             kept.fill(false);
         }
         Ok((kept, marks))
     }
 
     fn marks(&self, positions: &[DVec3]) -> Result<Vec<String>, CliError> {
-        let ambient = self.prepared.ambient();
-        let emission = self.options.what == What::Total;
+        let ambient = indirect::ambient(self.prepared, self.known);
+        let capture = CaptureOptions {
+            emission: self.options.what == What::Total,
+            depths: depths(self.options),
+            ..CaptureOptions::DEFAULT
+        };
         let numbers =
-            fingerprints(self.prepared, positions, emission, ambient, &self.report.stats).map_err(failed)?;
+            fingerprints(self.prepared, positions, capture, ambient, &self.report.stats).map_err(failed)?;
         // With settings that change what is made of the same sight.
         let settings =
             [self.options.distances, u32::from(self.options.thorough) + 2 * u32::from(self.options.dering)];
@@ -247,7 +284,8 @@ impl Bake<'_> {
         let Self { options, report, .. } = self;
         let progress = report.progress();
         let watch = Watch { task: "bake", progress: &progress, stats: &report.stats };
-        let baked = bake_probes(self.prepared, self.solids, at, &look_options(options), &watch);
+        let ambient = indirect::ambient(self.prepared, self.known);
+        let baked = bake_probes_in(self.prepared, self.solids, at, ambient, &look_options(options), &watch);
         let ProbeBake { probes, changes } = baked.map_err(failed)?;
         for (change, bounce) in changes.iter().zip(1..) {
             report.detail(&format!("bounce {bounce}: light changed by {:.2} %", change * 100.0));

@@ -1,8 +1,11 @@
 //! `probe` and its commands.
 
 mod bake;
+mod capture;
+mod indirect;
 mod inside;
 mod merge;
+mod photographs;
 mod place;
 mod project;
 mod query;
@@ -24,6 +27,7 @@ pub(super) fn run(command: &ProbeCommand) -> Result<(), CliError> {
     match command {
         ProbeCommand::Place(options) => place::run(options),
         ProbeCommand::Bake(options) => bake::run(options),
+        ProbeCommand::Capture(options) => capture::run(options),
         ProbeCommand::Project(options) => project::run(options),
         ProbeCommand::Tetra(options) => tetra::run(options),
         ProbeCommand::Query(options) => query::run(options),

@@ -4,6 +4,7 @@ use crate::commands::Report;
 use crate::commands::report::write_text;
 use crate::error::CliError;
 use crate::input::name_of;
+use crate::input_error::InputError;
 use crate::options::QueryOptions;
 use crate::probe_io::{read_probes, read_rows};
 use glam::{DVec3, Vec3};
@@ -23,11 +24,13 @@ pub(super) fn run(options: &QueryOptions) -> Result<(), CliError> {
     let light = light.map_err(broken)?;
     let shares =
         if options.shares { shares(&field, &queries, &file.lit_numbers()).map_err(broken)? } else { vec![] };
+    let sky = if options.sky { sky(&field, &queries, &name)? } else { vec![] };
     report.stats.count("queries", light.len() as u64);
     write_text(&options.output.path, |output| {
         light.iter().enumerate().try_for_each(|(i, c)| {
             let shares = shares.get(i).map_or("", String::as_str);
-            writeln!(output, "{} {} {}{shares}", c.x, c.y, c.z)
+            let sky = sky.get(i).map_or("", String::as_str);
+            writeln!(output, "{} {} {}{sky}{shares}", c.x, c.y, c.z)
         })
     })?;
     report.finish()
@@ -48,6 +51,19 @@ fn has_normal(row: &[f64; 6]) -> Result<(), String> {
 
 fn broken(error: ProbeError) -> CliError {
     CliError::Failed(error.to_string())
+}
+
+/// For each query how much of the sky is seen.
+fn sky(field: &Field, queries: &[(DVec3, Vec3)], name: &str) -> Result<Vec<String>, CliError> {
+    let mut hint = Hint::default();
+    let unknown =
+        || InputError::of_file(name, "`sky` is missing: these probes do not know how much of it they see");
+    let mut one = |&(position, normal): &(DVec3, Vec3)| {
+        let share = field.sky_share(position, normal, &mut hint).map_err(broken)?;
+        let share = share.ok_or_else(|| unknown().with_help("bake them with `pointillist probe bake`"))?;
+        Ok(format!(" {share}"))
+    };
+    queries.iter().map(&mut one).collect()
 }
 
 /// For each query ` number:share` of the probes that light it, the largest first.
