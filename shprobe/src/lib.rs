@@ -63,6 +63,7 @@ pub mod invariants;
 mod octahedron;
 pub mod place;
 mod sight;
+mod tree;
 
 use pointillist_parallel as parallel;
 

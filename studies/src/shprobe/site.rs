@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::common::data;
 use crate::common::ray_reference::Tree;
-use crate::common::rooms::{ROOMS, WALL, basic, two_rooms};
+use crate::common::rooms::{ROOMS, THIN_WALL, WALL, basic, thin_wall_rooms, two_rooms};
 use crate::common::scenes::corners;
 use crate::shprobe::rays::{Look, look_by_rays};
 
@@ -64,6 +64,21 @@ impl Site {
             probe_px: 32,
             truth_px: 64,
             queries: 400,
+        }
+    }
+
+    /// The same with a wall of 10 cm, seen by rays.
+    pub(crate) fn thin_wall() -> Self {
+        Self {
+            name: "two rooms, wall of 10 cm",
+            scene: thin_wall_rooms(),
+            dark_from: Some(THIN_WALL[1]),
+            grids: &[[12, 6, 6]],
+            candidates: [22, 8, 11],
+            eye: Eye::Rays,
+            truth_px: 48,
+            queries: 400,
+            ..Self::two_rooms()
         }
     }
 
@@ -182,6 +197,13 @@ impl Baked {
             some.distances.push(self.distances[i].clone());
         }
         some
+    }
+
+    /// Adds others after them.
+    pub(crate) fn extend(&mut self, more: Self) {
+        self.positions.extend(more.positions);
+        self.radiance.extend(more.radiance);
+        self.distances.extend(more.distances);
     }
 
     /// Ready to light objects.
