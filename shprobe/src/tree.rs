@@ -24,6 +24,8 @@ pub(crate) struct Found {
     pub(crate) distance: f64,
     /// What the distance was divided by.
     pub(crate) factor: f64,
+    /// From the position to the probe.
+    pub(crate) offset: DVec3,
     pub(crate) probe: u32,
 }
 
@@ -116,7 +118,8 @@ struct Search<F> {
 
 impl<F: Fn(u32, DVec3) -> f64> Search<F> {
     fn consider(&mut self, position: DVec3, probe: u32) {
-        let plain = (position - self.p).length();
+        let offset = position - self.p;
+        let plain = offset.length();
         if plain > self.limit {
             return;
         }
@@ -127,7 +130,7 @@ impl<F: Fn(u32, DVec3) -> f64> Search<F> {
         }
         let before = |f: &Found| f.distance < distance || f.distance == distance && f.probe < probe;
         let at = self.found.partition_point(before);
-        self.found.insert(at, Found { distance, factor, probe });
+        self.found.insert(at, Found { distance, factor, offset, probe });
         self.limit = self.extent.limit(&self.found);
         while self.found.last().is_some_and(|f| f.distance > self.limit) {
             self.found.pop();

@@ -14,17 +14,24 @@ const HALVINGS: usize = 44;
 /// that is only steep is far below this by then.
 const LARGEST_CHANGE: f64 = 1e-3;
 
+/// Cosine of normals that are nearly opposite.
+const OPPOSITE: f32 = -0.5;
+
 /// A place on a surface, or with a normal of 0 in free space.
 pub type Place = (DVec3, Vec3);
 
 /// On the way from one place to another, shares do not jump, also where a probe comes into sight, out of the reach of a
 /// position or behind a surface. Each of some pieces of the way is halved again and again, towards the half in which
-/// shares change more: the change must vanish with the length.
+/// shares change more: the change must vanish with the length. Nothing is said of ways from surfaces into free space, and
+/// of normals that are nearly opposite: between them lies one of no direction.
 ///
 /// # Errors
 /// Where the shares jump, and how.
 pub fn shares_do_not_jump(field: &Field, from: Place, to: Place) -> Result<(), String> {
     if ![from, to].iter().all(|(p, n)| p.is_finite() && n.is_finite()) || !(to.0 - from.0).is_finite() {
+        return Ok(());
+    }
+    if (from.1 == Vec3::ZERO) != (to.1 == Vec3::ZERO) || from.1.dot(to.1) < OPPOSITE {
         return Ok(());
     }
     let at = |t: f64| (from.0.lerp(to.0, t), from.1.as_dvec3().lerp(to.1.as_dvec3(), t).as_vec3());

@@ -83,7 +83,7 @@ impl<'a> Rows<'a> {
             near.retain(|f| f.distance <= limit);
             near.truncate(EXTENT.most + 1);
         }
-        let mut shares: Vec<(u32, f64)> = weights(&near).collect();
+        let mut shares = weights(&near);
         let sum: f64 = shares.iter().map(|s| s.1).sum();
         shares.iter_mut().for_each(|s| s.1 /= sum);
         shares.retain(|s| s.1 > 0.0);
@@ -156,12 +156,13 @@ impl<'a> Rows<'a> {
         let at = self.bench.positions()[probe as usize];
         let change = |i: usize| {
             let spot = self.bench.spot(i, spacing);
-            let plain = (spot.position - at).length();
+            let offset = at - spot.position;
+            let plain = offset.length();
             if plain > rims[i] {
                 return 0.0;
             }
             let factor = self.bench.factor(&spot, probe);
-            let found = Found { distance: plain / factor, factor, probe };
+            let found = Found { distance: plain / factor, factor, offset, probe };
             if found.distance > rims[i] {
                 return 0.0;
             }

@@ -47,6 +47,11 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
 pub(crate) fn run_with(out_dir: &Path, arguments: &[&str]) -> Outcome {
     match arguments {
         [site @ ("rooms" | "basic" | "sponza" | "sibenik"), more @ ..] => run_site(site, more),
+        ["wall", "pictures", folder] => {
+            std::fs::create_dir_all(folder)?;
+            print!("{}", wall::pictures(Path::new(folder))?);
+            Ok(true)
+        }
         ["wall", more @ ..] => {
             let numbers: Vec<f64> = more.iter().filter_map(|a| a.parse().ok()).collect();
             let (counts, balances): (Vec<f64>, Vec<f64>) = numbers.iter().partition(|n| **n > 1.0);
@@ -65,7 +70,7 @@ pub(crate) fn run_with(out_dir: &Path, arguments: &[&str]) -> Outcome {
             print!("{text}");
             true
         }),
-        _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe wall [COUNT…] [BALANCE…], or shprobe pictures DIR".into()),
+        _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe wall [COUNT…] [BALANCE…], or shprobe wall pictures DIR, or shprobe pictures DIR".into()),
     }
 }
 
