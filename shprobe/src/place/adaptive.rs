@@ -19,14 +19,15 @@ pub struct AdaptiveOptions {
     pub balance: f64,
     /// Candidates tried in each exchange: the worst lit of the cells with the largest errors. Default: 48.
     pub trials: usize,
-    /// Most exchanges at the end, each of a probe that matters little for one that matters more. Default: 16.
+    /// Most exchanges at the end, each of a probe that matters little for one that matters more. Default: 64; without distances
+    /// at most 16 are made, which take much longer there.
     pub exchanges: usize,
 }
 
 impl AdaptiveOptions {
     /// The defaults, as a constant.
     pub const DEFAULT: Self =
-        Self { max_count: 96, max_error: 0.0, balance: BALANCE, trials: 48, exchanges: 16 };
+        Self { max_count: 96, max_error: 0.0, balance: BALANCE, trials: 48, exchanges: 64 };
 
     /// Sets how many probes there may be.
     #[must_use]
@@ -70,6 +71,9 @@ impl Default for AdaptiveOptions {
     }
 }
 
+/// Most exchanges of probes whose sight is not known: each divides space anew for every trial.
+const BLIND_EXCHANGES: usize = 16;
+
 /// Which candidates became probes.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -106,7 +110,7 @@ pub fn adaptive(candidates: Candidates<'_>, options: &AdaptiveOptions) -> Result
     }
     let thinned = thin(&bench, limit, options.max_error * options.max_error)?;
     let mut state = State { chosen: thinned.chosen, outcome: Some(thinned.outcome) };
-    for _ in 0..options.exchanges {
+    for _ in 0..options.exchanges.min(BLIND_EXCHANGES) {
         let Some(fewer) = best_removal(&bench, &state)? else { break };
         match best_insertion(&bench, &fewer, options.trials)? {
             Some(better) if better.error2() < state.error2() => state = better,

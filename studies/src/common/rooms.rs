@@ -17,7 +17,7 @@ const DOOR: [f64; 2] = [1.5, 2.5];
 const DOOR_HEIGHT: f64 = 2.1;
 
 /// How far the wall reaches into floor, ceiling and side walls: closed bodies must not share edges.
-const SUNK: f64 = 0.05;
+const SUNK: f64 = 0.002;
 
 const GREY: Vec3 = Vec3::splat(0.7);
 const RED: Vec3 = vec3(0.8, 0.15, 0.1);
@@ -27,8 +27,9 @@ const BLUE: Vec3 = vec3(0.1, 0.2, 0.8);
 /// Length of the squares of which walls are made: probes are placed above their corners, too.
 const SQUARE: f64 = 0.5;
 
-/// The same of a wall of 10 cm.
-pub(crate) const THIN_WALL: [f64; 2] = [3.95, 4.05];
+/// The same of a wall of 10 cm. It begins where squares of floor and ceiling meet: no patch of light reaches below it
+/// from the bright room into the dark one.
+pub(crate) const THIN_WALL: [f64; 2] = [4.0, 4.1];
 
 /// Two rooms with a doorway, and a lamp in the first. The end walls are coloured.
 pub(crate) fn two_rooms() -> Scene {

@@ -232,7 +232,7 @@ const FEELERS: u32 = 96;
 const BACKS: f64 = 0.1;
 
 /// Side of the patches of light that is sent on.
-const PATCH: f64 = 0.5;
+const PATCH: f64 = 0.25;
 
 /// Sight is not limited in any direction by anything closer than this share of the box's diagonal.
 const CLOSE: f64 = 0.002;

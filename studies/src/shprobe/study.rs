@@ -58,7 +58,7 @@ pub(crate) fn run_with(out_dir: &Path, arguments: &[&str]) -> Outcome {
             let counts: Vec<usize> = counts.into_iter().map(|c| c as usize).collect();
             let counts = if counts.is_empty() { wall::COUNTS.to_vec() } else { counts };
             let balances = if balances.is_empty() { vec![place::BALANCE] } else { balances };
-            print!("{}", wall::table(&counts, &balances)?.0);
+            print!("{}", wall::table(&counts, &balances, more.contains(&"with"))?.0);
             Ok(true)
         }
         ["quick"] => measure(&Wish { quick: true, pictures: None }, &trial_folder()),
@@ -70,7 +70,7 @@ pub(crate) fn run_with(out_dir: &Path, arguments: &[&str]) -> Outcome {
             print!("{text}");
             true
         }),
-        _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe wall [COUNT…] [BALANCE…], or shprobe wall pictures DIR, or shprobe pictures DIR".into()),
+        _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe wall [with] [COUNT…] [BALANCE…], or shprobe wall pictures DIR, or shprobe pictures DIR".into()),
     }
 }
 
@@ -254,7 +254,7 @@ const FREE_LIMIT: f64 = 0.07;
 
 fn walls(report: &mut Report, wish: &Wish) -> Result<(), Fault> {
     let counts: &[usize] = if wish.quick { &[96] } else { &wall::COUNTS };
-    let (text, rows) = wall::table(counts, &[place::BALANCE])?;
+    let (text, rows) = wall::table(counts, &[place::BALANCE], false)?;
     let least = |from: usize, to: usize, error: &dyn Fn(&wall::Row) -> f64| {
         rows.iter().filter(|r| (from..=to).contains(&r.probes)).map(error).fold(f64::INFINITY, f64::min)
     };

@@ -238,13 +238,17 @@ pub(crate) fn pictures(folder: &Path) -> Result<String, Fault> {
     Ok(text)
 }
 
-/// The table, and its rows.
-pub(crate) fn table(counts: &[usize], balances: &[f64]) -> Result<(String, Vec<Row>), Fault> {
+/// The table, and its rows; if `only_seeing` without probes that light passes walls from.
+pub(crate) fn table(
+    counts: &[usize],
+    balances: &[f64],
+    only_seeing: bool,
+) -> Result<(String, Vec<Row>), Fault> {
     let site = Site::thin_wall();
     eprintln!("shprobe: both faces of a wall");
     let rooms = Rooms::new(&site)?;
     let mut rows = vec![];
-    for distances in [false, true] {
+    for distances in if only_seeing { &[true][..] } else { &[false, true] }.iter().copied() {
         let [seen, fitted] = rooms.grid(distances)?;
         rows.push(rooms.row("grid", &seen, distances)?);
         rows.push(rooms.row("grid, fitted", &fitted, distances)?);
