@@ -1,9 +1,9 @@
 //! Probes anywhere, with any light and distances: what is not refused has shares that sum to 1, keeps constant light
-//! constant, comes back after changes, and sees less farther away.
+//! constant, comes back after changes, sees less farther away, and does not jump.
 #![no_main]
 
 use arbitrary::Arbitrary;
-use glam::{DVec3, dvec3};
+use glam::{DVec3, Vec3, dvec3};
 use libfuzzer_sys::fuzz_target;
 use pointillist_shprobe::sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, invariants as facts};
@@ -36,6 +36,8 @@ fuzz_target!(|input: Input| {
         dvec3(x, y, z) * scale
     };
     let positions: Vec<DVec3> = probes.iter().map(at).collect();
+    // Halving a way ends at ulps only if it is not far longer than the probes are apart.
+    let reach = DVec3::splat(16.0 * scale);
     let constant =
         |p: &Probe| Sh::constant(DVec3::from_array(p.radiance.map(f64::from)), 1).expect("order 1");
     let radiance: Vec<Sh> = probes.iter().map(constant).collect();
@@ -59,6 +61,12 @@ fuzz_target!(|input: Input| {
         None => field,
     };
     facts::shares_sum_to_one(&field, &queries).unwrap();
+    facts::at_most_so_many_probes_light_a_position(&field, &queries).unwrap();
+    for way in queries.windows(2) {
+        let [from, to] = [way[0], way[1]].map(|p| p.clamp(-reach, reach));
+        facts::shares_do_not_jump(&field, (from, Vec3::ZERO), (to, Vec3::ZERO)).unwrap();
+        facts::shares_do_not_jump(&field, (from, Vec3::Y), (to, Vec3::X)).unwrap();
+    }
     let new = (queries.len()).min(radiance.len());
     let maps = &maps[..if field.distances().is_some() { new } else { 0 }];
     facts::insert_then_remove_restores(&field, &queries[..new], &radiance[..new], maps, &positions).unwrap();

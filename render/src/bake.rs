@@ -10,6 +10,7 @@ use crate::ambient::Ambient;
 use crate::bake_options::BakeOptions;
 use crate::capture::CaptureOptions;
 use crate::error::RenderError;
+use crate::fit_places::fit_places;
 use crate::look::{LookOptions, Seen, buried, look_again, look_all, shares_of};
 use crate::monitor::{Monitor, stage};
 use crate::prepared::Prepared;
@@ -39,12 +40,6 @@ pub struct ProbeBake {
 /// Pixels on a side that are enough for light on its way: what is seen at places to which probes are fitted, and what bounces. Coverage is
 /// exact at any number of pixels; at 32 the harmonics of a face are known to about 1e-3.
 const ENOUGH: u32 = 32;
-
-/// Tries for each place that is wanted: most may be in solids.
-const TRIES: usize = 8;
-
-/// Of the random places between probes.
-const SEED: u64 = 1;
 
 /// Bakes probes at these positions, on all cores. Does not depend on threads.
 ///
@@ -76,9 +71,10 @@ pub fn bake_probes_in(
     options: &BakeOptions,
     monitor: &dyn Monitor,
 ) -> Result<ProbeBake, RenderError> {
-    let more = between(positions, options.fit, solids);
-    let places = positions.iter().copied().chain(more).collect();
-    Rounds { prepared, options, ambient, monitor, places, probes: positions.len() }.run()
+    let more = fit_places(positions, options.fit, prepared, solids);
+    let places = positions.iter().copied().chain(more.positions).collect();
+    let normals = positions.iter().map(|_| DVec3::ZERO).chain(more.normals).collect();
+    Rounds { prepared, options, ambient, monitor, places, normals, probes: positions.len() }.run()
 }
 
 /// All that looking around needs.
@@ -90,6 +86,8 @@ struct Rounds<'a> {
     monitor: &'a dyn Monitor,
     /// Where probes are, and after them other places whose light the probes are fitted to.
     places: Vec<DVec3>,
+    /// The normal of the surface that each place is on; 0 in free space.
+    normals: Vec<DVec3>,
     probes: usize,
 }
 
@@ -204,14 +202,14 @@ impl Rounds<'_> {
 
     /// What the probes hold that do not lie inside of walls.
     fn radiance(&self, seen: &[Seen]) -> Result<Vec<Sh>, RenderError> {
-        let Known { places, radiance, distances, probes, .. } = self.known(seen);
+        let Known { places, normals, radiance, distances, probes, .. } = self.known(seen);
         if places.len() == probes || probes == 0 {
             return Ok(radiance);
         }
-        let mut candidates = place::Candidates::new(&places, &radiance);
+        let mut candidates = place::Candidates::new(&places, &radiance).with_normals(&normals);
         candidates.distances = distances.as_deref();
         let chosen: Vec<u32> = (0..probes as u32).collect();
-        let fit = || place::fit(candidates, &chosen, &place::FitOptions::DEFAULT.with_balance(0.0));
+        let fit = || place::fit(candidates, &chosen, &place::FitOptions::DEFAULT);
         Ok(stage(self.monitor, "fit", fit)?)
     }
 
@@ -236,6 +234,7 @@ impl Rounds<'_> {
         let free: Vec<usize> = (0..seen.len()).filter(|&i| !out[i]).collect();
         Known {
             places: free.iter().map(|&i| self.places[i]).collect(),
+            normals: free.iter().map(|&i| self.normals[i]).collect(),
             radiance: free.iter().map(|&i| seen[i].radiance.clone()).collect(),
             sky: free.iter().map(|&i| seen[i].sky.clone()).collect(),
             distances: free.iter().map(|&i| seen[i].distances.clone()).collect(),
@@ -251,22 +250,12 @@ impl Rounds<'_> {
 /// What is known of the light.
 struct Known {
     places: Vec<DVec3>,
+    normals: Vec<DVec3>,
     radiance: Vec<Sh>,
     sky: Vec<Sh<f64>>,
     distances: Option<Vec<DistanceMap>>,
     /// How many of the places are those of probes.
     probes: usize,
-}
-
-/// Free places anywhere in the box that the probes span.
-fn between(probes: &[DVec3], count: usize, solids: &Solids<'_>) -> Vec<DVec3> {
-    let infinite = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = probes.iter().fold(infinite, |(l, h), &p| (l.min(p), h.max(p)));
-    if probes.is_empty() || count == 0 {
-        return vec![];
-    }
-    let tries = place::random(low, high, count.saturating_mul(TRIES), SEED);
-    tries.into_iter().filter(|&p| solids.is_free(p)).take(count).collect()
 }
 
 /// How much the mean light of places changed, over the light there is.

@@ -74,6 +74,7 @@ mod draw;
 mod emitters;
 mod error;
 pub mod fingerprint;
+mod fit_places;
 mod frame;
 mod gather;
 mod gloss;

@@ -163,7 +163,17 @@ fn places_are_chosen_outside_of_walls() {
     let options = ChooseOptions::DEFAULT.with_resolution(8).with_max_count(12);
     let chosen = choose_places(&prepared, &candidates, &options, &()).unwrap();
     assert_eq!((chosen.positions.len(), chosen.buried), (12, 1));
-    assert!(chosen.positions.iter().all(|p| Solids::new(&prepared).is_free(*p) && candidates.contains(p)));
+    // Candidates, and places about the block that were tried, too.
+    let most = candidates.iter().fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
+    assert!(
+        chosen
+            .positions
+            .iter()
+            .all(|p| Solids::new(&prepared).is_free(*p) && p.abs().max_element() <= 2.0 * most)
+    );
+    assert!(
+        chosen.positions.iter().any(|p| candidates.contains(p)) && chosen.candidates >= candidates.len() - 1
+    );
     assert!(chosen.error > 0.0 && chosen.error < 0.5, "{}", chosen.error);
     assert!(choose_places(&prepared, &[], &options, &()).is_err());
 }

@@ -9,6 +9,8 @@ use glam::{DVec3, dvec2};
 #[derive(Clone, Debug, PartialEq)]
 pub struct DistanceMap {
     size: usize,
+    /// Lower bound of the standard deviation, world units: visibility is continuous also where a probe touches a surface.
+    least: f64,
     /// Mean and mean square of each texel, row by row.
     moments: Vec<[f32; 2]>,
 }
@@ -18,6 +20,9 @@ pub const DEFAULT_DISTANCE_SIZE: usize = 16;
 
 /// Lower bound of the standard deviation of a texel's distances, relative to their mean.
 const RELATIVE_SLACK: f64 = 0.01;
+
+/// The same over the mean of all texels.
+const LEAST_SLACK: f64 = 1e-3;
 
 /// Refuses a size of 0, and one above [`DistanceMap::MAX_SIZE`].
 const fn check_size(size: usize) -> Result<(), ProbeError> {
@@ -46,7 +51,7 @@ impl DistanceMap {
         let bad = |m: &[f32; 2]| !m.iter().all(|v| v.is_finite() && *v >= 0.0);
         match moments.iter().position(bad) {
             Some(index) => Err(ProbeError::BadDistances { index }),
-            None => Ok(Self { size, moments }),
+            None => Ok(Self::of_moments(size, moments)),
         }
     }
 
@@ -91,7 +96,12 @@ impl DistanceMap {
             let distance = nearest(direction_from_square(at), cube_size, distances).min(far);
             [distance, distance * distance]
         });
-        Ok(Self { size, moments })
+        Ok(Self::of_moments(size, moments))
+    }
+
+    fn of_moments(size: usize, moments: Vec<[f32; 2]>) -> Self {
+        let mean = moments.iter().map(|m| f64::from(m[0])).sum::<f64>() / moments.len() as f64;
+        Self { size, least: LEAST_SLACK * mean, moments }
     }
 
     /// Texels on a side.
@@ -123,9 +133,11 @@ impl DistanceMap {
         if behind <= 0.0 {
             return 1.0;
         }
-        let slack = mean * RELATIVE_SLACK;
+        let slack = (mean * RELATIVE_SLACK).max(self.least);
         let variance = (square - mean * mean).max(0.0) + slack * slack;
-        let seen = variance / (variance + behind * behind);
+        // As a ratio of lengths: squares of tiny ones would be 0 by 0.
+        let deviations = behind / variance.sqrt();
+        let seen = 1.0 / (1.0 + deviations * deviations);
         seen * seen * seen
     }
 

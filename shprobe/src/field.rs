@@ -3,14 +3,19 @@
 use crate::delaunay::{Delaunay, Hint, Locator, Partition};
 use crate::glossy::GlossyLight;
 use crate::sh::{Irradiance, Lobe, MAX_COUNT, Sh, basis, coefficient_count};
-use crate::sight::{Near, Shares, by_sight};
+use crate::sight::{MOST, Shares, Spot, by_cell, by_sight};
+use crate::tree::Tree;
 use crate::{DistanceMap, ProbeError, parallel};
 use glam::{DVec3, Vec3};
 
 /// Probes with what they hold, ready to light positions between them.
 ///
-/// Space is divided into Delaunay tetrahedra; a position takes from the four probes around it by barycentric weights,
-/// and, where the probes' distances are known, from those among them that see it.
+/// Space is divided into Delaunay tetrahedra; a position takes from the four probes around it by barycentric weights.
+/// Where the probes' distances are known, it takes from the nearest that see it instead, the nearer the more: within 1.3
+/// times the distance of the sixth of them, where a probe that does not see it counts as a hundred times as far.
+///
+/// A surface takes from probes in front of it only, which fade out towards its plane, and where there is none from the
+/// nearest. Shares are continuous in the position and the normal, for any number of probes.
 #[derive(Clone, Debug)]
 pub struct Field {
     pub(crate) positions: Vec<DVec3>,
@@ -24,8 +29,8 @@ pub struct Field {
     /// The same up to band 2, for objects.
     pub(crate) lights: Vec<Irradiance>,
     pub(crate) distances: Option<Vec<DistanceMap>>,
-    /// Positions of probes by box, once their distances are known.
-    near: Near,
+    /// Finds the nearest probes.
+    tree: Tree,
     /// Mean distance between neighbouring probes.
     spacing: f64,
     /// The bias that the caller set; [`BIAS`] times the spacing without.
@@ -52,15 +57,15 @@ impl LitObject {
     }
 }
 
-/// Largest distance of probes that light a position where those of its cell see nothing, in mean spacings of probes.
-const HELP: f64 = 2.0;
-
-/// Default distance, over the mean spacing of probes, by which positions on a surface are lifted off it.
-const BIAS: f64 = 0.02;
+/// Default of the farthest, over the mean spacing of probes, that positions on a surface are lifted off it.
+pub(crate) const BIAS: f64 = 0.02;
 
 impl Field {
     /// Largest absolute value of a coordinate of a probe: squares of distances are finite.
     pub const FARTHEST: f64 = 1e150;
+
+    /// Most probes that light a position: 24 that see it, or of those whose sight is not known four of a cell and 24.
+    pub const MOST_SHARES: usize = MOST + 4;
 
     /// Largest absolute value of a coefficient: light in single precision is finite.
     pub const BRIGHTEST: f64 = 1e30;
@@ -93,8 +98,9 @@ impl Field {
         check_positions(positions)?;
         let order = common_order(radiance)?;
         let locator = Locator::new(positions, &partition)?;
+        let spacing = spacing(positions, &partition);
         Ok(Self {
-            spacing: spacing(positions, &partition),
+            spacing,
             positions: positions.to_vec(),
             locator,
             partition,
@@ -103,7 +109,7 @@ impl Field {
             glossy: GlossyLight::new(radiance),
             lights: radiance.iter().map(Irradiance::new).collect(),
             distances: None,
-            near: Near::default(),
+            tree: Tree::new(positions.iter().copied().zip(0..), spacing),
             bias: None,
         })
     }
@@ -116,9 +122,7 @@ impl Field {
         self.partition = partition;
         self.positions = positions;
         self.spacing = spacing(&self.positions, &self.partition);
-        if self.distances.is_some() {
-            self.near = Near::new(&self.positions, HELP * self.spacing);
-        }
+        self.tree = Tree::new(self.positions.iter().copied().zip(0..), self.spacing);
         Ok(())
     }
 
@@ -128,29 +132,26 @@ impl Field {
     /// [`ProbeError::CountMismatch`] if there is not one map for each probe.
     pub fn with_distances(mut self, distances: Vec<DistanceMap>) -> Result<Self, ProbeError> {
         expect_count(self.probe_count(), distances.len())?;
-        self.near = Near::new(&self.positions, HELP * self.spacing);
         self.distances = Some(distances);
         Ok(self)
     }
 
-    /// Sets how far positions on a surface are lifted off it along its normal before they are looked up. Default: 2 %
-    /// of the mean distance between neighbouring probes. World units, from −[`Field::FARTHEST`] to [`Field::FARTHEST`].
+    /// Sets the farthest that positions on a surface are lifted off it along its normal before a probe is asked whether
+    /// it sees them. It is also never more than 1 % of the distance to that probe, which is the precision of its map:
+    /// a surface in front that is farther than both is not jumped over. Default: 2 % of the mean distance between
+    /// neighbouring probes. World units, 0 to [`Field::FARTHEST`].
     ///
     /// # Errors
     /// [`ProbeError::BadOption`].
     pub fn with_bias(mut self, bias: f64) -> Result<Self, ProbeError> {
-        if !(-Self::FARTHEST..=Self::FARTHEST).contains(&bias) {
-            return Err(ProbeError::BadOption {
-                name: "bias",
-                value: bias,
-                range: "it must be −1e150 to 1e150",
-            });
+        if !(0.0..=Self::FARTHEST).contains(&bias) {
+            return Err(ProbeError::BadOption { name: "bias", value: bias, range: "it must be 0 to 1e150" });
         }
         self.bias = Some(bias);
         Ok(self)
     }
 
-    /// How far positions on a surface are lifted off it.
+    /// The farthest that positions on a surface are lifted off it.
     #[must_use]
     pub fn bias(&self) -> f64 {
         self.bias.unwrap_or(BIAS * self.spacing)
@@ -180,24 +181,49 @@ impl Field {
         self.lights.len()
     }
 
-    /// The probes that light a position with their shares, which are above 0 and sum to 1; continuous in the position.
+    /// The probes that light a position in free space with their shares, which are above 0 and sum to 1; continuous in
+    /// the position.
     ///
     /// # Errors
     /// [`ProbeError::QueryNotFinite`].
     pub fn shares(&self, position: DVec3, hint: &mut Hint) -> Result<Vec<(u32, f64)>, ProbeError> {
-        Ok(self.weigh(position, hint)?.iter().collect())
+        Ok(self.weigh(position, Vec3::ZERO, hint)?.iter().collect())
     }
 
-    pub(crate) fn weigh(&self, position: DVec3, hint: &mut Hint) -> Result<Shares, ProbeError> {
+    /// The same of a position on a surface, as [`Field::irradiance`] takes from them: continuous in the position and in
+    /// `face_normal`, which points away from the surface on the side that is lit.
+    ///
+    /// # Errors
+    /// [`ProbeError::QueryNotFinite`] if the position or the normal is not finite.
+    pub fn surface_shares(
+        &self,
+        position: DVec3,
+        face_normal: Vec3,
+        hint: &mut Hint,
+    ) -> Result<Vec<(u32, f64)>, ProbeError> {
+        Ok(self.weigh(position, face_normal, hint)?.iter().collect())
+    }
+
+    pub(crate) fn weigh(
+        &self,
+        position: DVec3,
+        face_normal: Vec3,
+        hint: &mut Hint,
+    ) -> Result<Shares, ProbeError> {
+        if !position.is_finite() || !face_normal.is_finite() {
+            return Err(ProbeError::QueryNotFinite { index: 0 });
+        }
+        let spot = Spot::new(position, face_normal.as_dvec3(), self.bias(), self.spacing);
+        if let Some(distances) = &self.distances {
+            return Ok(by_sight(&spot, &self.tree, |probe| distances.get(probe as usize)));
+        }
         let cell = self.locator.locate(position, hint)?;
-        let Some(distances) = &self.distances else { return Ok(Shares::of_cell(&cell)) };
-        let at = |probe: u32| self.positions[probe as usize];
-        let visibility = |probe: u32| distances[probe as usize].visibility(position - at(probe));
-        Ok(by_sight(&cell, position, at, &self.near, visibility))
+        Ok(by_cell(&spot, &cell, &self.tree, |probe| self.positions[probe as usize]))
     }
 
     /// Irradiance on a surface in space: `face_normal` points away from it, on the side that is lit, and `normal` is
-    /// what it is shaded with, both of length 1. Linear RGB, at least 0.
+    /// what it is shaded with, both of length 1; a `face_normal` of 0 is none: all probes around count, as for objects.
+    /// Linear RGB, at least 0.
     ///
     /// # Errors
     /// [`ProbeError::QueryNotFinite`] if the position or a normal is not finite.
@@ -211,7 +237,7 @@ impl Field {
         if !normal.is_finite() {
             return Err(ProbeError::QueryNotFinite { index: 0 });
         }
-        let shares = self.weigh(position + face_normal.as_dvec3() * self.bias(), hint)?;
+        let shares = self.weigh(position, face_normal, hint)?;
         let basis: [f64; MAX_COUNT] = basis(self.order, normal.as_dvec3());
         let count = coefficient_count(self.order);
         let mut sum = Vec3::ZERO;
@@ -228,7 +254,7 @@ impl Field {
     /// # Errors
     /// [`ProbeError::QueryNotFinite`].
     pub fn light(&self, position: DVec3, hint: &mut Hint) -> Result<Irradiance, ProbeError> {
-        let shares = self.weigh(position, hint)?;
+        let shares = self.weigh(position, Vec3::ZERO, hint)?;
         let mut light = Irradiance::DARK;
         for (probe, weight) in shares.iter() {
             light.add_scaled(&self.lights[probe as usize], weight as f32);
@@ -308,11 +334,6 @@ pub(crate) fn check_radiance(index: usize, sh: &Sh, expected: usize) -> Result<(
     }
     let is_good = |c: &DVec3| c.abs().cmple(DVec3::splat(Field::BRIGHTEST)).all();
     if sh.coefficients().iter().all(is_good) { Ok(()) } else { Err(ProbeError::BadRadiance { index }) }
-}
-
-/// The distance, world units, up to which a probe outside of the cell can light a position.
-pub(crate) fn help(positions: &[DVec3], partition: &Partition) -> f64 {
-    HELP * spacing(positions, partition)
 }
 
 /// Mean length of the edges between probes; 0 for a single probe.

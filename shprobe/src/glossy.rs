@@ -115,7 +115,7 @@ impl Field {
         if !direction.is_finite() {
             return Err(ProbeError::QueryNotFinite { index: 0 });
         }
-        let shares = self.weigh(position + face_normal.as_dvec3() * self.bias(), hint)?;
+        let shares = self.weigh(position, face_normal, hint)?;
         let factors = self.convolved_basis(direction, lobe);
         let count = coefficient_count(self.order);
         let (mut radiance, mut sky) = (Vec3::ZERO, 0.0);

@@ -25,13 +25,15 @@
 //!
 //! What probes hold are functions of the crate [`sh`]; the space between them is divided by the crate [`delaunay`],
 //! into tetrahedra, or triangles, segments or a point where probes span less. Beyond their hull the light is that at
-//! the hull's nearest point.
+//! the hull's nearest point. Where it is known what probes see, a position takes from the nearest that see it; surfaces
+//! always take from probes in front of them.
 //!
 //! Capturing what a probe sees is left to the caller: any renderer can make the six pictures of a cube map.
 //!
 //! # Accuracy and cost
-//! Cells are exact for any positions. Weights sum to 1, reproduce linear functions up to rounding, and are continuous,
-//! also across the hull. Ten thousand moving objects take 0.6 ms on two threads, 1.7 ms with distances.
+//! Cells are exact for any positions. Weights sum to 1 and are continuous, also across the hull; those of cells reproduce
+//! linear functions up to rounding, those by distances nearly. Up to 24 probes that see a position light it. Ten thousand moving objects take 0.6 ms on two threads, and
+//! with distances some 60 times as long.
 //!
 //! # Features
 //! `rayon` (default) uses all cores; it never changes a result. `invariants`: the module of that name, facts for
@@ -64,6 +66,7 @@ pub mod invariants;
 mod octahedron;
 pub mod place;
 mod sight;
+mod tree;
 
 use pointillist_parallel as parallel;
 

@@ -1,115 +1,208 @@
-//! Which probes light a position, once it is known which of them see it.
+//! Which probes light a position: those that see it, and of a surface those on its lit side.
+//!
+//! 1. Every probe has a factor from [`UNSEEN`] to 1: what it sees of the position, times how far it is in front of the
+//!    surface ([`Spot::factor`]).
+//! 2. Its effective distance is its distance over this factor. A probe behind a wall counts as a hundred times as far.
+//! 3. Nearest first, those within [`RIM`] times the effective distance of the [`COUNT`]-th light the position, and at
+//!    most [`MOST`], with weights that fall to 0 at that rim: no probe is dropped before it has no weight. What is nearly
+//!    linear in the position is kept so ([`weights`]).
+//!
+//! All of these are continuous in the position and the normal, for any number of probes: the k-th smallest of
+//! continuous functions is continuous, and what goes out of reach has no weight by then. Where no probe is left
+//! that sees the position, all are farther by the same factor, and the nearest light it.
 
+use crate::DistanceMap;
 use crate::delaunay::Blend;
-use glam::{DVec3, IVec3};
-use std::collections::HashMap;
+use crate::tree::{Extent, Found, Tree};
+use glam::{DMat3, DVec3};
 
 /// Probes and their shares, which sum to 1.
-#[derive(Clone, Debug)]
-pub(crate) struct Shares {
-    list: [(u32, f64); MOST],
-    count: usize,
-}
-
-/// Most probes that light a position: those of its cell and those nearby. Shares stay continuous with this limit in
-/// practice, since probes at the rim of the neighbourhood have almost no weight.
-const MOST: usize = 64;
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shares(Vec<(u32, f64)>);
 
 impl Shares {
     /// Those of a cell.
     pub(crate) fn of_cell(blend: &Blend) -> Self {
-        let mut shares = Self { list: [(0, 0.0); MOST], count: 0 };
-        blend.parts().for_each(|(probe, weight)| shares.push(probe, weight));
-        shares
-    }
-
-    fn push(&mut self, probe: u32, weight: f64) {
-        if self.count < MOST && weight > 0.0 {
-            self.list[self.count] = (probe, weight);
-            self.count += 1;
-        }
+        Self(blend.parts().collect())
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
-        self.list[..self.count].iter().copied()
+        self.0.iter().copied()
     }
 
-    fn normalise(&mut self) {
-        let sum: f64 = self.iter().map(|(_, weight)| weight).sum();
-        self.list[..self.count].iter_mut().for_each(|(_, weight)| *weight /= sum);
-    }
-}
-
-/// Factor on the weight of a probe that does not see the position. It is above 0, so that a position that no probe sees
-/// is lit as if all did.
-const UNSEEN: f64 = 1e-4;
-
-/// If the probes of the cell that see the position have less weight than this together, nearby probes that see it get
-/// shares, too.
-const ENOUGH: f64 = 0.25;
-
-/// Probes by where they are.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Near {
-    boxes: HashMap<IVec3, Vec<u32>>,
-    reach: f64,
-}
-
-impl Near {
-    /// `reach` is the distance, world units, up to which a probe outside of the cell can light a position.
-    pub(crate) fn new(positions: &[DVec3], reach: f64) -> Self {
-        let mut near = Self { boxes: HashMap::new(), reach };
-        if reach > 0.0 {
-            for (i, &p) in positions.iter().enumerate() {
-                near.boxes.entry(near.number(p)).or_default().push(i as u32);
-            }
+    /// Adds to a probe's share.
+    fn add(&mut self, probe: u32, share: f64) {
+        match self.0.iter_mut().find(|s| s.0 == probe) {
+            Some(own) => own.1 += share,
+            None => self.0.push((probe, share)),
         }
-        near
     }
 
-    fn number(&self, p: DVec3) -> IVec3 {
-        // Clamped to the range of `i32`: positions beyond are too far from all probes to take shares.
-        (p / self.reach).floor().clamp(DVec3::splat(-1e9), DVec3::splat(1e9)).as_ivec3()
-    }
-
-    fn around(&self, p: DVec3) -> impl Iterator<Item = u32> + '_ {
-        let middle = self.number(p);
-        let offsets = (0..27).map(|i| IVec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-        offsets.filter_map(move |o| self.boxes.get(&(middle + o))).flatten().copied()
+    fn normalised(mut self) -> Self {
+        if self.0.iter().all(|s| s.1 <= 0.0) {
+            self.0.iter_mut().for_each(|s| s.1 = 1.0);
+        }
+        self.0.retain(|s| s.1 > 0.0);
+        let sum: f64 = self.0.iter().map(|s| s.1).sum();
+        self.0.iter_mut().for_each(|s| s.1 /= sum);
+        self
     }
 }
 
-/// The shares of a position in `cell`, by what is seen: weights times visibility, and where little of the cell's weight
-/// is left, other probes nearby that see it, the nearer the more. Continuous if visibility is.
-pub(crate) fn by_sight(
-    cell: &Blend,
-    p: DVec3,
-    positions: impl Fn(u32) -> DVec3,
-    near: &Near,
-    visibility: impl Fn(u32) -> f64,
-) -> Shares {
-    let mut shares = Shares { list: [(0, 0.0); MOST], count: 0 };
-    let mut seen = 0.0;
-    for (probe, weight) in cell.parts() {
-        let visible = weight * visibility(probe);
-        seen += visible;
-        shares.push(probe, visible + UNSEEN * weight);
+/// Factor of a probe that does not see the position, or is behind the surface. It is above 0, so that a position that no
+/// probe sees is lit by the nearest; the light that such probes give to positions that others see is below 1e-3.
+const UNSEEN: f64 = 0.01;
+
+/// Cosine, between the normal and the way to a probe, from which on the probe counts fully. Below it falls smoothly, to
+/// nothing at the plane of the surface. By experiment (`studies shprobe rooms`, dark face of the wall): 0.05 to
+/// 0.5 differ by less than placement does by chance.
+const FULL_COSINE: f64 = 0.2;
+
+/// Distance, over the spacing of probes, below which the direction to a probe does not matter: a probe in the
+/// surface itself has none.
+const CLOSE: f64 = 0.01;
+
+/// Most that a position on a surface is lifted, over its distance from the probe that is asked whether it sees it: the
+/// precision of maps of distances. A surface in front that is farther than that is not jumped over.
+const LIFT: f64 = 0.01;
+
+/// The rim is [`RIM`] times the effective distance of this probe. Where probes are evenly dense, 13 are within it.
+/// By experiment: with 8, 12, 16 and 20 within it the error of 96 probes differs by less than a tenth, least for 12.
+pub(crate) const COUNT: usize = 6;
+pub(crate) const RIM: f64 = 1.3;
+
+/// Most probes that light a position.
+pub(crate) const MOST: usize = 24;
+
+/// The rank of the probe whose distance the peak of weights is as wide as, and the square of how wide over that.
+const PEAK_RANK: usize = 4;
+const PEAK: f64 = 0.11;
+
+/// What [`Tree::nearest`] is asked for.
+pub(crate) const EXTENT: Extent = Extent { count: COUNT, rim: RIM, most: MOST };
+
+/// Positions are clamped to this cube: the distances to what is farther would overflow.
+const FARTHEST: f64 = 1e152;
+
+/// Where light is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spot {
+    pub(crate) position: DVec3,
+    /// Away from the surface, of length 1; 0 in free space.
+    normal: DVec3,
+    /// Upper limit of the lift off the surface.
+    bias: f64,
+    /// See [`CLOSE`].
+    close: f64,
+}
+
+impl Spot {
+    /// A position on a surface, or with a normal of 0 in free space, among probes of this mean spacing.
+    pub(crate) fn new(position: DVec3, normal: DVec3, bias: f64, spacing: f64) -> Self {
+        let limit = DVec3::splat(FARTHEST);
+        let position = position.clamp(-limit, limit);
+        Self { position, normal: normal.normalize_or_zero(), bias, close: CLOSE * spacing }
     }
-    if seen < ENOUGH && near.reach > 0.0 {
-        let first = shares.count;
-        let mut sum = 0.0;
-        for probe in near.around(p) {
-            let d2 = positions(probe).distance_squared(p) / (near.reach * near.reach);
-            if d2 < 1.0 {
-                let weight = visibility(probe) * (1.0 - d2).powi(2) / (d2 + 0.01);
-                sum += weight;
-                shares.push(probe, weight);
-            }
+
+    pub(crate) fn is_free(&self) -> bool {
+        self.normal == DVec3::ZERO
+    }
+
+    /// How far a probe is in front of the surface: 0 behind it, 1 in free space.
+    fn side(&self, offset: DVec3, distance: f64) -> f64 {
+        if self.is_free() {
+            return 1.0;
         }
-        // `UNSEEN` keeps the shares continuous where no nearby probe sees the position either.
-        let scale = (ENOUGH - seen) / (sum + UNSEEN);
-        shares.list[first..shares.count].iter_mut().for_each(|(_, weight)| *weight *= scale);
+        let height = -offset.dot(self.normal);
+        let t = (height / ((distance + self.close) * FULL_COSINE)).clamp(0.0, 1.0);
+        // A probe at the position itself, without any spacing: NaN of 0 by 0.
+        if t.is_nan() { 0.0 } else { t * t * (3.0 - 2.0 * t) }
     }
-    shares.normalise();
-    shares
+
+    /// The factor of a probe at `probe` that sees as far as `map` says.
+    pub(crate) fn factor(&self, probe: DVec3, map: Option<&DistanceMap>) -> f64 {
+        let offset = self.position - probe;
+        let distance = offset.length();
+        let side = self.side(offset, distance);
+        let seen = match map {
+            Some(map) if side > 0.0 => {
+                side * map.visibility(offset + self.normal * self.bias.min(LIFT * distance))
+            }
+            _ => side,
+        };
+        UNSEEN + (1.0 - UNSEEN) * seen
+    }
+}
+
+/// Weights of probes by rising effective distance, of which those at the rim or beyond it have none; not normalised.
+///
+/// 1. factor · (1 − q²)² / (q² + c), where q is the distance over that of the rim. The numerator falls to 0 smoothly; the
+///    peak at the probe, that of an inverse squared distance, is as wide as the probes are apart.
+/// 2. These average light that changes across the position, and at the rim of all probes lag behind. So they are
+///    multiplied by 1 + factor · b·x, with x from the position to the probe and b such that linear functions are nearly
+///    reproduced ([`slope`]), and 0 where that is negative.
+///
+/// Without any weight, where more than [`MOST`] are at the very same distance, all count alike.
+pub(crate) fn weights(found: &[Found]) -> Vec<(u32, f64)> {
+    let farthest = found.last().map_or(0.0, |f| f.distance);
+    let limit = EXTENT.limit(found);
+    let rim = if limit.is_finite() { limit } else { RIM * farthest };
+    let peak = found.get(PEAK_RANK - 1).map_or(farthest, |f| f.distance);
+    // At the place of all probes at once there is no distance: they count alike.
+    let over_rim = |d: f64| if rim > 0.0 { d / rim } else { 0.0 };
+    let width = PEAK * over_rim(peak).powi(2) + f64::MIN_POSITIVE.sqrt();
+    let plain = found.iter().map(|f| {
+        let q2 = over_rim(f.distance).powi(2);
+        f.factor * (1.0 - q2).max(0.0).powi(2) / (q2 + width)
+    });
+    let plain: Vec<f64> = plain.collect();
+    let offset = |f: &Found| if rim > 0.0 { f.offset / rim } else { DVec3::ZERO };
+    let slope = slope(found.iter().zip(&plain).map(|(f, w)| (offset(f), w * f.factor)));
+    let corrected = |(f, w): (&Found, f64)| (f.probe, w * (1.0 + f.factor * slope.dot(offset(f))).max(0.0));
+    found.iter().zip(plain).map(corrected).collect()
+}
+
+/// How much linear functions are not reproduced for the sake of weights that are not negative, over the mean square
+/// extent of the probes. By experiment, two rooms and 96 probes: 0.2 and 0.6 err alike, less than 0.05 and 1.5, and all a
+/// fifth less than no correction.
+const RIDGE: f64 = 0.5;
+
+/// b of [`weights`]: −(Σ w x xᵀ + ridge)⁻¹ Σ w x, for probes at `x` with weights `w`.
+fn slope(probes: impl Iterator<Item = (DVec3, f64)>) -> DVec3 {
+    let (mut first, mut second) = (DVec3::ZERO, DMat3::ZERO);
+    for (x, w) in probes {
+        first += x * w;
+        second += DMat3::from_cols(x * x.x, x * x.y, x * x.z) * w;
+    }
+    let mean_square = (second.x_axis.x + second.y_axis.y + second.z_axis.z) / 3.0;
+    let b = -(second + DMat3::from_diagonal(DVec3::splat(RIDGE * mean_square))).inverse() * first;
+    // Without any extent, all probes at the position itself, there is no slope.
+    if b.is_finite() { b } else { DVec3::ZERO }
+}
+
+/// The shares of a spot by what probes see, and for surfaces on which side they are. `map` is what a probe sees.
+pub(crate) fn by_sight<'m>(spot: &Spot, tree: &Tree, map: impl Fn(u32) -> Option<&'m DistanceMap>) -> Shares {
+    let found = tree.nearest(spot.position, EXTENT, |probe, at| spot.factor(at, map(probe)));
+    Shares(weights(&found)).normalised()
+}
+
+/// The shares of a spot in `cell`, of probes whose sight is not known. In free space they are the cell's. On a surface,
+/// what the cell takes from probes behind it is taken from the nearest in front instead.
+pub(crate) fn by_cell(spot: &Spot, cell: &Blend, tree: &Tree, positions: impl Fn(u32) -> DVec3) -> Shares {
+    let mut shares = Shares::of_cell(cell);
+    if spot.is_free() {
+        return shares;
+    }
+    let mut lost = 0.0;
+    for (probe, share) in &mut shares.0 {
+        let offset = spot.position - positions(*probe);
+        let side = spot.side(offset, offset.length());
+        lost += *share * (1.0 - side);
+        *share *= side;
+    }
+    if lost > 0.0 {
+        let instead = by_sight(spot, tree, |_| None);
+        instead.iter().for_each(|(probe, share)| shares.add(probe, lost * share));
+    }
+    shares.normalised()
 }

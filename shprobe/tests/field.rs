@@ -2,7 +2,9 @@
 
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_shprobe::delaunay::{Delaunay, Partition};
-use pointillist_shprobe::invariants::fields_are_equal;
+use pointillist_shprobe::invariants::{
+    at_most_so_many_probes_light_a_position, fields_are_equal, shares_do_not_jump,
+};
 use pointillist_shprobe::sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, Hint, LitObject, ProbeError, place};
 
@@ -389,4 +391,193 @@ fn candidates_that_are_not_finite_are_never_taken() {
     chosen.sort_unstable();
     assert_eq!(chosen, [1, 3]);
     assert!(place::spread(&candidates[..1], 4).is_empty());
+}
+
+/// The first 64 probes of a box lit a position in the order in which they were given: light jumped where another box
+/// began, and where the sum of what a cell saw fell below a quarter.
+#[test]
+fn light_does_not_jump_among_a_thousand_probes_in_a_small_box() {
+    let positions = place::random(DVec3::ZERO, DVec3::splat(0.1), 1000, 9);
+    let values: Vec<f64> = (0..1000).map(|i| f64::from(i % 7)).collect();
+    let map = |i: usize| DistanceMap::from_cube(8, 16, &room(16, 0.01 + 1e-4 * i as f32), 100.0).unwrap();
+    let field = Field::new(&positions, &constant(&values)).unwrap();
+    let field = field.with_distances((0..1000).map(map).collect()).unwrap();
+    let ends = place::random(DVec3::splat(-0.05), DVec3::splat(0.15), 60, 4);
+    at_most_so_many_probes_light_a_position(&field, &ends).unwrap();
+    for (i, way) in ends.windows(2).enumerate() {
+        let normals = if i % 2 == 0 { [Vec3::ZERO; 2] } else { [Vec3::X, Vec3::Y] };
+        shares_do_not_jump(&field, (way[0], normals[0]), (way[1], normals[1])).unwrap();
+    }
+}
+
+/// Through the middles of faces of cells, with and without distances.
+#[test]
+fn light_does_not_jump_at_faces_of_cells() {
+    let positions = place::grid(DVec3::ZERO, dvec3(4.0, 2.0, 2.0), [6, 4, 4]);
+    let values: Vec<f64> = positions.iter().map(|p| if p.x > 2.0 { 0.0 } else { 5.0 }).collect();
+    let blind = Field::new(&positions, &constant(&values)).unwrap();
+    let map = DistanceMap::from_cube(16, 32, &room(32, 0.5), 100.0).unwrap();
+    let seeing = blind.clone().with_distances(vec![map; positions.len()]).unwrap();
+    let Partition::Tetrahedra(cells) = blind.partition() else { panic!("a grid has tetrahedra") };
+    for corners in cells.corners.iter().step_by(5) {
+        let [a, b, c, d] = corners.map(|i| positions[i as usize]);
+        let (middle, away) = ((a + b + c) / 3.0, d - (a + b + c) / 3.0);
+        for field in [&blind, &seeing] {
+            for normal in [Vec3::ZERO, Vec3::Z] {
+                shares_do_not_jump(field, (middle - away * 1e-3, normal), (middle + away * 1e-3, normal))
+                    .unwrap();
+                let light = |p: DVec3| field.irradiance(p, normal, Vec3::Y, &mut Hint::default()).unwrap().x;
+                let jump = (light(middle + away * 1e-7) - light(middle - away * 1e-7)).abs();
+                assert!(jump < 1e-4, "{jump} at {middle}");
+            }
+        }
+    }
+}
+
+/// A wall between a bright and a dark room lit its dark face from both.
+#[test]
+fn probes_behind_a_surface_do_not_light_it() {
+    // Probes at both sides of a thin wall at x = 0, which their maps are too coarse to show.
+    let side = |x: f64| place::grid(dvec3(x - 0.4, -1.0, -1.0), dvec3(x + 0.4, 1.0, 1.0), [2, 4, 4]);
+    let positions = [side(-0.6), side(0.6)].concat();
+    let values: Vec<f64> = positions.iter().map(|p| if p.x < 0.0 { 100.0 } else { 1.0 }).collect();
+    let blind = Field::new(&positions, &constant(&values)).unwrap();
+    let far = DistanceMap::new(4, vec![[9.0, 81.0]; 16]).unwrap();
+    let seeing = blind.clone().with_distances(vec![far; positions.len()]).unwrap();
+    for p in place::random(dvec3(0.0, -0.9, -0.9), dvec3(0.0, 0.9, 0.9), 50, 2) {
+        for field in [&blind, &seeing] {
+            let dark = field.irradiance(p, Vec3::X, Vec3::X, &mut Hint::default()).unwrap().x;
+            let bright = field.irradiance(p, Vec3::NEG_X, Vec3::NEG_X, &mut Hint::default()).unwrap().x;
+            let pi = std::f32::consts::PI;
+            assert!((dark / pi - 1.0).abs() < 0.02, "{dark} at {p}");
+            assert!((bright / pi - 100.0).abs() < 2.0, "{bright} at {p}");
+        }
+    }
+}
+
+/// On a surface all whose probes are behind it, the nearest give light: it is never black.
+#[test]
+fn a_surface_without_probes_in_front_is_lit_by_the_nearest() {
+    let positions = place::grid(DVec3::ZERO, DVec3::ONE, [3, 3, 3]);
+    let field = Field::new(&positions, &constant(&[2.0; 27])).unwrap();
+    let map = DistanceMap::from_cube(8, 16, &room(16, 5.0), 100.0).unwrap();
+    for field in [field.clone(), field.with_distances(vec![map; 27]).unwrap()] {
+        let above = field.irradiance(dvec3(0.5, 3.0, 0.5), Vec3::Y, Vec3::Y, &mut Hint::default()).unwrap().x;
+        assert!((above - 2.0 * std::f32::consts::PI).abs() < 1e-4, "{above}");
+    }
+}
+
+/// The lift off a surface passed a board that hangs 15 cm above a floor, for probes at a distance of 1.
+#[test]
+fn the_bias_does_not_jump_over_a_near_surface() {
+    // Everything below −0.85 is hidden from the bright probe; the floor is at −1, and a dark probe lies under the board.
+    let below = |y: f32| if y < 0.0 { 0.85 / -y } else { f32::INFINITY };
+    let unit = |i: usize| (2 * i + 1) as f32 / 32.0 - 1.0;
+    let mut cube = vec![];
+    for face in 0..6 {
+        for texel in 0..32 * 32 {
+            let point = pointillist_shprobe::sh::CubePoint {
+                face,
+                s: unit(texel % 32).into(),
+                t: unit(texel / 32).into(),
+            };
+            cube.push(below(pointillist_shprobe::sh::cube_direction(point).normalize().y as f32));
+        }
+    }
+    let map = DistanceMap::from_cube(16, 32, &cube, 100.0).unwrap();
+    let under = DistanceMap::from_cube(16, 32, &room(32, 5.0), 100.0).unwrap();
+    let positions = [DVec3::ZERO, dvec3(0.6, -0.98, 0.0)];
+    let field =
+        Field::new(&positions, &constant(&[50.0, 1.0])).unwrap().with_distances(vec![map, under]).unwrap();
+    let field = field.with_bias(0.2).unwrap();
+    let floor = field.irradiance(dvec3(0.0, -1.0, 0.0), Vec3::Y, Vec3::Y, &mut Hint::default()).unwrap().x;
+    assert!(floor < 10.0 * std::f32::consts::PI, "{floor}");
+    assert!(matches!(field.with_bias(-0.1), Err(ProbeError::BadOption { name: "bias", .. })));
+}
+
+/// Fitting to surfaces lowers their error, and places on surfaces are never probes.
+#[test]
+fn places_on_surfaces_are_fitted_and_never_chosen() {
+    let (mut positions, mut radiance) = spotted();
+    let free = positions.len();
+    // A floor in other light than there is just above it: from the side, as if by an edge.
+    let floor = place::grid(dvec3(0.0, 0.0, 0.0), dvec3(4.0, 0.0, 2.0), [12, 1, 6]);
+    let dim = Sh::new((0..9).map(|k| DVec3::splat(if k == 0 { 2.0 } else { 0.1 })).collect()).unwrap();
+    radiance.extend(floor.iter().map(|_| dim.clone()));
+    positions.extend(&floor);
+    let normals: Vec<DVec3> =
+        (0..positions.len()).map(|i| if i < free { DVec3::ZERO } else { DVec3::Y }).collect();
+    let map = DistanceMap::from_cube(8, 16, &room(16, 9.0), 100.0).unwrap();
+    let maps = vec![map; positions.len()];
+    let counts: Vec<f64> = normals.iter().map(|n| if *n == DVec3::ZERO { 1.0 } else { 50.0 }).collect();
+    let options = place::AdaptiveOptions::DEFAULT.with_max_count(40);
+    let fit = place::FitOptions::DEFAULT;
+    for known in [
+        place::Candidates::new(&positions, &radiance).with_normals(&normals).with_weights(&counts),
+        place::Candidates::new(&positions, &radiance)
+            .with_normals(&normals)
+            .with_weights(&counts)
+            .with_distances(&maps),
+    ] {
+        let chosen = place::adaptive(known, &options).unwrap().chosen;
+        assert!(chosen.len() == 40 && chosen.iter().all(|&i| (i as usize) < free));
+        let at: Vec<DVec3> = chosen.iter().map(|&i| positions[i as usize]).collect();
+        let error = |held: &[Sh]| {
+            let mut field = Field::new(&at, held).unwrap();
+            if known.distances.is_some() {
+                field = field.with_distances(maps[..40].to_vec()).unwrap();
+            }
+            let truth = dim.irradiance(DVec3::Y).x;
+            let one = |p: &DVec3| {
+                let light = field.irradiance(*p, Vec3::Y, Vec3::Y, &mut Hint::default()).unwrap().x;
+                (f64::from(light) - truth).powi(2)
+            };
+            floor.iter().map(one).sum::<f64>()
+        };
+        let saw: Vec<Sh> = chosen.iter().map(|&i| radiance[i as usize].clone()).collect();
+        let fitted = place::fit(known, &chosen, &fit).unwrap();
+        assert!(error(&fitted) < 0.5 * error(&saw), "{} against {}", error(&fitted), error(&saw));
+    }
+    let wrong = place::Candidates::new(&positions, &radiance).with_normals(&normals[1..]);
+    assert!(matches!(place::adaptive(wrong, &options), Err(ProbeError::CountMismatch { .. })));
+    let nowhere = vec![DVec3::Y; positions.len()];
+    let none = place::Candidates::new(&positions, &radiance).with_normals(&nowhere);
+    assert_eq!(place::adaptive(none, &options).err(), Some(ProbeError::NoProbes));
+}
+
+/// What is seen from `p` in two rooms, with a wall at x = 0 and a doorway about z = 0 in it.
+fn two_rooms_from(p: DVec3) -> DistanceMap {
+    let size = 32;
+    let unit = |i: usize| (2 * i + 1) as f64 / size as f64 - 1.0;
+    let mut cube = vec![];
+    for (face, texel) in (0..6).flat_map(|face| (0..size * size).map(move |t| (face, t))) {
+        let point = pointillist_shprobe::sh::CubePoint { face, s: unit(texel % size), t: unit(texel / size) };
+        let d = pointillist_shprobe::sh::cube_direction(point).normalize();
+        let to_side = [0, 1, 2].map(|k| ([4.0, 1.0, 2.0][k] * d[k].signum() - p[k]) / d[k]);
+        let mut far = to_side.into_iter().fold(f64::INFINITY, f64::min);
+        let to_wall = -p.x / d.x;
+        if to_wall > 0.0 && (p.z + d.z * to_wall).abs() > 0.5 {
+            far = far.min(to_wall);
+        }
+        cube.push(far as f32);
+    }
+    DistanceMap::from_cube(16, size, &cube, 100.0).unwrap()
+}
+
+#[test]
+fn openings_are_found_in_the_doorway_and_nowhere_else() {
+    let positions = place::grid(dvec3(-4.0, -1.0, -2.0), dvec3(4.0, 1.0, 2.0), [16, 4, 9]);
+    let maps: Vec<DistanceMap> = positions.iter().map(|&p| two_rooms_from(p)).collect();
+    let scores = place::openings(&positions, &maps).unwrap();
+    let about = |p: DVec3| p.x.abs() < 1.6 && p.z.abs() < 1.6;
+    let most = |is_near: bool| {
+        let of = positions.iter().zip(&scores).filter(|(p, _)| about(**p) == is_near);
+        of.map(|(_, s)| *s).fold(0.0, f64::max)
+    };
+    assert!(most(true) > 0.02 && most(false) < 0.1 * most(true), "{} and {}", most(true), most(false));
+    let more = place::near_openings(&positions, &maps, 100, 1).unwrap();
+    assert!(more.len() == 100 && more.iter().filter(|p| about(**p)).count() > 80);
+    assert!(place::near_openings(&positions, &maps[1..], 9, 1).is_err());
+    let open = vec![DistanceMap::new(2, vec![[9.0, 81.0]; 4]).unwrap(); positions.len()];
+    assert!(place::near_openings(&positions, &open, 100, 1).unwrap().is_empty());
 }

@@ -1,6 +1,6 @@
 //! The facts of `invariants`, for probes at hard positions, with and without distances.
 
-use glam::{DVec3, dvec3};
+use glam::{DVec3, Vec3, dvec3};
 use pointillist_shprobe::sh::{Sh, coefficient_count};
 use pointillist_shprobe::{DistanceMap, Field, invariants as facts};
 use proptest::collection::vec;
@@ -32,6 +32,13 @@ fn probes() -> impl Strategy<Value = (Vec<DVec3>, Vec<Sh>, Vec<DistanceMap>)> {
 fn field((positions, radiance, maps): &(Vec<DVec3>, Vec<Sh>, Vec<DistanceMap>)) -> Field {
     let field = Field::new(positions, radiance).expect("finite probes");
     if maps.is_empty() { field } else { field.with_distances(maps.clone()).expect("a map for each") }
+}
+
+/// A place on a surface or in free space.
+fn place() -> impl Strategy<Value = facts::Place> {
+    let normal =
+        prop_oneof![Just(Vec3::ZERO), Just(Vec3::Y), (-1.0..1.0_f32).prop_map(|x| Vec3::new(x, 0.5, -x))];
+    (query(), normal.prop_map(Vec3::normalize_or_zero))
 }
 
 proptest! {
@@ -91,5 +98,15 @@ proptest! {
     #[test]
     fn spread_positions_are_far_apart(candidates in lattice_points(), count in 0..12_usize) {
         holds!(facts::spread_positions_are_far_apart(&candidates, count));
+    }
+
+    #[test]
+    fn shares_do_not_jump(probes in probes(), from in place(), to in place()) {
+        holds!(facts::shares_do_not_jump(&field(&probes), from, to));
+    }
+
+    #[test]
+    fn at_most_so_many_probes_light_a_position(probes in probes(), queries in vec(query(), 1..12)) {
+        holds!(facts::at_most_so_many_probes_light_a_position(&field(&probes), &queries));
     }
 }

@@ -81,12 +81,10 @@ pub fn hints_do_not_matter(field: &Field, positions: &[DVec3], tolerance: f32) -
     let largest = field.irradiance_coefficients().iter().fold(0.0_f32, |m, c| m.max(c.abs().max_element()));
     let normal = Vec3::Y;
     let queries: Vec<_> = finite.iter().map(|&p| (p, normal)).collect();
-    let bias = field.bias();
     let all = field.irradiance_all(&queries).map_err(|error| error.to_string())?;
     let mut hint = Hint::default();
     for (&p, with_others) in finite.iter().zip(all) {
-        let lifted = p + normal.as_dvec3() * bias;
-        let of = |hint: &mut Hint| field.irradiance(lifted, Vec3::ZERO, normal, hint);
+        let of = |hint: &mut Hint| field.irradiance(p, normal, normal, hint);
         let walked = of(&mut hint).map_err(|error| error.to_string())?;
         let fresh = of(&mut Hint::default()).map_err(|error| error.to_string())?;
         for found in [walked, with_others] {

@@ -15,12 +15,16 @@
 //! ```
 
 mod changes;
+mod continuous;
 mod light;
 mod sight;
 
 pub use changes::{changes_give_the_field_of_the_result, fields_are_equal, insert_then_remove_restores};
+pub use continuous::{Place, shares_do_not_jump};
 pub use light::{CONSTANT_ERROR, constant_light_stays_constant, hints_do_not_matter, shares_sum_to_one};
-pub use sight::{spread_positions_are_far_apart, visibility_falls_with_distance};
+pub use sight::{
+    at_most_so_many_probes_light_a_position, spread_positions_are_far_apart, visibility_falls_with_distance,
+};
 
 fn check(holds: bool, message: impl FnOnce() -> String) -> Result<(), String> {
     if holds { Ok(()) } else { Err(message()) }

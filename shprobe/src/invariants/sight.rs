@@ -1,8 +1,8 @@
 //! What probes see, and positions for them.
 
 use super::check;
-use crate::{DistanceMap, place};
-use glam::DVec3;
+use crate::{DistanceMap, Field, Hint, place};
+use glam::{DVec3, Vec3};
 
 /// Offsets longer than this are not checked: sums of their coordinates leave the range of `f64`.
 const LONGEST: f64 = 1e300;
@@ -46,4 +46,19 @@ pub fn spread_positions_are_far_apart(candidates: &[DVec3], count: usize) -> Res
     check(count == 0 || farthest <= most, || {
         format!("{farthest} from {chosen:?} lies a candidate, {apart} apart")
     })
+}
+
+/// No position, on no surface, is lit by more than [`Field::MOST_SHARES`] probes, however many there are.
+///
+/// # Errors
+/// The first that is.
+pub fn at_most_so_many_probes_light_a_position(field: &Field, positions: &[DVec3]) -> Result<(), String> {
+    for &p in positions.iter().filter(|p| p.is_finite()) {
+        for normal in [Vec3::ZERO, Vec3::Y] {
+            let shares = field.surface_shares(p, normal, &mut Hint::default());
+            let shares = shares.map_err(|error| error.to_string())?;
+            check(shares.len() <= Field::MOST_SHARES, || format!("{} probes light {p}", shares.len()))?;
+        }
+    }
+    Ok(())
 }

@@ -1,7 +1,8 @@
 //! Placement driven by the error of interpolation.
 
+use super::sighted::choose_by_sight;
 use super::thin::thin;
-use super::trial::{Bench, Candidates, Outcome, check_amount};
+use super::trial::{BALANCE, Bench, Candidates, Outcome, check_amount};
 use crate::{ProbeError, parallel};
 use std::collections::BTreeMap;
 
@@ -14,17 +15,19 @@ pub struct AdaptiveOptions {
     /// Relative RMS error of irradiance at which placement stops. Default: 0: as many probes as allowed are used.
     pub max_error: f64,
     /// How errors are weighted: with 0 they count in absolute terms, with 1 relative to the light at their position.
-    /// Default: 0.5.
+    /// Default: [`BALANCE`](super::BALANCE).
     pub balance: f64,
     /// Candidates tried in each exchange: the worst lit of the cells with the largest errors. Default: 48.
     pub trials: usize,
-    /// Most exchanges at the end, each of a probe that matters little for one that matters more. Default: 16.
+    /// Most exchanges at the end, each of a probe that matters little for one that matters more. Default: 64; without distances
+    /// at most 16 are made, which take much longer there.
     pub exchanges: usize,
 }
 
 impl AdaptiveOptions {
     /// The defaults, as a constant.
-    pub const DEFAULT: Self = Self { max_count: 96, max_error: 0.0, balance: 0.5, trials: 48, exchanges: 16 };
+    pub const DEFAULT: Self =
+        Self { max_count: 96, max_error: 0.0, balance: BALANCE, trials: 48, exchanges: 64 };
 
     /// Sets how many probes there may be.
     #[must_use]
@@ -68,6 +71,9 @@ impl Default for AdaptiveOptions {
     }
 }
 
+/// Most exchanges of probes whose sight is not known: each divides space anew for every trial.
+const BLIND_EXCHANGES: usize = 16;
+
 /// Which candidates became probes.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -98,10 +104,13 @@ pub struct Adaptive {
 pub fn adaptive(candidates: Candidates<'_>, options: &AdaptiveOptions) -> Result<Adaptive, ProbeError> {
     let bench = Bench::new(candidates, options.balance)?;
     check_amount("max_error", options.max_error)?;
-    let limit = options.max_count.clamp(1, bench.count());
+    let limit = options.max_count.clamp(1, bench.free().len());
+    if bench.sees() {
+        return choose_by_sight(&bench, limit, options);
+    }
     let thinned = thin(&bench, limit, options.max_error * options.max_error)?;
     let mut state = State { chosen: thinned.chosen, outcome: Some(thinned.outcome) };
-    for _ in 0..options.exchanges {
+    for _ in 0..options.exchanges.min(BLIND_EXCHANGES) {
         let Some(fewer) = best_removal(&bench, &state)? else { break };
         match best_insertion(&bench, &fewer, options.trials)? {
             Some(better) if better.error2() < state.error2() => state = better,
@@ -160,7 +169,7 @@ fn shortlist(bench: &Bench<'_>, state: &State, trials: usize) -> Vec<u32> {
     let Some(outcome) = &state.outcome else { return vec![] };
     let mut cells: BTreeMap<[u32; 4], (f64, u32)> = BTreeMap::new();
     for (i, (&part, cell)) in outcome.parts.iter().zip(&outcome.cells).enumerate() {
-        if part > 0.0 && !state.chosen.contains(&(i as u32)) {
+        if part > 0.0 && bench.basis(i).is_none() && !state.chosen.contains(&(i as u32)) {
             let entry = cells.entry(*cell).or_insert((0.0, i as u32));
             entry.0 += part;
             if part > outcome.parts[entry.1 as usize] {
@@ -174,7 +183,7 @@ fn shortlist(bench: &Bench<'_>, state: &State, trials: usize) -> Vec<u32> {
     // At first few cells hold many candidates: then the list is filled up with the candidates of largest error.
     let mut tries: Vec<u32> = worst.into_iter().map(|(_, i)| i).collect();
     let mut rest: Vec<u32> =
-        (0..bench.count() as u32).filter(|i| !tries.contains(i) && !state.chosen.contains(i)).collect();
+        bench.free().into_iter().filter(|i| !tries.contains(i) && !state.chosen.contains(i)).collect();
     rest.sort_by(|&a, &b| outcome.parts[b as usize].total_cmp(&outcome.parts[a as usize]).then(a.cmp(&b)));
     let missing = trials - tries.len();
     tries.extend(rest.into_iter().filter(|&i| outcome.parts[i as usize] > 0.0).take(missing));

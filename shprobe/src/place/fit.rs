@@ -1,7 +1,7 @@
 //! Coefficients of probes, fitted to the light between them by least squares.
 
-use super::trial::{Bench, Candidates, check_amount};
-use crate::sh::Sh;
+use super::trial::{BALANCE, Bench, Candidates, check_amount};
+use crate::sh::{Lobe, MAX_COUNT, Sh};
 use crate::sight::Shares;
 use crate::{ProbeError, parallel};
 use glam::DVec3;
@@ -10,17 +10,17 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FitOptions {
-    /// As [`AdaptiveOptions::balance`](super::AdaptiveOptions::balance). Default: 0.5.
+    /// As [`AdaptiveOptions::balance`](super::AdaptiveOptions::balance). Default: [`BALANCE`].
     pub balance: f64,
     /// Weight of what a probe saw itself against what the candidates that it lights saw; 0 ignores the former. Default:
-    /// 0.1, found by experiment: with a smaller weight the error hardly falls where candidates are dense, and where
-    /// they are sparse the probes overfit the few candidates.
+    /// 0.02, found by experiment: with a larger weight the error falls less where candidates are dense, and without any
+    /// weight probes that light few candidates hold what fits only these.
     pub hold: f64,
 }
 
 impl FitOptions {
     /// The defaults, as a constant.
-    pub const DEFAULT: Self = Self { balance: 0.5, hold: 0.1 };
+    pub const DEFAULT: Self = Self { balance: BALANCE, hold: 0.02 };
 
     /// Sets how much errors in the dark count.
     #[must_use]
@@ -53,7 +53,8 @@ const MOST_STEPS: usize = 500;
 /// A probe that holds what it saw is exact at its own position, but biased all around it where light has a peak or a
 /// minimum there. A fitted probe has a small error everywhere and a much smaller one on the whole. \[6\] does the same
 /// for vertices of meshes. The normal equations Σ wₛ aₛaₛᵀ X = Σ wₛ aₛ Tₛ, with a row aₛ of shares for each candidate,
-/// are solved by conjugate gradients from what the probes saw.
+/// are solved by conjugate gradients from what the probes saw. On a surface the row is that of the irradiance for its
+/// normal, which ties all coefficients of its probes together; the error in free space is the mean over all normals.
 ///
 /// # Errors
 /// As [`adaptive`](super::adaptive), and [`ProbeError::NoSuchProbe`] for a number that is no candidate.
@@ -64,28 +65,38 @@ pub fn fit(candidates: Candidates<'_>, chosen: &[u32], options: &FitOptions) -> 
         return Err(ProbeError::NoSuchProbe { index });
     }
     let equations = Equations::new(&bench, chosen, options.hold)?;
-    let count = candidates.radiance[0].coefficients().len();
-    let saw = |i: usize| candidates.radiance[i].coefficients();
-    let start: Vec<Vec<DVec3>> = chosen.iter().map(|&i| saw(i as usize).to_vec()).collect();
+    let scales = scales(candidates.radiance[0].order());
+    let count = scales.len();
+    let saw = |i: usize| candidates.radiance[i].coefficients().iter().zip(&scales).map(|(c, s)| *c * *s);
+    let start: Vec<Vec<DVec3>> = chosen.iter().map(|&i| saw(i as usize).collect()).collect();
     // Solves for the correction of what the probes saw: the right side is the error at the candidates.
     let missing: Vec<Vec<DVec3>> = parallel::map(bench.count(), |s| {
-        let mut rest = saw(s).to_vec();
+        let mut rest: Vec<DVec3> = saw(s).collect();
         for (p, share) in equations.rows[s].iter() {
             rest.iter_mut().zip(&start[p as usize]).for_each(|(r, x)| *r -= *x * share);
         }
-        rest
+        equations.seen(s, rest)
     });
     let gain = solve(&equations, equations.gathered(&missing, count), count);
     let sum = |(x, dx): (Vec<DVec3>, Vec<DVec3>)| -> Result<Sh, ProbeError> {
-        Ok(Sh::new(x.into_iter().zip(dx).map(|(a, b)| a + b).collect())?)
+        Ok(Sh::new(x.into_iter().zip(dx).zip(&scales).map(|((a, b), s)| (a + b) / *s).collect())?)
     };
     start.into_iter().zip(gain).map(sum).collect()
+}
+
+/// What coefficients of radiance are multiplied by so that sums of squares are means of squared irradiance over all
+/// normals. Bands above 2, of which irradiance has little or nothing, count like band 2.
+fn scales(order: usize) -> Vec<f64> {
+    let norm = (4.0 * std::f64::consts::PI).sqrt();
+    (0..=order).flat_map(|l| std::iter::repeat_n(Lobe::COSINE.bands()[l.min(2)] / norm, 2 * l + 1)).collect()
 }
 
 /// The normal equations as an operator: the matrix is never stored.
 struct Equations {
     rows: Vec<Shares>,
     weights: Vec<f64>,
+    /// For candidates on surfaces, what irradiance is of the scaled coefficients.
+    bases: Vec<Option<[f64; MAX_COUNT]>>,
     /// Weight of each probe's own observation.
     held: Vec<f64>,
 }
@@ -100,7 +111,26 @@ impl Equations {
         }
         // A probe that lights no candidate keeps what it saw, whatever the weight.
         let held = lit.into_iter().map(|lit| if lit > 0.0 { hold * lit } else { 1.0 }).collect();
-        Ok(Self { rows, weights, held })
+        let scales = scales(bench.order());
+        let in_scale = |basis: &[f64; MAX_COUNT]| {
+            let mut scaled = [0.0; MAX_COUNT];
+            let bands = bench.cosine();
+            for (k, scale) in scales.iter().enumerate() {
+                scaled[k] = basis[k] * bands[k] / scale;
+            }
+            scaled
+        };
+        let bases = (0..bench.count()).map(|i| bench.basis(i).map(in_scale)).collect();
+        Ok(Self { rows, weights, bases, held })
+    }
+
+    /// Coefficients as a candidate counts them: themselves, or on a surface their part in its irradiance.
+    fn seen(&self, s: usize, mut coefficients: Vec<DVec3>) -> Vec<DVec3> {
+        if let Some(basis) = &self.bases[s] {
+            let light: DVec3 = coefficients.iter().zip(basis).map(|(c, y)| *c * *y).sum();
+            coefficients.iter_mut().zip(basis).for_each(|(c, y)| *c = light * *y);
+        }
+        coefficients
     }
 
     /// Σ wₛ aₛ rₛ: residuals of candidates, gathered at their probes.
@@ -119,7 +149,7 @@ impl Equations {
         let lit: Vec<Vec<DVec3>> = parallel::map(self.rows.len(), |s| {
             let mut sum = vec![DVec3::ZERO; count];
             self.rows[s].iter().for_each(|(p, share)| add(&mut sum, &x[p as usize], share));
-            sum
+            self.seen(s, sum)
         });
         let mut product = self.gathered(&lit, count);
         product.iter_mut().zip(x).zip(&self.held).for_each(|((sum, x), held)| add(sum, x, *held));

@@ -16,7 +16,7 @@ const SHARE: usize = 20;
 
 /// Takes out probes until `limit` are left, and on as long as the squared error stays within `enough`.
 pub(super) fn thin(bench: &Bench<'_>, limit: usize, enough: f64) -> Result<Thinned, ProbeError> {
-    let mut chosen: Vec<u32> = (0..bench.count() as u32).collect();
+    let mut chosen = bench.free();
     let mut outcome = bench.outcome(&chosen)?;
     let mut errors = vec![(chosen.len(), outcome.error2.sqrt())];
     // Rounds become smaller after one that went beyond the error allowed.

@@ -17,7 +17,7 @@ const DOOR: [f64; 2] = [1.5, 2.5];
 const DOOR_HEIGHT: f64 = 2.1;
 
 /// How far the wall reaches into floor, ceiling and side walls: closed bodies must not share edges.
-const SUNK: f64 = 0.05;
+const SUNK: f64 = 0.002;
 
 const GREY: Vec3 = Vec3::splat(0.7);
 const RED: Vec3 = vec3(0.8, 0.15, 0.1);
@@ -27,11 +27,24 @@ const BLUE: Vec3 = vec3(0.1, 0.2, 0.8);
 /// Length of the squares of which walls are made: probes are placed above their corners, too.
 const SQUARE: f64 = 0.5;
 
+/// The same of a wall of 10 cm. It begins where squares of floor and ceiling meet: no patch of light reaches below it
+/// from the bright room into the dark one.
+pub(crate) const THIN_WALL: [f64; 2] = [4.0, 4.1];
+
 /// Two rooms with a doorway, and a lamp in the first. The end walls are coloured.
 pub(crate) fn two_rooms() -> Scene {
+    rooms_with(WALL)
+}
+
+/// Two rooms with a wall of 10 cm.
+pub(crate) fn thin_wall_rooms() -> Scene {
+    rooms_with(THIN_WALL)
+}
+
+fn rooms_with(wall: [f64; 2]) -> Scene {
     let mut sketch = Sketch::new(dvec3(0.4, 1.7, 0.4), dvec3(5.0, 1.2, 2.2), 75.0, 256);
     room(&mut sketch, ROOMS, [RED, BLUE]);
-    dividing_wall(&mut sketch);
+    dividing_wall(&mut sketch, wall);
     lamp(&mut sketch, dvec3(2.0, 1.8, 2.0), 10.0);
     sketch.scene
 }
@@ -102,12 +115,12 @@ fn squares(sketch: &mut Sketch, [origin, u, v]: [DVec3; 3], material: u32) {
 }
 
 /// A closed body with a hole in it: cells of a grid across the room, of which the one of the doorway is left out.
-fn dividing_wall(sketch: &mut Sketch) {
+fn dividing_wall(sketch: &mut Sketch, wall: [f64; 2]) {
     let material = sketch.material(Material::lambert(GREY), None);
     let z = [-SUNK, DOOR[0], DOOR[1], ROOMS.z + SUNK];
     let y = [-SUNK, DOOR_HEIGHT, ROOMS.y + SUNK];
     let is_wall = |i: i32, j: i32| (0..3).contains(&i) && (0..2).contains(&j) && (i, j) != (1, 0);
-    let at = |side: usize, i: i32, j: i32| dvec3(WALL[side], y[j as usize], z[i as usize]);
+    let at = |side: usize, i: i32, j: i32| dvec3(wall[side], y[j as usize], z[i as usize]);
     for (i, j) in (0..2).flat_map(|j| (0..3).map(move |i| (i, j))).filter(|&(i, j)| is_wall(i, j)) {
         let face =
             |side: usize| [at(side, i, j), at(side, i + 1, j), at(side, i + 1, j + 1), at(side, i, j + 1)];

@@ -17,5 +17,6 @@ mod study;
 mod trilinear;
 pub(crate) mod truth;
 mod walk;
+mod wall;
 
 pub(crate) use study::{run, run_with};

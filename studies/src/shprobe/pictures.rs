@@ -14,6 +14,7 @@ use crate::shprobe::maps;
 use crate::shprobe::site::{Baked, Site, lit_by};
 use crate::shprobe::streets;
 use crate::shprobe::walk::walk;
+use crate::shprobe::wall;
 
 type Fault = Box<dyn std::error::Error + Send + Sync>;
 
@@ -36,6 +37,7 @@ pub(crate) fn all(folder: &Path) -> Result<String, Fault> {
     let mut text = String::new();
     let rooms = Site::two_rooms();
     room_pictures(&Survey::unmeasured(&rooms)?, folder, 96, 0.3)?;
+    text += &wall::pictures(folder)?;
     match Site::sponza() {
         Some(site) => {
             let survey = Survey::unmeasured(&site)?;

@@ -5,7 +5,11 @@ use std::path::Path;
 
 use glam::{DVec3, Vec3, dvec3};
 use pointillist_cli::scene::{Overrides, load};
-use pointillist_render::{Ambient, AmbientLight, CaptureOptions, Prepared, RenderError, Scene};
+use pointillist_radiosity::{Scene as Patches, SceneOptions, SolveOptions};
+use pointillist_render::{
+    Ambient, AmbientLight, CaptureOptions, Lamps, Lightmap, Prepared, RenderError, Scene, scene_surfaces,
+    with_lamps,
+};
 use pointillist_sh::{CubeMap, CubeProjector, Sh, Weights};
 use pointillist_shade::face_normal;
 use pointillist_shprobe::{DEFAULT_DISTANCE_SIZE, DistanceMap, Field, ProbeError, place};
@@ -13,7 +17,7 @@ use rayon::prelude::*;
 
 use crate::common::data;
 use crate::common::ray_reference::Tree;
-use crate::common::rooms::{ROOMS, WALL, basic, two_rooms};
+use crate::common::rooms::{ROOMS, THIN_WALL, WALL, basic, thin_wall_rooms, two_rooms};
 use crate::common::scenes::corners;
 use crate::shprobe::rays::{Look, look_by_rays};
 
@@ -40,7 +44,7 @@ pub(crate) struct Site {
     pub(crate) candidates: [usize; 3],
     /// How much errors in the dark count in choosing.
     pub(crate) balance: f64,
-    /// Whether pictures are drawn to see light, or rays cast.
+    /// Whether pictures are drawn to see light, or rays cast: these see one bounce.
     pub(crate) eye: Eye,
     /// Pixels on a side of what probes see, and of what is true.
     pub(crate) probe_px: u32,
@@ -64,6 +68,22 @@ impl Site {
             probe_px: 32,
             truth_px: 64,
             queries: 400,
+        }
+    }
+
+    /// The same with a wall of 10 cm.
+    pub(crate) fn thin_wall() -> Self {
+        Self {
+            name: "two rooms, wall of 10 cm",
+            scene: thin_wall_rooms(),
+            dark_from: Some(THIN_WALL[1]),
+            grids: &[[12, 6, 6]],
+            candidates: [20, 8, 10],
+            eye: Eye::Rays,
+            probe_px: 24,
+            truth_px: 40,
+            queries: 300,
+            ..Self::two_rooms()
         }
     }
 
@@ -184,6 +204,13 @@ impl Baked {
         some
     }
 
+    /// Adds others after them.
+    pub(crate) fn extend(&mut self, more: Self) {
+        self.positions.extend(more.positions);
+        self.radiance.extend(more.radiance);
+        self.distances.extend(more.distances);
+    }
+
     /// Ready to light objects.
     pub(crate) fn field(&self, distances: bool) -> Result<Field, ProbeError> {
         let field = Field::new(&self.positions, &self.radiance)?;
@@ -196,11 +223,16 @@ pub(crate) struct Ground<'a> {
     pub(crate) site: &'a Site,
     pub(crate) prepared: Prepared<'a>,
     tree: Tree,
+    /// Light that is sent on, on the surfaces, if it is looked at.
+    sent_on: Option<Lightmap>,
 }
 
 /// Rays by which positions in walls are found, and the share of them that may meet the back of a surface.
 const FEELERS: u32 = 96;
 const BACKS: f64 = 0.1;
+
+/// Side of the patches of light that is sent on.
+const PATCH: f64 = 0.25;
 
 /// Sight is not limited in any direction by anything closer than this share of the box's diagonal.
 const CLOSE: f64 = 0.002;
@@ -210,10 +242,26 @@ const STEPS: [f64; 5] = [0.005, 0.01, 0.02, 0.04, 0.06];
 
 impl<'a> Ground<'a> {
     pub(crate) fn new(site: &'a Site) -> Result<Self, RenderError> {
-        Ok(Self { site, prepared: Prepared::new(&site.scene, &())?, tree: Tree::new(&site.scene) })
+        Self::lit(site, None)
     }
 
-    /// Light sent on once by what the lights shine on. Does not depend on other probes.
+    /// With light that is sent on from surface to surface: a radiosity solution.
+    pub(crate) fn with_bounces(site: &'a Site) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
+        let surfaces = scene_surfaces(&site.scene)?;
+        let mut patches = Patches::new(&surfaces.surfaces, &SceneOptions::DEFAULT.with_patch(PATCH))?;
+        let direct = with_lamps(&Lamps::new(&site.scene), |lamps| patches.direct(lamps))?;
+        let solution = patches.transport(&direct)?.gauss_seidel(&SolveOptions::DEFAULT)?.bake();
+        let lightmap = Lightmap::of_baked(&solution, &surfaces.faces, site.scene.mesh.triangles.len())?;
+        Ok(Self::lit(site, Some(lightmap))?)
+    }
+
+    fn lit(site: &'a Site, sent_on: Option<Lightmap>) -> Result<Self, RenderError> {
+        let prepared = Prepared::new(&site.scene, &())?;
+        Ok(Self { site, prepared, tree: Tree::new(&site.scene), sent_on })
+    }
+
+    /// What arrives from what the lights shine on, and with bounces from what these send on. Does not depend on other
+    /// probes.
     pub(crate) fn look(&self, positions: &[DVec3]) -> Result<Baked, RenderError> {
         let size = self.site.probe_px;
         let projector = CubeProjector::new(size as usize, 2, Weights::Gregory)?;
@@ -228,13 +276,19 @@ impl<'a> Ground<'a> {
         Ok(Baked { positions: positions.to_vec(), radiance, distances })
     }
 
+    /// The light that is sent on, if it is looked at.
+    pub(crate) const fn sent_on(&self) -> Option<&Lightmap> {
+        self.sent_on.as_ref()
+    }
+
     /// What is seen from a position, under no other light than that of the lights.
     pub(crate) fn capture(&self, p: DVec3, resolution: u32, thorough: bool) -> Result<Look, RenderError> {
         if self.site.eye == Eye::Rays {
-            return Ok(look_by_rays(&self.site.scene, &self.tree, p, resolution));
+            return Ok(look_by_rays(&self.site.scene, &self.tree, self.sent_on.as_ref(), p, resolution));
         }
         let options = CaptureOptions { resolution, thorough, ..CaptureOptions::DEFAULT };
-        Ok(self.prepared.capture(p, options, Ambient::Color(Vec3::ZERO), &())?.into())
+        let ambient = self.sent_on.as_ref().map_or(Ambient::Color(Vec3::ZERO), Ambient::Radiosity);
+        Ok(self.prepared.capture(p, options, ambient, &())?.into())
     }
 
     /// Whether a position is neither in a solid nor among the backs of surfaces that are not closed.

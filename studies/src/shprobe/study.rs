@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use pointillist_shprobe::place;
+
 use crate::common::data;
 use crate::common::report::{Limit, Outcome, Row, chart_along, chart_of, machine, verdict, write, write_csv};
 use crate::shprobe::bounces;
@@ -15,6 +17,7 @@ use crate::shprobe::paper;
 use crate::shprobe::pictures;
 use crate::shprobe::projection;
 use crate::shprobe::site::Site;
+use crate::shprobe::wall;
 
 type Fault = Box<dyn std::error::Error + Send + Sync>;
 
@@ -45,6 +48,20 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
 pub(crate) fn run_with(out_dir: &Path, arguments: &[&str]) -> Outcome {
     match arguments {
         [site @ ("rooms" | "basic" | "sponza" | "sibenik"), more @ ..] => run_site(site, more),
+        ["wall", "pictures", folder] => {
+            std::fs::create_dir_all(folder)?;
+            print!("{}", wall::pictures(Path::new(folder))?);
+            Ok(true)
+        }
+        ["wall", more @ ..] => {
+            let numbers: Vec<f64> = more.iter().filter_map(|a| a.parse().ok()).collect();
+            let (counts, balances): (Vec<f64>, Vec<f64>) = numbers.iter().partition(|n| **n > 1.0);
+            let counts: Vec<usize> = counts.into_iter().map(|c| c as usize).collect();
+            let counts = if counts.is_empty() { wall::COUNTS.to_vec() } else { counts };
+            let balances = if balances.is_empty() { vec![place::BALANCE] } else { balances };
+            print!("{}", wall::table(&counts, &balances, more.contains(&"with"))?.0);
+            Ok(true)
+        }
         ["quick"] => measure(&Wish { quick: true, pictures: None }, &trial_folder()),
         ["--pictures", folder] => measure(&Wish { quick: false, pictures: Some(folder.into()) }, out_dir),
         ["quick", "--pictures", folder] => {
@@ -58,7 +75,7 @@ pub(crate) fn run_with(out_dir: &Path, arguments: &[&str]) -> Outcome {
             print!("{}", found.text);
             true
         }),
-        _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe bounces, or shprobe pictures DIR".into()),
+        _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe bounces, or shprobe wall [with] [COUNT…] [BALANCE…], or shprobe wall pictures DIR, or shprobe pictures DIR".into()),
     }
 }
 
@@ -103,6 +120,7 @@ fn measure(wish: &Wish, out_dir: &Path) -> Outcome {
     points(&mut report, wish)?;
     bounced(&mut report, wish)?;
     placement(&mut report, wish, out_dir)?;
+    walls(&mut report, wish)?;
     if let Some(folder) = &wish.pictures {
         report.section("Moving through Sponza", &pictures::all(folder)?);
     }
@@ -240,6 +258,32 @@ fn placement(report: &mut Report, wish: &Wish, out_dir: &Path) -> Result<(), Fau
     chart_along(out_dir, "shprobe-placement", ["probes", "error of irradiance"], &rows)?;
     report.section("Error against number of probes", &(PLACEMENT.to_owned() + &tables));
     report.section("The paper's table 3, by measured error", &(PAPER.to_owned() + &paper));
+    Ok(())
+}
+
+/// Most that light on the dark face of a wall may err, over its mean, with 96 probes and a grid of 432.
+const DARK_FACE: [(usize, f64); 2] = [(96, 0.1), (432, 0.06)];
+
+/// Most that irradiance in free space may err with 86 probes, and in the dark room with 96.
+const FREE_LIMIT: f64 = 0.07;
+
+fn walls(report: &mut Report, wish: &Wish) -> Result<(), Fault> {
+    let counts: &[usize] = if wish.quick { &[96] } else { &wall::COUNTS };
+    let (text, rows) = wall::table(counts, &[place::BALANCE], false)?;
+    let least = |from: usize, to: usize, error: &dyn Fn(&wall::Row) -> f64| {
+        rows.iter().filter(|r| (from..=to).contains(&r.probes)).map(error).fold(f64::INFINITY, f64::min)
+    };
+    for (count, limit) in DARK_FACE {
+        // Places of a grid that are in the wall are without a probe.
+        let found = least(count * 9 / 10, count, &|r| r.dark_face);
+        report.goal(&format!("dark face of a wall, {count} probes"), Limit::AtMost(limit), found);
+    }
+    if !wish.quick {
+        report.goal("wall: free space, 86 probes", Limit::AtMost(FREE_LIMIT), least(1, FEW, &|r| r.free));
+    }
+    let dark = least(1, DARK_FEW, &|r| r.dark_room);
+    report.goal("wall: dark room, 96 probes", Limit::AtMost(DARK_LIMIT), dark);
+    report.section("Both faces of a wall", &text);
     Ok(())
 }
 

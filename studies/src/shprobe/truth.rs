@@ -53,6 +53,17 @@ impl Truth {
         Ok(Self { positions, normals, irradiance, best })
     }
 
+    /// Irradiance at places on surfaces, each with its normal.
+    pub(crate) fn on_surfaces(
+        ground: &Ground<'_>,
+        places: &[(DVec3, DVec3)],
+    ) -> Result<Vec<DVec3>, RenderError> {
+        let size = ground.site.truth_px;
+        let one =
+            |&(p, normal): &(DVec3, DVec3)| Ok(integrated(&ground.capture(p, size, true)?, &[normal])[0]);
+        places.par_iter().map(one).collect()
+    }
+
     /// Nothing to compare with.
     pub(crate) fn none() -> Self {
         Self { positions: vec![], normals: normals(), irradiance: vec![], best: vec![] }

@@ -35,18 +35,14 @@ pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
         return Err(error.with_help("say which box to fill with --low and --high").into());
     }
     let prepared = Prepared::new(&scene, &report.stats).map_err(failed)?;
-    let positions = candidates(&scene, options);
-    if options.strategy == Strategy::Vertices && positions.len() < options.count as usize {
-        let (count, found) = (options.count, positions.len());
-        report.warn(&format!(
-            "--count {count}, but the scene has only {found} different vertices; \
-             --strategy grid, random and cluster place more"
-        ));
-    }
-    let positions = settle(&positions, &prepared, options, &report)?;
+    let positions = match options.strategy {
+        Strategy::Vertices => above_vertices(&scene, &prepared, options, &report)?,
+        _ => settle(&candidates(&scene, options), &prepared, options, &report)?,
+    };
     if positions.is_empty() {
         return Err(CliError::Failed("no place is left for a probe: all are inside of solids".to_owned()));
     }
+    say_if_fewer(positions.len(), options, &report);
     let positions = match options.strategy {
         Strategy::Cluster => cluster(&prepared, &positions, options, &report)?,
         _ => positions,
@@ -88,10 +84,54 @@ fn candidates(scene: &Scene, options: &PlaceOptions) -> Vec<DVec3> {
             place::grid(low, high, options.grid.unwrap_or_else(|| even_grid(high - low, all)))
         }
         Strategy::Random => place::random(low, high, count, options.seed),
-        Strategy::Vertices => {
-            let lifted = lifted_vertices(scene, LIFT * (high - low).length());
-            place::spread(&lifted, count).into_iter().map(|i| lifted[i]).collect()
+        Strategy::Vertices => vec![],
+    }
+}
+
+/// Places above vertices, as far from one another as can be. Those in solids are replaced by others as long as there are
+/// more vertices.
+fn above_vertices(
+    scene: &Scene,
+    prepared: &Prepared<'_>,
+    options: &PlaceOptions,
+    report: &Report<'_>,
+) -> Result<Vec<DVec3>, CliError> {
+    let (low, high) = region(scene, options);
+    let lifted = lifted_vertices(scene, LIFT * (high - low).length());
+    let count = options.count as usize;
+    let mut tried = count;
+    loop {
+        let spread = place::spread(&lifted, tried);
+        let all_tried = spread.len() < tried;
+        let places: Vec<DVec3> = spread.into_iter().map(|i| lifted[i]).collect();
+        let solids = Solids::new(prepared);
+        let is_left = |&(i, p): &(usize, &DVec3)| {
+            !matches!(inside::settle(&solids, i, *p, options.inside), Ok(Outcome::Dropped))
+        };
+        if all_tried || places.iter().enumerate().filter(is_left).count() >= count {
+            let mut left = settle(&places, prepared, options, report)?;
+            left.truncate(count);
+            return Ok(left);
         }
+        tried = tried.saturating_mul(2);
+    }
+}
+
+/// Says that there are fewer places than were asked for, and what gives more.
+fn say_if_fewer(found: usize, options: &PlaceOptions, report: &Report<'_>) {
+    let count = options.count;
+    if found >= count as usize {
+        return;
+    }
+    match options.strategy {
+        Strategy::Vertices => report.warn(&format!(
+            "--count {count}, but the scene has only {found} different vertices outside of solids; \
+             --strategy grid, random and cluster place more"
+        )),
+        Strategy::Random => report.warn(&format!(
+            "--count {count}, but {found} places are left outside of solids; --inside move keeps the others, too"
+        )),
+        Strategy::Grid | Strategy::Cluster => {}
     }
 }
 
@@ -177,7 +217,7 @@ fn cluster(
     let watch = Watch { task: "look", progress: &progress, stats };
     let chosen = choose_places(prepared, candidates, &choose, &watch).map_err(failed)?;
     progress.finish();
-    let free = candidates.len() - chosen.buried;
+    let free = chosen.candidates;
     stats.skip("candidates_in_walls", chosen.buried as u64);
     stats.count("candidates", free as u64);
     stats.figure("error", chosen.error);

@@ -70,7 +70,7 @@ fn sky(field: &Field, queries: &[(DVec3, Vec3)], name: &str) -> Result<Vec<Strin
 fn shares(field: &Field, queries: &[(DVec3, Vec3)], numbers: &[usize]) -> Result<Vec<String>, ProbeError> {
     let mut hint = Hint::default();
     let mut one = |&(position, normal): &(DVec3, Vec3)| {
-        let mut shares = field.shares(position + normal.as_dvec3() * field.bias(), &mut hint)?;
+        let mut shares = field.surface_shares(position, normal, &mut hint)?;
         shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         Ok(shares.iter().map(|(probe, share)| format!(" {}:{share:.4}", numbers[*probe as usize])).collect())
     };
