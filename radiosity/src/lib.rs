@@ -40,10 +40,15 @@
 //! 3. P. Hanrahan, D. Salzman, L. Aupperle: *A rapid hierarchical radiosity algorithm*, SIGGRAPH 1991.
 //! 4. E. A. Haines, J. R. Wallace: *Shaft culling for efficient ray-cast radiosity*, 1991.
 //! 5. M. Feda, W. Purgathofer: *Accelerating radiosity by overshooting*, Eurographics Workshop on Rendering 1992.
+//! 6. B. Smits, J. Arvo, D. Greenberg: *A clustering algorithm for radiosity in complex environments*, SIGGRAPH 1994.
+//! 7. A. Willmott, P. Heckbert, M. Garland: *Face cluster radiosity*, Eurographics Workshop on Rendering 1999.
+//! 8. G. J. Ward, F. M. Rubinstein, R. D. Clear: *A ray tracing solution for diffuse interreflection*, SIGGRAPH 1988.
+//! 9. S. Laine, T. Karras: *Stratified sampling for stochastic transparency*, Eurographics Symposium on Rendering 2011.
 #![forbid(unsafe_code)]
 mod assemble;
 mod bake;
 mod by_hemicube;
+mod cluster;
 mod contact;
 mod error;
 mod estimate;
@@ -55,8 +60,10 @@ pub mod invariants;
 mod kernel;
 mod lamp;
 mod link;
+mod mesh;
 mod patches;
 mod polygon;
+mod rays;
 mod refine;
 mod rgb;
 mod rows;
@@ -69,6 +76,7 @@ mod visible;
 
 pub use glam;
 
+pub use cluster::{ClusterCounts, ClusterOptions, ClusterSolution, Clusters};
 pub use bake::{Baked, BakedTriangle, BakedVertex};
 pub use error::{PolygonError, RadiosityError};
 pub use factor::{FactorOptions, FormFactor, form_factor};

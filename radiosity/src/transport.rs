@@ -5,7 +5,6 @@ use crate::link::{Link, LinkCounts};
 use crate::rgb::{Rgb, check_direct};
 use crate::scene::Scene;
 use crate::tree::ElementId;
-use crate::visible::boxes::Boxes;
 
 /// A scene with its links and its direct light.
 #[derive(Clone, Debug)]
@@ -18,7 +17,6 @@ pub struct Transport {
     /// Link and form factor from the row's element to the other.
     pub(crate) entries: Vec<Entry>,
     pub(crate) leaves: Vec<ElementId>,
-    pub(crate) boxes: Boxes,
     /// Parent of each element; `None` for roots.
     pub(crate) parents: Vec<Option<ElementId>>,
     /// Factor on the row of each patch, by `even_rows`.

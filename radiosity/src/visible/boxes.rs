@@ -73,6 +73,22 @@ impl Boxes {
         found.sort_unstable();
     }
 
+    /// The occluders whose boxes may reach to the inner side of all planes (normal outwards, and its product with a point of the plane) and
+    /// into the box from `low` to `high`, by number.
+    pub(crate) fn in_planes(&self, planes: &[(DVec3, f64)], (low, high): (DVec3, DVec3), found: &mut Vec<u32>) {
+        found.clear();
+        // The corner of a box that is farthest inside.
+        let inside = |n: &Node, (normal, offset): &(DVec3, f64)| {
+            let corner = DVec3::select(normal.cmpgt(DVec3::ZERO), n.low, n.high);
+            normal.dot(corner) < *offset
+        };
+        let meets = |n: &Node| {
+            n.low.cmple(high).all() && n.high.cmpge(low).all() && planes.iter().all(|plane| inside(n, plane))
+        };
+        self.visit(0, &meets, &mut |i| found.push(i));
+        found.sort_unstable();
+    }
+
     fn visit(&self, node: usize, meets: &impl Fn(&Node) -> bool, f: &mut impl FnMut(u32)) {
         let Some(n) = self.nodes.get(node) else { return };
         if !meets(n) {

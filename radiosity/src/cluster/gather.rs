@@ -1,0 +1,112 @@
+//! Irradiance at a point by rays, to which more can be added.
+
+use glam::DVec3;
+
+use super::solution::ClusterSolution;
+use crate::rays::sequence::{Hemisphere, Sequence, mix};
+use crate::rgb::{Rgb, add};
+
+/// Rays that are judged together: each block is evenly spread over the hemisphere by itself.
+const BLOCK: u32 = 16;
+/// Rays of a place at first.
+pub(crate) const FIRST: u32 = 64;
+/// Places darker than this share of what a mean part of the light meets need no smaller error than one of that brightness.
+const DARK: f64 = 0.1;
+/// Rays shorter than this share of the scene's size count as so long, when distances are averaged.
+const SHORT: f64 = 1e-5;
+
+/// Gathers for one solution.
+pub(crate) struct Gatherer<'s> {
+    solution: &'s ClusterSolution<'s>,
+    elements: usize,
+    /// Irradiance below which errors are judged as if it were this.
+    pub(crate) floor: f64,
+}
+
+/// What arrives at a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Gathered {
+    /// From emitters that are looked at one by one.
+    emitted: Rgb,
+    /// Sum over rays.
+    sum: Rgb,
+    near: f64,
+    of_blocks: f64,
+    squares: f64,
+    blocks: u32,
+}
+
+pub(crate) fn mean(v: Rgb) -> f64 {
+    v.iter().sum::<f64>() / 3.0
+}
+
+impl Gathered {
+    pub(crate) fn rays(&self) -> u32 {
+        self.blocks * BLOCK
+    }
+
+    pub(crate) fn light(&self) -> Rgb {
+        add(self.emitted, 1.0 / f64::from(self.rays().max(1)), self.sum)
+    }
+
+    /// Squared standard error of the mean of the bands.
+    pub(crate) fn variance(&self) -> f64 {
+        let count = f64::from(self.blocks.max(2));
+        let average = self.of_blocks / count;
+        (self.squares / count - average * average).max(0.0) / (count - 1.0)
+    }
+
+    /// Harmonic mean of the distances of what rays meet.
+    pub(crate) fn reach(&self) -> f64 {
+        if self.near > 0.0 { f64::from(self.rays()) / self.near } else { 1.0 }
+    }
+}
+
+impl<'s> Gatherer<'s> {
+    pub(crate) fn new(solution: &'s ClusterSolution<'s>) -> Self {
+        let clusters = solution.clusters;
+        let (mut squares, mut light) = (0.0, 0.0);
+        for (patch, &leaf) in clusters.leaves.iter().enumerate() {
+            let area = clusters.scene.tree.elements[leaf as usize].polygon.area();
+            let gathered = solution.gathered[clusters.groups.of_patch[patch] as usize];
+            let own = mean(gathered) + mean(clusters.emitted[patch]);
+            squares += area * own * own;
+            light += area * own;
+        }
+        let floor = if light > 0.0 { DARK * squares / light } else { f64::MIN_POSITIVE };
+        Self { solution, elements: clusters.scene.tree.elements.len(), floor }
+    }
+
+    /// Irradiance at a point, in internal coordinates, that lies in front of its surface. `place` chooses the rays.
+    pub(crate) fn start(&self, point: DVec3, normal: DVec3, place: u64) -> Gathered {
+        let clusters = self.solution.clusters;
+        let unit = |bits: u64| (bits >> 40) as f64 / (1_u64 << 24) as f64;
+        let bits = mix(place ^ 0x1a39);
+        let emitted = clusters.emitters.at(&clusters.around, point, normal, [unit(bits), unit(mix(bits))]);
+        Gathered { emitted, ..Gathered::default() }
+    }
+
+    /// The same with as many rays as this; `start` gives the point, the normal and the place as before.
+    pub(crate) fn go_on(&self, (point, normal, place): (DVec3, DVec3, u64), rays: u32, gathered: &mut Gathered) {
+        let clusters = self.solution.clusters;
+        let hemisphere = Hemisphere::new(normal);
+        let sequence = Sequence::new(place);
+        while gathered.rays() < rays {
+            let mut block = [0.0; 3];
+            for k in gathered.rays()..gathered.rays() + BLOCK {
+                let direction = hemisphere.direction(sequence.pair(k));
+                let met = clusters.around.patch(&clusters.scene, self.elements, point, direction);
+                let Some((patch, distance)) = met else { continue };
+                gathered.near += 1.0 / distance.max(SHORT);
+                if let Some(patch) = patch {
+                    block = add(block, 1.0, self.solution.seen[clusters.number[patch as usize] as usize]);
+                }
+            }
+            let light = mean(block) / f64::from(BLOCK);
+            gathered.of_blocks += light;
+            gathered.squares += light * light;
+            gathered.sum = add(gathered.sum, 1.0, block);
+            gathered.blocks += 1;
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Options of scenes in clusters.
+
+use crate::error::RadiosityError;
+
+/// How fine clusters are, and how many rays light is gathered by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ClusterOptions {
+    /// Longest side of the box around the centres of a cluster's patches, in the scene's unit. Default: 0, which stands for 1/64 of the longest side
+    /// of the scene.
+    pub size: f64,
+    /// Links of each cluster, each to the patch that a ray meets; 16 to 65,536. Default: 256.
+    pub links: u32,
+    /// Aim for the standard error of the irradiance of a vertex, relative to the irradiance there or to a tenth of the scene's mean. More rays are taken until
+    /// it is reached. Default: 0.03.
+    pub tolerance: f64,
+    /// Most rays of a vertex; 128 to 65,536. Default: 1024.
+    pub most_rays: u32,
+}
+
+impl ClusterOptions {
+    /// The defaults, as a constant.
+    pub const DEFAULT: Self = Self { size: 0.0, links: 256, tolerance: 0.03, most_rays: 1024 };
+
+    /// Another size of clusters.
+    #[must_use]
+    pub const fn with_size(mut self, size: f64) -> Self {
+        self.size = size;
+        self
+    }
+
+    /// Another number of links.
+    #[must_use]
+    pub const fn with_links(mut self, links: u32) -> Self {
+        self.links = links;
+        self
+    }
+
+    /// Another aim for the error at vertices.
+    #[must_use]
+    pub const fn with_tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// Another limit of rays.
+    #[must_use]
+    pub const fn with_most_rays(mut self, rays: u32) -> Self {
+        self.most_rays = rays;
+        self
+    }
+
+    pub(crate) fn check(&self) -> Result<(), RadiosityError> {
+        let refuse = |name, value, expected| Err(RadiosityError::Option { name, value, expected });
+        if !(self.size >= 0.0 && self.size.is_finite()) {
+            return refuse("size", self.size, "0 or above");
+        }
+        if !(16..=1 << 16).contains(&self.links) {
+            return refuse("links", f64::from(self.links), "from 16 to 65536");
+        }
+        if self.tolerance.is_nan() || self.tolerance <= 0.0 {
+            return refuse("tolerance", self.tolerance, "above 0");
+        }
+        if !(128..=1 << 16).contains(&self.most_rays) {
+            return refuse("most_rays", f64::from(self.most_rays), "from 128 to 65536");
+        }
+        Ok(())
+    }
+}
+
+impl Default for ClusterOptions {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
