@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::error::RadiosityError;
 use crate::factor;
 use crate::kernel::gauss;
-use crate::cluster::surroundings::{LIFT, Surroundings};
+use crate::by_rays::surroundings::{LIFT, Surroundings};
 use crate::polygon::{Polygon, edges};
 use crate::rays::sequence::{lattice, point_of};
 use crate::rgb::{Rgb, add, is_light};
@@ -84,7 +84,7 @@ impl Scene {
                 return Err(RadiosityError::BadLamp { lamp });
             }
         }
-        let rays = Surroundings::new(self);
+        let rays = Surroundings::without_patches(self);
         let mut of_element = vec![None; self.tree.elements.len()];
         loop {
             let open: Vec<ElementId> =
@@ -97,8 +97,9 @@ impl Scene {
             for (&leaf, found) in open.iter().zip(found) {
                 let (irradiance, edge) = found.map_err(|problem| self.not_lit(leaf, problem))?;
                 of_element[leaf as usize] = Some(irradiance);
-                let size = self.tree.elements[leaf as usize].size;
-                if edge && size > self.options.smallest_patch * self.scale {
+                let Element { size, polygon, .. } = &self.tree.elements[leaf as usize];
+                let smallest = self.options.smallest_patch * self.scale;
+                if edge && *size > smallest && polygon.area() > self.options.sliver(smallest) {
                     self.tree.divide(leaf);
                 }
             }
@@ -220,7 +221,7 @@ impl Scene {
                 high = DVec3::select(d.cmplt(DVec3::ZERO), DVec3::INFINITY, high);
             }
         }
-        self.boxes.in_planes(&planes, (low, high), found);
+        self.boxes.in_planes(&planes, (low, high), MOST_CUT + 1, found);
     }
 
     /// As [`Scene::lit_from`], where so much is between that points are looked at in the place of outlines.

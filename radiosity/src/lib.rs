@@ -48,7 +48,7 @@
 mod assemble;
 mod bake;
 mod by_hemicube;
-mod cluster;
+mod by_rays;
 mod contact;
 mod error;
 mod estimate;
@@ -76,7 +76,7 @@ mod visible;
 
 pub use glam;
 
-pub use cluster::{ClusterCounts, ClusterOptions, ClusterSolution, Clusters};
+pub use by_rays::{RayCounts, RayOptions, RaySolution, RayTransport};
 pub use bake::{Baked, BakedTriangle, BakedVertex};
 pub use error::{PolygonError, RadiosityError};
 pub use factor::{FactorOptions, FormFactor, form_factor};

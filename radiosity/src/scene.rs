@@ -23,7 +23,7 @@ pub struct SceneOptions {
     /// patch with every other one (the full matrix). Default: `None`.
     pub tolerance: Option<f64>,
     /// Whether surfaces that are much longer than wide are divided into squarer ones even below the size of a patch. Pairs of patches are more accurate
-    /// then; [`Scene::clusters`] needs it not. Default: true.
+    /// then; [`Scene::transport_by_rays`] needs it not. Default: true.
     pub squarer: bool,
     /// Most patches and patches of patches. Default: 4 million.
     pub max_elements: usize,
@@ -97,6 +97,11 @@ impl SceneOptions {
     pub const fn with_factors(mut self, factors: FactorOptions) -> Self {
         self.factors = factors;
         self
+    }
+
+    /// Area below which patches are not divided, whatever their length, where they should be no longer than `size`.
+    pub(crate) fn sliver(&self, size: f64) -> f64 {
+        if self.squarer { 0.0 } else { SLIVER * size * size }
     }
 
     fn check(&self) -> Result<(), RadiosityError> {
@@ -203,8 +208,7 @@ impl Scene {
             scene.add(*i, &surfaces[*i], slot, &mut near);
         }
         let size = options.patch * scale;
-        let area = if options.squarer { 0.0 } else { SLIVER * size * size };
-        if !scene.tree.divide_all(size, area, options.max_elements) {
+        if !scene.tree.divide_all(size, options.sliver(size), options.max_elements) {
             return Err(RadiosityError::TooManyPatches { limit: options.max_elements });
         }
         Ok(scene)

@@ -128,10 +128,17 @@ impl<'l> Paths<'l> {
         (mean, error)
     }
 
+    /// Irradiance by lamps at a point in front of its own surface; areas at one random point each.
+    #[must_use]
+    pub fn direct(&self, point: DVec3, normal: DVec3, seed: u64) -> Rgb {
+        let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+        self.lit(point + normal * (OFF * self.size), normal, &mut random)
+    }
+
     fn along(&self, point: DVec3, normal: DVec3, first: [f64; 2], random: &mut Random) -> Rgb {
         let (mut light, mut weight) = ([0.0; 3], [1.0; 3]);
         let (mut origin, mut up, mut pair) = (point + normal * (OFF * self.size), normal, first);
-        for reflections in 0..MOST {
+        for reflections in 0..std::env::var("MOSTB").map_or(MOST, |v| v.parse().unwrap()) {
             let direction = by_cosine(up, pair);
             let Some((number, t)) = self.meet(origin, direction, f64::INFINITY, false) else { break };
             let surface = &self.surfaces[number];

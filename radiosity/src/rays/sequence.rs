@@ -29,6 +29,13 @@ pub(crate) fn lattice(index: u32, shift: [f64; 2]) -> [f64; 2] {
     [at(0), at(1)]
 }
 
+/// A shift for [`lattice`].
+pub(crate) fn shift_of(place: u64) -> [f64; 2] {
+    let unit = |bits: u64| (bits >> 40) as f64 / (1_u64 << 24) as f64;
+    let bits = mix(place);
+    [unit(bits), unit(mix(bits))]
+}
+
 /// splitmix64's mixing of the bits of a number.
 pub(crate) const fn mix(value: u64) -> u64 {
     let mut z = value.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -16,8 +16,10 @@ const SEAM: f64 = 1e-9;
 const EMPTY: u32 = u32::MAX;
 /// Bit of children that are triangles; 3 bits below the first one's number say how many.
 const TRIANGLES: u32 = 1 << 31;
-/// Nodes on the way from the root that wait for their turn: three for every level.
-const STACK: usize = 192;
+/// Levels that are split where surface area is saved most; below, halves keep the tree from being deeper than the stack.
+const LEVELS: usize = 12;
+/// Nodes on the way from the root that wait for their turn: three for every level, of which there are fewer than this for 2³⁰ triangles.
+const STACK: usize = 96;
 
 /// What a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,11 +32,22 @@ pub(crate) struct Hit {
     pub(crate) distance: f64,
 }
 
+/// A triangle to be found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corners {
+    pub(crate) corners: [DVec3; 3],
+    /// Given back with a hit.
+    pub(crate) tag: u32,
+    /// Whether rays pass through it from behind.
+    pub(crate) from_front: bool,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Triangle {
     corner: DVec3,
     edges: [DVec3; 2],
     tag: u32,
+    from_front: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -80,22 +93,22 @@ struct Item {
 
 impl RayTree {
     /// Of triangles with a tag each.
-    pub(crate) fn new(list: &[([DVec3; 3], u32)]) -> Self {
-        let mut items: Vec<Item> = list.iter().enumerate().map(|(i, (corners, _))| item(i, corners)).collect();
+    pub(crate) fn new(list: &[Corners]) -> Self {
+        let mut items: Vec<Item> = list.iter().enumerate().map(|(i, t)| item(i, &t.corners)).collect();
         let mut tree = Self::default();
         if !items.is_empty() {
-            tree.build(&mut items, 0);
+            tree.build(&mut items, 0, 0);
         }
         let triangle = |item: &Item| {
-            let ([a, b, c], tag) = list[item.number as usize];
-            Triangle { corner: a, edges: [b - a, c - a], tag }
+            let Corners { corners: [a, b, c], tag, from_front } = list[item.number as usize];
+            Triangle { corner: a, edges: [b - a, c - a], tag, from_front }
         };
         tree.triangles = items.iter().map(triangle).collect();
         tree
     }
 
     /// Appends the node of some triangles, the first of which will be at `base`; returns its number.
-    fn build(&mut self, items: &mut [Item], base: usize) -> u32 {
+    fn build(&mut self, items: &mut [Item], base: usize, level: usize) -> u32 {
         let number = self.nodes.len();
         let nothing = Node { low: [Vec4::INFINITY; 3], high: [Vec4::NEG_INFINITY; 3], children: [EMPTY; 4] };
         self.nodes.push(nothing);
@@ -107,7 +120,7 @@ impl RayTree {
             let Some((which, &(from, to))) = large.max_by(|a, b| area(*a.1).total_cmp(&area(*b.1))) else {
                 break;
             };
-            let middle = from + split(&mut items[from..to]);
+            let middle = from + if level < LEVELS { split(&mut items[from..to]) } else { halve(&mut items[from..to]) };
             parts[which] = (from, middle);
             parts.insert(which + 1, (middle, to));
         }
@@ -116,7 +129,7 @@ impl RayTree {
             let child = if to - from <= LEAF {
                 TRIANGLES | ((base + from) as u32) << 3 | (to - from) as u32
             } else {
-                self.build(&mut items[from..to], base + from)
+                self.build(&mut items[from..to], base + from, level + 1)
             };
             let node = &mut self.nodes[number];
             node.children[slot] = child;
@@ -203,7 +216,7 @@ impl Triangle {
         let [u, v] = self.edges;
         let p = direction.cross(v);
         let determinant = u.dot(p);
-        if determinant == 0.0 {
+        if determinant == 0.0 || (self.from_front && determinant < 0.0) {
             return None;
         }
         let inverse = 1.0 / determinant;
@@ -264,9 +277,18 @@ fn split(items: &mut [Item]) -> usize {
     }
     let (cost, axis, bin) = best;
     if !cost.is_finite() {
-        return items.len() / 2;
+        return halve(items);
     }
     // Stable: the order of triangles within a part is that of the input.
     items.sort_by_key(|item| bin_of(axis, item) >= bin);
     items.partition_point(|item| bin_of(axis, item) < bin)
+}
+
+/// Parts items at the median along the longest axis.
+fn halve(items: &mut [Item]) -> usize {
+    let low = items.iter().fold(Vec3::INFINITY, |m, i| m.min(i.centre));
+    let high = items.iter().fold(Vec3::NEG_INFINITY, |m, i| m.max(i.centre));
+    let axis = (high - low).max_position();
+    items.sort_by(|a, b| a.centre[axis].total_cmp(&b.centre[axis]));
+    items.len() / 2
 }

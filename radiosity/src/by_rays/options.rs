@@ -1,15 +1,15 @@
-//! Options of scenes in clusters.
+//! Options of links by rays.
 
 use crate::error::RadiosityError;
 
-/// How fine clusters are, and how many rays light is gathered by.
+/// How many rays links are found and light is gathered by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct ClusterOptions {
-    /// Longest side of the box around the centres of a cluster's patches, in the scene's unit. Default: 0, which stands for 1/64 of the longest side
-    /// of the scene.
+pub struct RayOptions {
+    /// Side of a square patch that has all [`RayOptions::links`], in the scene's unit; smaller patches have fewer. Default: 0, which stands for 1/64 of the
+    /// longest side of the scene.
     pub size: f64,
-    /// Links of each cluster, each to the patch that a ray meets; 16 to 65,536. Default: 256.
+    /// Links of a large patch, each to the patch that a ray meets; 16 to 65,536. Default: 256.
     pub links: u32,
     /// Aim for the standard error of the irradiance of a vertex, relative to the irradiance there or to a tenth of the scene's mean. More rays are taken until
     /// it is reached. Default: 0.03.
@@ -18,11 +18,11 @@ pub struct ClusterOptions {
     pub most_rays: u32,
 }
 
-impl ClusterOptions {
+impl RayOptions {
     /// The defaults, as a constant.
     pub const DEFAULT: Self = Self { size: 0.0, links: 256, tolerance: 0.03, most_rays: 1024 };
 
-    /// Another size of clusters.
+    /// Another size of transport.
     #[must_use]
     pub const fn with_size(mut self, size: f64) -> Self {
         self.size = size;
@@ -68,7 +68,7 @@ impl ClusterOptions {
     }
 }
 
-impl Default for ClusterOptions {
+impl Default for RayOptions {
     fn default() -> Self {
         Self::DEFAULT
     }

@@ -11,45 +11,46 @@ const APART: f64 = 0.15;
 /// Weight of normals in that model.
 const TURN: f64 = 1.5;
 /// Neighbours of a place, about, at most.
-const MOST: usize = 128;
+const MOST: usize = 64;
 /// Places in a cell of the tree.
 const LEAF: usize = 8;
 
 /// Places by position, halved along the longest axis.
-struct Places<'p> {
+pub(crate) struct Places<'p> {
     positions: &'p [DVec3],
     order: Vec<u32>,
     cells: Vec<(DVec3, DVec3)>,
 }
 
-/// Irradiance of each place, its own and that of its neighbours, and its standard error.
-pub(crate) fn smooth(positions: &[DVec3], normals: &[DVec3], gathered: &[Gathered]) -> Vec<(Rgb, f64)> {
-    let places = Places::new(positions);
-    parallel::map_heavy(positions.len(), |i| {
-        let reach = gathered[i].reach();
-        let (mut sum, mut weights, mut errors) = ([0.0; 3], 0.0, 0.0);
-        places.within(positions[i], APART * reach, &mut |j| {
-            let other = &gathered[j];
-            let turn = (1.0 - normals[i].dot(normals[j])).max(0.0).sqrt();
-            let distance = (positions[i] - positions[j]).length();
-            let apart = distance / reach.min(other.reach()) + TURN * turn;
-            let weight = (1.0 - apart / APART).max(0.0) * f64::from(other.rays());
-            sum = add(sum, weight, other.light());
-            weights += weight;
-            errors += weight * weight * other.variance();
-        });
-        let whole = weights.max(f64::MIN_POSITIVE);
-        (sum.map(|s| s / whole), errors.sqrt() / whole)
-    })
-}
-
 impl<'p> Places<'p> {
-    fn new(positions: &'p [DVec3]) -> Self {
+    pub(crate) fn new(positions: &'p [DVec3]) -> Self {
         let mut places = Self { positions, order: (0..positions.len() as u32).collect(), cells: vec![] };
         let depth = (positions.len() / LEAF).max(1).next_power_of_two();
         places.cells = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); 2 * depth];
         places.build(1, 0, positions.len());
         places
+    }
+
+    /// Irradiance of some places, each its own and that of its neighbours, and its standard error.
+    pub(crate) fn smooth(&self, normals: &[DVec3], gathered: &[Gathered], which: &[usize]) -> Vec<(Rgb, f64)> {
+        parallel::map_heavy(which.len(), |k| {
+            let i = which[k];
+            let (at, reach) = (self.positions[i], gathered[i].reach());
+            let (mut sum, mut weights, mut errors) = ([0.0; 3], 0.0, 0.0);
+            self.within(at, APART * reach, &mut |j| {
+                let other = &gathered[j];
+                let turn = (1.0 - normals[i].dot(normals[j])).max(0.0).sqrt();
+                let apart = (at - self.positions[j]).length() / reach.min(other.reach()) + TURN * turn;
+                let weight = (1.0 - apart / APART).max(0.0) * f64::from(other.rays());
+                if weight > 0.0 {
+                    sum = add(sum, weight, other.light());
+                    weights += weight;
+                    errors += weight * weight * other.variance();
+                }
+            });
+            let whole = weights.max(f64::MIN_POSITIVE);
+            (sum.map(|s| s / whole), errors.sqrt() / whole)
+        })
     }
 
     /// Cell `n` has the cells 2n and 2n + 1 for its halves.

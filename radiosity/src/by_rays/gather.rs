@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-use super::solution::ClusterSolution;
-use crate::rays::sequence::{Hemisphere, Sequence, mix};
+use super::links::NONE;
+use super::solution::RaySolution;
+use crate::rays::sequence::{Hemisphere, Sequence, shift_of};
 use crate::rgb::{Rgb, add};
 
 /// Rays that are judged together: each block is evenly spread over the hemisphere by itself.
@@ -17,8 +18,7 @@ const SHORT: f64 = 1e-5;
 
 /// Gathers for one solution.
 pub(crate) struct Gatherer<'s> {
-    solution: &'s ClusterSolution<'s>,
-    elements: usize,
+    solution: &'s RaySolution<'s>,
     /// Irradiance below which errors are judged as if it were this.
     pub(crate) floor: f64,
 }
@@ -63,43 +63,41 @@ impl Gathered {
 }
 
 impl<'s> Gatherer<'s> {
-    pub(crate) fn new(solution: &'s ClusterSolution<'s>) -> Self {
-        let clusters = solution.clusters;
+    pub(crate) fn new(solution: &'s RaySolution<'s>) -> Self {
+        let transport = solution.transport;
         let (mut squares, mut light) = (0.0, 0.0);
-        for (patch, &leaf) in clusters.leaves.iter().enumerate() {
-            let area = clusters.scene.tree.elements[leaf as usize].polygon.area();
-            let gathered = solution.gathered[clusters.groups.of_patch[patch] as usize];
-            let own = mean(gathered) + mean(clusters.emitted[patch]);
+        for (patch, &leaf) in transport.leaves.iter().enumerate() {
+            let area = transport.scene.tree.elements[leaf as usize].polygon.area();
+            let gathered = solution.gathered[patch];
+            let own = mean(gathered) + mean(transport.emitted[patch]);
             squares += area * own * own;
             light += area * own;
         }
         let floor = if light > 0.0 { DARK * squares / light } else { f64::MIN_POSITIVE };
-        Self { solution, elements: clusters.scene.tree.elements.len(), floor }
+        Self { solution, floor }
     }
 
     /// Irradiance at a point, in internal coordinates, that lies in front of its surface. `place` chooses the rays.
     pub(crate) fn start(&self, point: DVec3, normal: DVec3, place: u64) -> Gathered {
-        let clusters = self.solution.clusters;
-        let unit = |bits: u64| (bits >> 40) as f64 / (1_u64 << 24) as f64;
-        let bits = mix(place ^ 0x1a39);
-        let emitted = clusters.emitters.at(&clusters.around, point, normal, [unit(bits), unit(mix(bits))]);
+        let transport = self.solution.transport;
+        let emitted = transport.emitters.at(&transport.around, point, normal, shift_of(place ^ 0x1a39));
         Gathered { emitted, ..Gathered::default() }
     }
 
     /// The same with as many rays as this; `start` gives the point, the normal and the place as before.
     pub(crate) fn go_on(&self, (point, normal, place): (DVec3, DVec3, u64), rays: u32, gathered: &mut Gathered) {
-        let clusters = self.solution.clusters;
+        let transport = self.solution.transport;
         let hemisphere = Hemisphere::new(normal);
         let sequence = Sequence::new(place);
         while gathered.rays() < rays {
             let mut block = [0.0; 3];
             for k in gathered.rays()..gathered.rays() + BLOCK {
                 let direction = hemisphere.direction(sequence.pair(k));
-                let met = clusters.around.patch(&clusters.scene, self.elements, point, direction);
+                let met = transport.around.patch(point, direction);
                 let Some((patch, distance)) = met else { continue };
                 gathered.near += 1.0 / distance.max(SHORT);
-                if let Some(patch) = patch {
-                    block = add(block, 1.0, self.solution.seen[clusters.number[patch as usize] as usize]);
+                if patch != NONE {
+                    block = add(block, 1.0, self.solution.seen[patch as usize]);
                 }
             }
             let light = mean(block) / f64::from(BLOCK);

@@ -1,12 +1,12 @@
-//! Irradiance and radiosity per vertex of a scene in clusters.
+//! Irradiance and radiosity per vertex of a scene in transport.
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 
 use super::gather::{FIRST, Gathered, Gatherer, mean};
-use super::smooth::smooth;
-use super::solution::ClusterSolution;
+use super::smooth::Places;
+use super::solution::RaySolution;
 use super::surroundings::LIFT;
 use crate::bake::{Baked, INWARD};
 use crate::mesh::{Facets, Mesh, Place};
@@ -31,17 +31,17 @@ const SMALL: f64 = 0.5;
 /// Where a place is and which way it faces, as far as rays are concerned.
 type Key = [u64; 6];
 
-impl ClusterSolution<'_> {
+impl RaySolution<'_> {
     /// Irradiance and radiosity at every vertex, and how far they are off. Patches are divided down to
     /// [`SceneOptions::smallest_patch`](crate::SceneOptions::smallest_patch) where irradiance changes fast. `done` is told the share of the work that is done (0 to 1).
     /// Facets of a curved surface share vertices, whose normal is the mean of theirs.
     #[must_use]
     pub fn bake_with(&self, done: &(dyn Fn(f64) + Sync)) -> Baked {
-        let mut scene = self.clusters.scene.clone();
+        let mut scene = self.transport.scene.clone();
         let gatherer = Gatherer::new(self);
         let mut known: HashMap<Key, Gathered> = HashMap::new();
         let mut direct: Vec<Rgb> = vec![[0.0; 3]; scene.tree.elements.len()];
-        self.clusters.leaves.iter().zip(&self.clusters.direct).for_each(|(&l, d)| direct[l as usize] = *d);
+        self.transport.leaves.iter().zip(&self.transport.direct).for_each(|(&l, d)| direct[l as usize] = *d);
         for round in 0..=ROUNDS {
             let leaves = scene.tree.leaves();
             let mesh = Mesh::new(&scene, &leaves, Facets::Joined);
@@ -63,7 +63,7 @@ impl ClusterSolution<'_> {
         unreachable!("the last round divides nothing");
     }
 
-    /// As [`ClusterSolution::bake_with`], without word of progress.
+    /// As [`RaySolution::bake_with`], without word of progress.
     #[must_use]
     pub fn bake(&self) -> Baked {
         self.bake_with(&|_| ())
@@ -78,13 +78,14 @@ impl ClusterSolution<'_> {
         known: &mut HashMap<Key, Gathered>,
         done: &dyn Fn(f64),
     ) -> Vec<Light> {
-        let options = &self.clusters.options;
+        let options = &self.transport.options;
         let keys: Vec<Key> = mesh.places.iter().map(|p| key(mesh, p)).collect();
         let starts: Vec<(DVec3, DVec3, u64)> = (0..keys.len()).map(|i| start(scene, mesh, &mesh.places[i], &keys[i])).collect();
         let positions: Vec<DVec3> = mesh.places.iter().map(|p| p.position).collect();
         let normals: Vec<DVec3> = starts.iter().map(|s| s.1).collect();
         let mut gathered: Vec<Gathered> = keys.iter().map(|k| known.get(k).copied().unwrap_or_default()).collect();
         let mut open: Vec<usize> = (0..keys.len()).filter(|&i| gathered[i].rays() == 0).collect();
+        let places = Places::new(&positions);
         let mut rays = FIRST;
         loop {
             if std::env::var("DBG").is_ok() { eprintln!("  {} of {} to {rays} rays", open.len(), keys.len()); }
@@ -102,19 +103,21 @@ impl ClusterSolution<'_> {
                 block.iter().zip(more).for_each(|(&i, own)| gathered[i] = own);
                 done((number * BLOCK) as f64 / open.len() as f64);
             }
-            let lights = smooth(&positions, &normals, &gathered);
+            let neighbours = places.smooth(&normals, &gathered, &open);
             rays *= 2;
-            let wants = |i: &usize| {
-                let (light, error) = lights[*i];
-                gathered[*i].rays() < options.most_rays && error > options.tolerance * mean(light).max(gatherer.floor)
+            let wants = |&(i, (light, error)): &(usize, (Rgb, f64))| {
+                gathered[i].rays() < options.most_rays && error > options.tolerance * mean(light).max(gatherer.floor)
             };
-            open = (0..keys.len()).filter(wants).collect();
+            open = open.iter().copied().zip(neighbours).filter(wants).map(|(i, _)| i).collect();
             if open.is_empty() || rays > options.most_rays {
-                known.extend(keys.into_iter().zip(gathered.iter().copied()));
-                let light = |(&(light, error), own): (&(Rgb, f64), &Gathered)| Light { light, error, reach: own.reach() };
-                return lights.iter().zip(&gathered).map(light).collect();
+                break;
             }
         }
+        known.extend(keys.into_iter().zip(gathered.iter().copied()));
+        let all: Vec<usize> = (0..gathered.len()).collect();
+        let lights = places.smooth(&normals, &gathered, &all);
+        let light = |((light, error), own): ((Rgb, f64), &Gathered)| Light { light, error, reach: own.reach() };
+        lights.into_iter().zip(&gathered).map(light).collect()
     }
 
     /// Leaves over which irradiance changes too fast to be interpolated.

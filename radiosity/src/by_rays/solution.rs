@@ -1,8 +1,8 @@
-//! The light between clusters: I = F (E + ρ (H + I)), for the irradiance I of every cluster.
+//! The light along links by rays: I = F (E + ρ (H + I)), for the irradiance I of every patch.
 
 use glam::DVec3;
 
-use super::clusters::Clusters;
+use super::transport::RayTransport;
 use super::gather::Gatherer;
 use super::links::NONE;
 use crate::error::RadiosityError;
@@ -13,19 +13,19 @@ use pointillist_parallel as parallel;
 /// Contractions nearer to 1 bound nothing.
 const MOST: f64 = 1.0 - 1e-12;
 
-/// Radiosity of all patches of a scene in clusters, with a bound on the error of the solution of its equations.
+/// Radiosity of all patches, with a bound on the error of the solution of its equations.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct ClusterSolution<'c> {
-    pub(crate) clusters: &'c Clusters,
-    /// Irradiance of each cluster along its links.
+pub struct RaySolution<'c> {
+    pub(crate) transport: &'c RayTransport,
+    /// Irradiance of each patch along its links.
     pub(crate) gathered: Vec<Rgb>,
     /// What rays see of each patch: its radiosity without the emission of emitters that are looked at one by one.
     pub(crate) seen: Vec<Rgb>,
     /// Radiosity of each patch, power per area.
     pub radiosity: Vec<Rgb>,
     /// Bound on the error of any patch's radiosity for the given links: ‖r‖∞ / (1 − contraction). The error of the links themselves, which are samples, is not in
-    /// it: [`ClusterSolution::bake_with`] says how far its rays differ.
+    /// it: [`RaySolution::bake_with`] says how far its rays differ.
     pub bound: f64,
     /// Largest product of reflectance and share of links that meet a patch.
     pub contraction: f64,
@@ -35,31 +35,31 @@ pub struct ClusterSolution<'c> {
     pub converged: bool,
 }
 
-impl Clusters {
-    /// Solves by Jacobi's iteration over clusters, bands side by side. Results are the same for any number of threads.
+impl RayTransport {
+    /// Solves by Jacobi's iteration, bands side by side. Results are the same for any number of threads.
     ///
     /// # Errors
     /// [`RadiosityError::NoEquilibrium`] where nothing bounds the error: a closed scene that absorbs nothing. [`RadiosityError::Option`].
-    pub fn solve(&self, options: &SolveOptions) -> Result<ClusterSolution<'_>, RadiosityError> {
-        self.solve_from(vec![[0.0; 3]; self.groups.len()], options)
+    pub fn solve(&self, options: &SolveOptions) -> Result<RaySolution<'_>, RadiosityError> {
+        self.solve_from(vec![[0.0; 3]; self.leaves.len()], options)
     }
 
-    /// As [`Clusters::solve`], from a solution of the same links, as `gathered` of it says: after a change of some materials or lamps few sweeps are left.
+    /// As [`RayTransport::solve`], from a solution of the same links, as `gathered` of it says: after a change of some materials or lamps few sweeps are left.
     ///
     /// # Errors
-    /// As [`Clusters::solve`], and [`RadiosityError::CountMismatch`] if there are not as many values as clusters.
-    pub fn solve_from(&self, gathered: Vec<Rgb>, options: &SolveOptions) -> Result<ClusterSolution<'_>, RadiosityError> {
+    /// As [`RayTransport::solve`], and [`RadiosityError::CountMismatch`] if there are not as many values as patches.
+    pub fn solve_from(&self, gathered: Vec<Rgb>, options: &SolveOptions) -> Result<RaySolution<'_>, RadiosityError> {
         options.check()?;
-        let clusters = self.groups.len();
-        if gathered.len() != clusters {
-            return Err(RadiosityError::CountMismatch { patches: clusters, given: gathered.len() });
+        let patches = self.leaves.len();
+        if gathered.len() != patches {
+            return Err(RadiosityError::CountMismatch { patches, given: gathered.len() });
         }
         let contraction = self.contraction();
         if contraction > MOST {
             return Err(RadiosityError::NoEquilibrium { contraction });
         }
-        let mut solution = ClusterSolution {
-            clusters: self,
+        let mut solution = RaySolution {
+            transport: self,
             gathered,
             seen: vec![],
             radiosity: vec![],
@@ -77,25 +77,22 @@ impl Clusters {
 
     /// Largest share of what arrives at a patch that arrives again.
     fn contraction(&self) -> f64 {
-        let met = |cluster: usize| {
-            let row = self.links.row(cluster);
-            row.iter().filter(|&&hit| hit != NONE).count() as f64 / row.len() as f64
-        };
-        (0..self.groups.len()).fold(0.0, |most, cluster| {
-            let brightest = |&patch: &u32| self.reflectance(patch as usize).into_iter().fold(0.0, f64::max);
-            most.max(met(cluster) * self.groups.members(cluster).iter().map(brightest).fold(0.0, f64::max))
+        (0..self.leaves.len()).fold(0.0, |most: f64, patch| {
+            let row = self.links.row(patch);
+            let met = row.iter().filter(|&&hit| hit != NONE).count() as f64 / row.len() as f64;
+            most.max(met * self.reflectance(patch).into_iter().fold(0.0, f64::max))
         })
     }
 }
 
-impl<'c> ClusterSolution<'c> {
-    /// The clusters that were solved.
+impl<'c> RaySolution<'c> {
+    /// The links that were solved.
     #[must_use]
-    pub const fn clusters(&self) -> &'c Clusters {
-        self.clusters
+    pub const fn transport(&self) -> &'c RayTransport {
+        self.transport
     }
 
-    /// Irradiance of each cluster from all patches but emitters, from which [`Clusters::solve_from`] goes on.
+    /// Irradiance of each patch from all others but emitters, from which [`RayTransport::solve_from`] goes on.
     #[must_use]
     pub fn gathered(&self) -> &[Rgb] {
         &self.gathered
@@ -110,26 +107,26 @@ impl<'c> ClusterSolution<'c> {
             return Err(RadiosityError::BadPoint);
         };
         let bits = point.to_array().into_iter().fold(0, |m, x| crate::rays::sequence::mix(m ^ (x + 0.0).to_bits()));
-        let (gatherer, place) = (Gatherer::new(self), (self.clusters.scene.inward(point), normal, bits));
+        let (gatherer, place) = (Gatherer::new(self), (self.transport.scene.inward(point), normal, bits));
         let mut gathered = gatherer.start(place.0, place.1, place.2);
-        gatherer.go_on(place, self.clusters.options.most_rays, &mut gathered);
+        gatherer.go_on(place, self.transport.options.most_rays, &mut gathered);
         Ok(gathered.light())
     }
 
     /// One step, and whether it was the last one needed.
     fn sweep(&mut self, tolerance: f64) {
-        let clusters = self.clusters;
-        let next: Vec<Rgb> = parallel::map(clusters.groups.len(), |cluster| {
-            let row = clusters.links.row(cluster);
+        let transport = self.transport;
+        let next: Vec<Rgb> = parallel::map(transport.leaves.len(), |patch| {
+            let row = transport.links.row(patch);
             let sum = row.iter().fold([0.0; 3], |sum, &hit| {
                 if hit == NONE { sum } else { add(sum, 1.0, self.seen[hit as usize]) }
             });
             sum.map(|s| s / row.len() as f64)
         });
         let mut residual = 0.0_f64;
-        for (patch, &cluster) in clusters.groups.of_patch.iter().enumerate() {
-            let change = add(next[cluster as usize], -1.0, self.gathered[cluster as usize]);
-            let change = times(clusters.reflectance(patch), change);
+        for (patch, (new, old)) in next.iter().zip(&self.gathered).enumerate() {
+            let change = add(*new, -1.0, *old);
+            let change = times(transport.reflectance(patch), change);
             residual = change.into_iter().fold(residual, |m, c| m.max(c.abs()));
         }
         // With the new values: what is left is at most the contraction of it.
@@ -143,11 +140,10 @@ impl<'c> ClusterSolution<'c> {
 
     /// The radiosity of patches by what their clusters gather.
     fn send(&mut self) {
-        let clusters = self.clusters;
-        let of_patch = &clusters.groups.of_patch;
-        let radiosity = |patch: usize| clusters.radiosity(patch, self.gathered[of_patch[patch] as usize]);
-        self.radiosity = parallel::map(of_patch.len(), radiosity);
-        let seen = |patch: usize| add(self.radiosity[patch], -1.0, clusters.known_emission(patch));
-        self.seen = parallel::map(of_patch.len(), seen);
+        let transport = self.transport;
+        let radiosity = |patch: usize| transport.radiosity(patch, self.gathered[patch]);
+        self.radiosity = parallel::map(transport.leaves.len(), radiosity);
+        let seen = |patch: usize| add(self.radiosity[patch], -1.0, transport.known_emission(patch));
+        self.seen = parallel::map(transport.leaves.len(), seen);
     }
 }

@@ -1,94 +1,83 @@
-//! A scene in clusters with their links.
+//! A scene with links by rays.
 
 use super::emitters::Emitters;
-use super::groups::Groups;
 use super::links::{Links, NONE};
-use super::options::ClusterOptions;
+use super::options::RayOptions;
 use super::surroundings::{LIFT, Surroundings};
 use crate::error::RadiosityError;
-use crate::rays::sequence::mix;
+use crate::rays::sequence::shift_of;
 use crate::rgb::{Rgb, add, check_direct};
 use crate::scene::Scene;
 use crate::tree::ElementId;
 use pointillist_parallel as parallel;
 
-/// Clusters along the scene's longest side, unless said otherwise.
+/// Patches with all links along the scene's longest side, unless said otherwise.
 const ACROSS: f64 = 64.0;
 
-/// A scene in clusters, with the links of each cluster and its direct light.
+/// A scene with links from each patch to those that its rays meet, and its direct light.
 ///
-/// Links depend on the geometry alone: [`Clusters::set_material`] and [`Clusters::set_direct`] leave them as they are.
+/// Links depend on the geometry alone: [`RayTransport::set_material`] and [`RayTransport::set_direct`] leave them as they are.
 #[derive(Clone, Debug)]
-pub struct Clusters {
+pub struct RayTransport {
     pub(crate) scene: Scene,
     pub(crate) leaves: Vec<ElementId>,
     pub(crate) around: Surroundings,
-    pub(crate) groups: Groups,
     pub(crate) links: Links,
     pub(crate) emitters: Emitters,
     /// Irradiance of each patch by lamps, and by emitters.
     pub(crate) direct: Vec<Rgb>,
     pub(crate) emitted: Vec<Rgb>,
-    /// Index of each leaf among the patches, by element.
-    pub(crate) number: Vec<u32>,
-    pub(crate) options: ClusterOptions,
+    pub(crate) options: RayOptions,
 }
 
 /// What a scene in clusters consists of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct ClusterCounts {
+pub struct RayCounts {
     /// Patches.
     pub patches: usize,
-    /// Clusters.
-    pub clusters: usize,
-    /// Links from clusters to patches.
+    /// Links from patches to patches.
     pub links: usize,
     /// Rays that left the scene, or met a black back.
     pub lost: usize,
 }
 
 impl Scene {
-    /// Clusters with their links, for scenes of too many surfaces to look at in pairs. `direct` is the irradiance of each patch by lamps, as [`Scene::direct`] gives
+    /// Links by rays, for scenes of too many surfaces to look at in pairs: each patch is linked to those that rays from it meet. `direct` is the irradiance of each patch by lamps, as [`Scene::direct`] gives
     /// it, or empty for none. `done` is told the share of the work that is done (0 to 1).
     ///
     /// # Errors
     /// [`RadiosityError::CountMismatch`] and [`RadiosityError::DirectIrradiance`] for `direct`, [`RadiosityError::Option`].
-    pub fn clusters(
+    pub fn transport_by_rays(
         self,
         direct: &[Rgb],
-        options: &ClusterOptions,
+        options: &RayOptions,
         done: &(dyn Fn(f64) + Sync),
-    ) -> Result<Clusters, RadiosityError> {
+    ) -> Result<RayTransport, RadiosityError> {
         options.check()?;
         let leaves = self.tree.leaves();
         check_direct(leaves.len(), direct)?;
-        let mut number = vec![NONE; self.tree.elements.len()];
-        leaves.iter().enumerate().for_each(|(i, &leaf)| number[leaf as usize] = i as u32);
-        let around = Surroundings::new(&self);
+        let around = Surroundings::new(&self, &leaves);
         let size = if options.size > 0.0 { options.size * self.scale } else { 1.0 / ACROSS };
-        let groups = Groups::new(&self, &leaves, size);
-        let links = Links::new(&self, &around, (&leaves, &number), &groups, options.links as usize, done);
+        let links = Links::new(&self, &around, &leaves, (size * size, options.links), done);
         let mut all = vec![[0.0; 3]; leaves.len()];
         all[..direct.len()].copy_from_slice(direct);
-        let mut clusters = Clusters {
+        let mut transport = RayTransport {
             scene: self,
             leaves,
             around,
-            groups,
             links,
             emitters: Emitters::default(),
             direct: all,
             emitted: vec![],
-            number,
             options: *options,
         };
-        clusters.light_by_emitters();
-        Ok(clusters)
+        transport.light_by_emitters();
+        Ok(transport)
     }
 }
 
-impl Clusters {
+impl RayTransport {
     /// The scene.
     #[must_use]
     pub const fn scene(&self) -> &Scene {
@@ -97,12 +86,13 @@ impl Clusters {
 
     /// What there is.
     #[must_use]
-    pub fn counts(&self) -> ClusterCounts {
+    pub fn counts(&self) -> RayCounts {
         let lost = self.links.hits.iter().filter(|&&hit| hit == NONE).count();
         let links = self.links.hits.len() - lost;
-        ClusterCounts { patches: self.leaves.len(), clusters: self.groups.len(), links, lost }
+        RayCounts { patches: self.leaves.len(), links, lost }
     }
 
+    #[doc(hidden)] pub fn patch_rings(&self)->Vec<(Vec<glam::DVec3>,glam::DVec3,f64)>{ self.leaves.iter().map(|&l|{let p=&self.scene.tree.elements[l as usize].polygon; (p.vertices().iter().map(|&v|self.scene.outward(v)).collect(),p.normal(),p.area())}).collect() }
     /// Irradiance of each patch by lamps, in their order.
     #[must_use]
     pub fn direct(&self) -> &[Rgb] {
@@ -133,11 +123,9 @@ impl Clusters {
 
     fn light_by_emitters(&mut self) {
         self.emitters = Emitters::new(&self.scene);
-        let unit = |bits: u64| (bits >> 40) as f64 / (1_u64 << 24) as f64;
         self.emitted = parallel::map_heavy(self.leaves.len(), |i| {
             let polygon = &self.scene.tree.elements[self.leaves[i] as usize].polygon;
-            let bits = mix(i as u64 ^ 0x5eed);
-            self.emitters.on(&self.around, polygon, LIFT, [unit(bits), unit(mix(bits))])
+            self.emitters.on(&self.around, polygon, LIFT, shift_of(i as u64 ^ 0x5eed))
         });
     }
 
