@@ -174,6 +174,11 @@ impl<'t> Mesh<'t> {
         let sum = |v: Rgb| v.iter().sum::<f64>();
         let largest = light.iter().map(|&v| sum(v)).fold(0.0, f64::max);
         let dark: Vec<bool> = light.iter().map(|&v| sum(v) <= BURIED * largest).collect();
+        self.lift(&dark, light);
+    }
+
+    /// Gives the `dark` places the mean irradiance of those of their neighbours that are not.
+    pub(crate) fn lift(&self, dark: &[bool], light: &mut [Rgb]) {
         let mut lifted = vec![([0.0; 3], 0.0); light.len()];
         for (_, ring, _) in &self.rings {
             for &place in ring.iter().filter(|p| dark[**p as usize]) {

@@ -130,7 +130,7 @@ impl Default for SceneOptions {
 }
 
 /// Where long surfaces may stay as they are, patches are divided no further whose area is below this share of the square of the patch size.
-const SLIVER: f64 = 0.125;
+const SLIVER: f64 = 1.0 / 32.0;
 
 /// One side of a surface, or of a part of it.
 #[derive(Clone, Debug)]
@@ -266,7 +266,6 @@ impl Scene {
         Ok(changes)
     }
 
-    #[doc(hidden)] pub fn set_smallest(&mut self, s: f64) { self.options.smallest_patch = s; }
     /// How many surfaces without area were dropped.
     #[must_use]
     pub const fn dropped(&self) -> usize {

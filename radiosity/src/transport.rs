@@ -74,6 +74,26 @@ impl Transport {
         Ok(())
     }
 
+    /// Gives a surface another reflectance and emission. Links stay as they are, refined for the materials that they were made with.
+    ///
+    /// # Errors
+    /// As [`Scene::set_material`]; then nothing is changed. [`RadiosityError::Option`] if the surface was black when links were made: it has none.
+    pub fn set_material(
+        &mut self,
+        surface: usize,
+        reflectance: Rgb,
+        emission: Rgb,
+    ) -> Result<(), RadiosityError> {
+        let was_black = |scene: &Scene| scene.sides.iter().any(|s| s.surface == surface && s.is_black());
+        if was_black(&self.scene) && (reflectance != [0.0; 3] || emission != [0.0; 3]) {
+            let (name, expected) = ("reflectance", "0, since no links were made for a black surface");
+            let value = reflectance.into_iter().chain(emission).fold(0.0, f64::max);
+            return Err(RadiosityError::Option { name, value, expected });
+        }
+        self.scene.set_material(surface, reflectance, emission)?;
+        Ok(())
+    }
+
     pub(crate) fn row(&self, element: ElementId) -> &[Entry] {
         &self.entries[self.starts[element as usize]..self.starts[element as usize + 1]]
     }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::gather::{FIRST, Gathered, Gatherer, mean};
+use super::gather::{BLACK, FIRST, Gathered, Gatherer, mean};
 use super::smooth::Places;
 use super::solution::RaySolution;
 use super::surroundings::LIFT;
@@ -24,16 +24,19 @@ const HOLLOW: f64 = 0.35;
 /// Rounds of division of patches, at most.
 const ROUNDS: usize = 4;
 /// A patch is divided if irradiance at its corners differs by more than this share of its mean, and it is not small against the distances from which light comes.
-const UNEVEN: f64 = 0.25;
+const UNEVEN: f64 = 0.18;
+/// A vertex counts as covered by another surface if the distance from which its light comes is below this share of the size of its patches: in a
+/// corner of three walls it is more, since rays start inward of it.
+const COVERED: f64 = 0.01;
 /// The size of a patch is small if it is below this share of that distance.
-const SMALL: f64 = 0.5;
+const SMALL: f64 = 0.25;
 
 /// Where a place is and which way it faces, as far as rays are concerned.
 type Key = [u64; 6];
 
 impl RaySolution<'_> {
     /// Irradiance and radiosity at every vertex, and how far they are off. Patches are divided down to
-    /// [`SceneOptions::smallest_patch`](crate::SceneOptions::smallest_patch) where irradiance changes fast. `done` is told the share of the work that is done (0 to 1).
+    /// [`RayOptions::finest`](crate::RayOptions::finest) where irradiance changes fast. `done` is told the share of the work that is done (0 to 1).
     /// Facets of a curved surface share vertices, whose normal is the mean of theirs.
     #[must_use]
     pub fn bake_with(&self, done: &(dyn Fn(f64) + Sync)) -> Baked {
@@ -50,6 +53,9 @@ impl RaySolution<'_> {
             let uneven = if round == ROUNDS { vec![] } else { self.uneven(&scene, &mesh, &lights, gatherer.floor) };
             if uneven.is_empty() {
                 let mut light: Vec<Rgb> = lights.iter().map(|l| l.light).collect();
+                let covered = |(place, own): (&Place, &Light)| own.reach < COVERED * size_around(&scene, place);
+                let covered: Vec<bool> = mesh.places.iter().zip(&lights).map(covered).collect();
+                mesh.lift(&covered, &mut light);
                 mesh.lift_buried(&mut light);
                 let direct: Vec<Rgb> = leaves.iter().map(|&l| direct[l as usize]).collect();
                 return mesh.finish(&direct, &light);
@@ -88,7 +94,6 @@ impl RaySolution<'_> {
         let places = Places::new(&positions);
         let mut rays = FIRST;
         loop {
-            if std::env::var("DBG").is_ok() { eprintln!("  {} of {} to {rays} rays", open.len(), keys.len()); }
             for (number, block) in open.chunks(BLOCK).enumerate() {
                 let more = parallel::map_heavy(block.len(), |i| {
                     let place = starts[block[i]];
@@ -106,7 +111,10 @@ impl RaySolution<'_> {
             let neighbours = places.smooth(&normals, &gathered, &open);
             rays *= 2;
             let wants = |&(i, (light, error)): &(usize, (Rgb, f64))| {
-                gathered[i].rays() < options.most_rays && error > options.tolerance * mean(light).max(gatherer.floor)
+                let bright = mean(light);
+                let first = gathered[i].rays() == FIRST && bright > BLACK * gatherer.floor;
+                gathered[i].rays() < options.most_rays
+                    && (first || error > options.tolerance * bright.max(gatherer.floor))
             };
             open = open.iter().copied().zip(neighbours).filter(wants).map(|(i, _)| i).collect();
             if open.is_empty() || rays > options.most_rays {
@@ -122,7 +130,7 @@ impl RaySolution<'_> {
 
     /// Leaves over which irradiance changes too fast to be interpolated.
     fn uneven(&self, scene: &Scene, mesh: &Mesh<'_>, lights: &[Light], floor: f64) -> Vec<ElementId> {
-        let smallest = scene.options.smallest_patch * scene.scale;
+        let smallest = self.transport.options.finest * scene.scale;
         let is_uneven = |(leaf, ring, _): &(ElementId, Vec<u32>, Option<u32>)| {
             let element = &scene.tree.elements[*leaf as usize];
             let at = || ring.iter().map(|&place| &lights[place as usize]);
@@ -147,6 +155,12 @@ struct Light {
     error: f64,
     /// Harmonic mean of the distances from which light comes.
     reach: f64,
+}
+
+/// The smallest of the patches around a place.
+fn size_around(scene: &Scene, place: &Place) -> f64 {
+    let size = |leaf: &ElementId| scene.tree.elements[*leaf as usize].polygon.area().sqrt();
+    place.leaves.iter().map(size).fold(f64::INFINITY, f64::min)
 }
 
 fn key(mesh: &Mesh<'_>, place: &Place) -> Key {

@@ -10,7 +10,9 @@ use crate::rgb::{Rgb, add};
 /// Rays that are judged together: each block is evenly spread over the hemisphere by itself.
 const BLOCK: u32 = 16;
 /// Rays of a place at first.
-pub(crate) const FIRST: u32 = 64;
+pub(crate) const FIRST: u32 = 32;
+/// Places that have seen less than this share of [`Gatherer::floor`] by their first rays stay dark.
+pub(crate) const BLACK: f64 = 0.1;
 /// Places darker than this share of what a mean part of the light meets need no smaller error than one of that brightness.
 const DARK: f64 = 0.1;
 /// Rays shorter than this share of the scene's size count as so long, when distances are averaged.

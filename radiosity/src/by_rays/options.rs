@@ -11,16 +11,18 @@ pub struct RayOptions {
     pub size: f64,
     /// Links of a large patch, each to the patch that a ray meets; 16 to 65,536. Default: 256.
     pub links: u32,
-    /// Aim for the standard error of the irradiance of a vertex, relative to the irradiance there or to a tenth of the scene's mean. More rays are taken until
-    /// it is reached. Default: 0.03.
+    /// Longest side, about, down to which patches are divided for drawing where light changes fast, in the scene's unit. Default: infinite, that is, never.
+    pub finest: f64,
+    /// Aim for the standard error of the irradiance of a vertex, relative to the irradiance there or to a tenth of what a mean part of
+    /// the light meets. More rays are taken until it is reached. Default: 0.06.
     pub tolerance: f64,
-    /// Most rays of a vertex; 128 to 65,536. Default: 1024.
+    /// Most rays of a vertex; 128 to 65,536. Default: 256.
     pub most_rays: u32,
 }
 
 impl RayOptions {
     /// The defaults, as a constant.
-    pub const DEFAULT: Self = Self { size: 0.0, links: 256, tolerance: 0.03, most_rays: 1024 };
+    pub const DEFAULT: Self = Self { size: 0.0, links: 256, finest: f64::INFINITY, tolerance: 0.06, most_rays: 256 };
 
     /// Another size of transport.
     #[must_use]
@@ -33,6 +35,13 @@ impl RayOptions {
     #[must_use]
     pub const fn with_links(mut self, links: u32) -> Self {
         self.links = links;
+        self
+    }
+
+    /// Patches may become this small for drawing.
+    #[must_use]
+    pub const fn with_finest(mut self, size: f64) -> Self {
+        self.finest = size;
         self
     }
 
@@ -57,6 +66,9 @@ impl RayOptions {
         }
         if !(16..=1 << 16).contains(&self.links) {
             return refuse("links", f64::from(self.links), "from 16 to 65536");
+        }
+        if self.finest.is_nan() || self.finest <= 0.0 {
+            return refuse("finest", self.finest, "above 0");
         }
         if self.tolerance.is_nan() || self.tolerance <= 0.0 {
             return refuse("tolerance", self.tolerance, "above 0");

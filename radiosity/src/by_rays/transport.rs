@@ -92,11 +92,21 @@ impl RayTransport {
         RayCounts { patches: self.leaves.len(), links, lost }
     }
 
-    #[doc(hidden)] pub fn patch_rings(&self)->Vec<(Vec<glam::DVec3>,glam::DVec3,f64)>{ self.leaves.iter().map(|&l|{let p=&self.scene.tree.elements[l as usize].polygon; (p.vertices().iter().map(|&v|self.scene.outward(v)).collect(),p.normal(),p.area())}).collect() }
     /// Irradiance of each patch by lamps, in their order.
     #[must_use]
     pub fn direct(&self) -> &[Rgb] {
         &self.direct
+    }
+
+    /// Calls `f` with patch, other patch and form factor from the first to the second: the share of its rays that meet the other.
+    pub fn factors(&self, mut f: impl FnMut(usize, usize, f64)) {
+        for patch in 0..self.leaves.len() {
+            let mut row: Vec<u32> = self.links.row(patch).to_vec();
+            row.sort_unstable();
+            for met in row.chunk_by(|a, b| a == b).filter(|met| met[0] != NONE) {
+                f(patch, met[0] as usize, met.len() as f64 / row.len() as f64);
+            }
+        }
     }
 
     /// Replaces the direct light: the irradiance of each patch, in their order, or empty for none.

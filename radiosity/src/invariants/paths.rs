@@ -128,6 +128,14 @@ impl<'l> Paths<'l> {
         (mean, error)
     }
 
+    /// How far it is from a point along its normal to the next surface, as a share of the scene's size: next to nothing where surfaces lie on one another, and it
+    /// is left to rounding which of them is lit.
+    #[must_use]
+    pub fn clearance(&self, point: DVec3, normal: DVec3) -> f64 {
+        let met = self.meet(point + normal * (OFF * self.size), normal, f64::INFINITY, false);
+        met.map_or(f64::INFINITY, |(_, distance)| distance / self.size)
+    }
+
     /// Irradiance by lamps at a point in front of its own surface; areas at one random point each.
     #[must_use]
     pub fn direct(&self, point: DVec3, normal: DVec3, seed: u64) -> Rgb {
@@ -138,7 +146,7 @@ impl<'l> Paths<'l> {
     fn along(&self, point: DVec3, normal: DVec3, first: [f64; 2], random: &mut Random) -> Rgb {
         let (mut light, mut weight) = ([0.0; 3], [1.0; 3]);
         let (mut origin, mut up, mut pair) = (point + normal * (OFF * self.size), normal, first);
-        for reflections in 0..std::env::var("MOSTB").map_or(MOST, |v| v.parse().unwrap()) {
+        for reflections in 0..MOST {
             let direction = by_cosine(up, pair);
             let Some((number, t)) = self.meet(origin, direction, f64::INFINITY, false) else { break };
             let surface = &self.surfaces[number];
