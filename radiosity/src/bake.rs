@@ -117,4 +117,3 @@ impl Transport {
         visible_share(point, normal, source, list, pieces)
     }
 }
-

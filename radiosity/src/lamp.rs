@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
+use crate::by_rays::surroundings::{LIFT, Surroundings};
 use crate::error::RadiosityError;
 use crate::factor;
 use crate::kernel::gauss;
-use crate::by_rays::surroundings::{LIFT, Surroundings};
 use crate::polygon::{Polygon, edges};
 use crate::rays::sequence::{lattice, point_of};
 use crate::rgb::{Rgb, add, is_light};
@@ -92,8 +92,9 @@ impl Scene {
             if open.is_empty() {
                 break;
             }
-            let found =
-                parallel::map_with(open.len(), Pieces::default, |pieces, i| self.lit(open[i], lamps, &rays, pieces));
+            let found = parallel::map_with(open.len(), Pieces::default, |pieces, i| {
+                self.lit(open[i], lamps, &rays, pieces)
+            });
             for (&leaf, found) in open.iter().zip(found) {
                 let (irradiance, edge) = found.map_err(|problem| self.not_lit(leaf, problem))?;
                 of_element[leaf as usize] = Some(irradiance);
@@ -132,12 +133,20 @@ impl Scene {
         let mut edge = false;
         for (number, lamp) in lamps.iter().enumerate() {
             let (light, cut) = match *lamp {
-                Lamp::Point { position, irradiance, shadow } => {
-                    self.lit_from(element, Eye::Point(self.inward(position)), irradiance, shadow, (rays, &mut *pieces))
-                }
-                Lamp::Directional { direction, irradiance, shadow } => {
-                    self.lit_from(element, Eye::Along(direction.normalize()), irradiance, shadow, (rays, &mut *pieces))
-                }
+                Lamp::Point { position, irradiance, shadow } => self.lit_from(
+                    element,
+                    Eye::Point(self.inward(position)),
+                    irradiance,
+                    shadow,
+                    (rays, &mut *pieces),
+                ),
+                Lamp::Directional { direction, irradiance, shadow } => self.lit_from(
+                    element,
+                    Eye::Along(direction.normalize()),
+                    irradiance,
+                    shadow,
+                    (rays, &mut *pieces),
+                ),
                 Lamp::Area { polygon, exitance, shadow } => {
                     (self.lit_by_area(element, polygon, exitance, shadow, pieces), false)
                 }

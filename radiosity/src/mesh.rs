@@ -61,8 +61,15 @@ impl<'t> Mesh<'t> {
             let next = known.len() as u32;
             of_side[element.side as usize] = *known.entry(key).or_insert(next);
         }
-        let mut mesh =
-            Self { scene, leaves, facets, groups: of_side, keys: HashMap::new(), places: vec![], rings: vec![] };
+        let mut mesh = Self {
+            scene,
+            leaves,
+            facets,
+            groups: of_side,
+            keys: HashMap::new(),
+            places: vec![],
+            rings: vec![],
+        };
         mesh.collect();
         if facets == Facets::Joined {
             mesh.join();

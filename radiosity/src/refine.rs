@@ -79,10 +79,7 @@ impl Found {
 ///
 /// Tasks run in parallel and are taken together in their order, so that links do not depend on threads.
 /// `direct` is the irradiance of each element that does not come from patches; it grows with the tree.
-pub(crate) fn refine(
-    scene: &mut Scene,
-    direct: &mut Vec<Rgb>,
-) -> Result<Found, RadiosityError> {
+pub(crate) fn refine(scene: &mut Scene, direct: &mut Vec<Rgb>) -> Result<Found, RadiosityError> {
     let estimate = Estimate::new(scene, direct);
     let mut all = Found::default();
     all.lost.resize(scene.tree.elements.len(), 0.0);

@@ -22,7 +22,11 @@ fn mean(light: [f64; 3]) -> f64 {
 #[test]
 fn a_white_furnace_has_the_same_radiosity_everywhere() {
     // Emission 1, reflectance 0.75: 1 / (1 − 0.75) on every wall, whatever the links are.
-    let transport = by_rays(&room(dvec3(4.0, 1.0, 3.0), DQuat::from_rotation_x(0.3), 0.75, 1.0), 0.5, &RayOptions::DEFAULT);
+    let transport = by_rays(
+        &room(dvec3(4.0, 1.0, 3.0), DQuat::from_rotation_x(0.3), 0.75, 1.0),
+        0.5,
+        &RayOptions::DEFAULT,
+    );
     let solution = transport.solve(&SolveOptions::DEFAULT.with_tolerance(1e-9)).expect("it absorbs");
     let counts = transport.counts();
     assert_eq!(counts.lost, 0, "rays found a way out of a closed room");
@@ -45,11 +49,16 @@ fn vertices_of_a_cornell_box_are_lit_as_by_paths() {
     let position = dvec3(0.4, 0.7, 0.6);
     let irradiance = light(position);
     let lamps = [Lamp::Point { position, irradiance: &irradiance, shadow: true }];
-    surfaces.extend(faces(dvec3(0.6, 0.0, 0.1), dvec3(0.9, 0.5, 0.4), DQuat::IDENTITY).iter().map(|f| Surface::new(f, [0.7; 3])));
+    surfaces.extend(
+        faces(dvec3(0.6, 0.0, 0.1), dvec3(0.9, 0.5, 0.4), DQuat::IDENTITY)
+            .iter()
+            .map(|f| Surface::new(f, [0.7; 3])),
+    );
     let settings = SceneOptions::DEFAULT.with_squarer(false).with_patch(0.1).with_smallest_patch(0.1);
     let mut scene = Scene::new(&surfaces, &settings).expect("surfaces");
     let direct = scene.direct(&lamps).expect("lamps");
-    let transport = scene.transport_by_rays(&direct, &RayOptions::DEFAULT.with_finest(0.05), &|_| ()).expect("options");
+    let transport =
+        scene.transport_by_rays(&direct, &RayOptions::DEFAULT.with_finest(0.05), &|_| ()).expect("options");
     let solution = transport.solve(&SolveOptions::DEFAULT).expect("it absorbs");
     let baked = solution.bake();
     let paths = Paths::new(&surfaces, &lamps);
@@ -81,8 +90,14 @@ fn another_material_is_solved_for_with_the_same_links() {
     for (a, b) in again.radiosity.iter().zip(&fresh.radiosity) {
         assert!((mean(*a) - mean(*b)).abs() < 1e-6, "{a:?} {b:?}");
     }
-    assert!(matches!(transport.set_material(99, [0.5; 3], [0.0; 3]), Err(RadiosityError::UnknownSurface { surface: 99 })));
-    assert!(matches!(transport.set_material(0, [1.5; 3], [0.0; 3]), Err(RadiosityError::ReflectanceAboveOne { .. })));
+    assert!(matches!(
+        transport.set_material(99, [0.5; 3], [0.0; 3]),
+        Err(RadiosityError::UnknownSurface { surface: 99 })
+    ));
+    assert!(matches!(
+        transport.set_material(0, [1.5; 3], [0.0; 3]),
+        Err(RadiosityError::ReflectanceAboveOne { .. })
+    ));
 }
 
 #[test]
@@ -141,17 +156,16 @@ fn absorbed(patches: impl Iterator<Item = (f64, [f64; 3], [f64; 3])>) -> f64 {
 fn a_lamp_close_to_the_ceiling_loses_no_light() {
     for gap in [0.1, 1e-3] {
         let surfaces = lamp_below_the_ceiling(gap);
-        for tolerance in [None, Some(0.01)] {
-            let options = SceneOptions::DEFAULT.with_patch(0.5).with_smallest_patch(0.25).with_tolerance(tolerance);
-            let transport = Scene::new(&surfaces, &options).and_then(|s| s.transport(&[])).expect("surfaces");
-            let solution = transport.gauss_seidel(&SolveOptions::DEFAULT).expect("it absorbs");
-            let list = transport.patches().zip(&solution.radiosity).map(|(p, b)| (p.area, p.emission, *b));
-            let share = absorbed(list);
-            assert!((share - 1.0).abs() < 0.01, "{gap} below, tolerance {tolerance:?}: {share} of the light is absorbed");
-        }
+        let options = SceneOptions::DEFAULT.with_patch(0.5).with_smallest_patch(0.25);
+        let transport = Scene::new(&surfaces, &options).and_then(|s| s.transport(&[])).expect("surfaces");
+        let solution = transport.gauss_seidel(&SolveOptions::DEFAULT).expect("it absorbs");
+        let list = transport.patches().zip(&solution.radiosity).map(|(p, b)| (p.area, p.emission, *b));
+        let share = absorbed(list);
+        assert!((share - 1.0).abs() < 0.01, "{gap} below: {share} of the light is absorbed");
         let transport = by_rays(&surfaces, 0.5, &RayOptions::DEFAULT.with_links(1024).with_size(0.25));
         let solution = transport.solve(&SolveOptions::DEFAULT).expect("it absorbs");
-        let share = absorbed(transport.patches().zip(&solution.radiosity).map(|(p, b)| (p.area, p.emission, *b)));
+        let share =
+            absorbed(transport.patches().zip(&solution.radiosity).map(|(p, b)| (p.area, p.emission, *b)));
         assert!((share - 1.0).abs() < 0.03, "{gap} below, by rays: {share} of the light is absorbed");
     }
 }

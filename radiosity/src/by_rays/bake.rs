@@ -35,7 +35,7 @@ const SMALL: f64 = 0.25;
 type Key = [u64; 6];
 
 impl RaySolution<'_> {
-    /// Irradiance and radiosity at every vertex, and how far they are off. Patches are divided down to
+    /// Irradiance and radiosity at every vertex. Patches are divided down to
     /// [`RayOptions::finest`](crate::RayOptions::finest) where irradiance changes fast. `done` is told the share of the work that is done (0 to 1).
     /// Facets of a curved surface share vertices, whose normal is the mean of theirs.
     #[must_use]
@@ -50,10 +50,12 @@ impl RaySolution<'_> {
             let mesh = Mesh::new(&scene, &leaves, Facets::Joined);
             let shares = |share: f64| done((round as f64 + share) / (ROUNDS + 1) as f64);
             let lights = self.lights(&scene, &mesh, &gatherer, &mut known, &shares);
-            let uneven = if round == ROUNDS { vec![] } else { self.uneven(&scene, &mesh, &lights, gatherer.floor) };
+            let uneven =
+                if round == ROUNDS { vec![] } else { self.uneven(&scene, &mesh, &lights, gatherer.floor) };
             if uneven.is_empty() {
                 let mut light: Vec<Rgb> = lights.iter().map(|l| l.light).collect();
-                let covered = |(place, own): (&Place, &Light)| own.reach < COVERED * size_around(&scene, place);
+                let covered =
+                    |(place, own): (&Place, &Light)| own.reach < COVERED * size_around(&scene, place);
                 let covered: Vec<bool> = mesh.places.iter().zip(&lights).map(covered).collect();
                 mesh.lift(&covered, &mut light);
                 mesh.lift_buried(&mut light);
@@ -86,10 +88,12 @@ impl RaySolution<'_> {
     ) -> Vec<Light> {
         let options = &self.transport.options;
         let keys: Vec<Key> = mesh.places.iter().map(|p| key(mesh, p)).collect();
-        let starts: Vec<(DVec3, DVec3, u64)> = (0..keys.len()).map(|i| start(scene, mesh, &mesh.places[i], &keys[i])).collect();
+        let starts: Vec<(DVec3, DVec3, u64)> =
+            (0..keys.len()).map(|i| start(scene, mesh, &mesh.places[i], &keys[i])).collect();
         let positions: Vec<DVec3> = mesh.places.iter().map(|p| p.position).collect();
         let normals: Vec<DVec3> = starts.iter().map(|s| s.1).collect();
-        let mut gathered: Vec<Gathered> = keys.iter().map(|k| known.get(k).copied().unwrap_or_default()).collect();
+        let mut gathered: Vec<Gathered> =
+            keys.iter().map(|k| known.get(k).copied().unwrap_or_default()).collect();
         let mut open: Vec<usize> = (0..keys.len()).filter(|&i| gathered[i].rays() == 0).collect();
         let places = Places::new(&positions);
         let mut rays = FIRST;
@@ -124,7 +128,8 @@ impl RaySolution<'_> {
         known.extend(keys.into_iter().zip(gathered.iter().copied()));
         let all: Vec<usize> = (0..gathered.len()).collect();
         let lights = places.smooth(&normals, &gathered, &all);
-        let light = |((light, error), own): ((Rgb, f64), &Gathered)| Light { light, error, reach: own.reach() };
+        let light =
+            |((light, error), own): ((Rgb, f64), &Gathered)| Light { light, error, reach: own.reach() };
         lights.into_iter().zip(&gathered).map(light).collect()
     }
 

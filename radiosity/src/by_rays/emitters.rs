@@ -44,7 +44,8 @@ impl Emitters {
         let mut power = vec![0.0; scene.sides.len()];
         for &root in &scene.tree.roots {
             let element = &scene.tree.elements[root as usize];
-            power[element.side as usize] += element.polygon.area() * sum(scene.sides[element.side as usize].emission);
+            power[element.side as usize] +=
+                element.polygon.area() * sum(scene.sides[element.side as usize].emission);
         }
         let mut order: Vec<usize> = (0..power.len()).filter(|&i| power[i] > 0.0).collect();
         order.sort_by(|&a, &b| power[b].total_cmp(&power[a]).then(a.cmp(&b)));
@@ -116,12 +117,19 @@ impl Emitters {
 
 impl Emitter {
     /// Which part of its light reaches a point.
-    fn seen_from(&self, around: &Surroundings, (point, normal): (DVec3, DVec3), rays: u32, shift: [f64; 2]) -> f64 {
+    fn seen_from(
+        &self,
+        around: &Surroundings,
+        (point, normal): (DVec3, DVec3),
+        rays: u32,
+        shift: [f64; 2],
+    ) -> f64 {
         let (mut all, mut seen) = (0.0, 0.0);
         for k in 0..rays {
             let target = point_of(self.polygon.vertices(), lattice(k, shift));
             let way = target - point;
-            let weight = normal.dot(way).max(0.0) * self.polygon.normal().dot(-way).max(0.0) / way.length_squared().powi(2);
+            let weight = normal.dot(way).max(0.0) * self.polygon.normal().dot(-way).max(0.0)
+                / way.length_squared().powi(2);
             if weight > 0.0 && weight.is_finite() {
                 all += weight;
                 seen += if around.is_blocked(point, target) { 0.0 } else { weight };

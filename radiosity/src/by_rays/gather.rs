@@ -87,7 +87,12 @@ impl<'s> Gatherer<'s> {
     }
 
     /// The same with as many rays as this; `start` gives the point, the normal and the place as before.
-    pub(crate) fn go_on(&self, (point, normal, place): (DVec3, DVec3, u64), rays: u32, gathered: &mut Gathered) {
+    pub(crate) fn go_on(
+        &self,
+        (point, normal, place): (DVec3, DVec3, u64),
+        rays: u32,
+        gathered: &mut Gathered,
+    ) {
         let transport = self.solution.transport;
         let hemisphere = Hemisphere::new(normal);
         let sequence = Sequence::new(place);

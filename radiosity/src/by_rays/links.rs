@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::surroundings::{LIFT, Surroundings};
 use crate::polygon::Polygon;
-use crate::rays::sequence::{Hemisphere, Sequence, lattice, shift_of, point_of};
+use crate::rays::sequence::{Hemisphere, Sequence, lattice, point_of, shift_of};
 use crate::scene::Scene;
 use crate::tree::ElementId;
 use pointillist_parallel as parallel;

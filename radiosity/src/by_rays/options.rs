@@ -22,7 +22,8 @@ pub struct RayOptions {
 
 impl RayOptions {
     /// The defaults, as a constant.
-    pub const DEFAULT: Self = Self { size: 0.0, links: 256, finest: f64::INFINITY, tolerance: 0.06, most_rays: 256 };
+    pub const DEFAULT: Self =
+        Self { size: 0.0, links: 256, finest: f64::INFINITY, tolerance: 0.06, most_rays: 256 };
 
     /// Another size of transport.
     #[must_use]

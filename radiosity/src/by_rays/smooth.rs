@@ -32,7 +32,12 @@ impl<'p> Places<'p> {
     }
 
     /// Irradiance of some places, each its own and that of its neighbours, and its standard error.
-    pub(crate) fn smooth(&self, normals: &[DVec3], gathered: &[Gathered], which: &[usize]) -> Vec<(Rgb, f64)> {
+    pub(crate) fn smooth(
+        &self,
+        normals: &[DVec3],
+        gathered: &[Gathered],
+        which: &[usize],
+    ) -> Vec<(Rgb, f64)> {
         parallel::map_heavy(which.len(), |k| {
             let i = which[k];
             let (at, reach) = (self.positions[i], gathered[i].reach());
@@ -80,7 +85,13 @@ impl<'p> Places<'p> {
         self.visit((1, 0, self.order.len()), point, radius, visit);
     }
 
-    fn visit(&self, (cell, from, to): (usize, usize, usize), point: DVec3, radius: f64, visit: &mut impl FnMut(usize)) {
+    fn visit(
+        &self,
+        (cell, from, to): (usize, usize, usize),
+        point: DVec3,
+        radius: f64,
+        visit: &mut impl FnMut(usize),
+    ) {
         let (low, high) = self.cells[cell];
         if from == to || (point - point.clamp(low, high)).length_squared() > radius * radius {
             return;

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::transport::RayTransport;
 use super::gather::Gatherer;
 use super::links::NONE;
+use super::transport::RayTransport;
 use crate::error::RadiosityError;
 use crate::rgb::{Rgb, add, times};
 use crate::solve::SolveOptions;
@@ -24,8 +24,8 @@ pub struct RaySolution<'c> {
     pub(crate) seen: Vec<Rgb>,
     /// Radiosity of each patch, power per area.
     pub radiosity: Vec<Rgb>,
-    /// Bound on the error of any patch's radiosity for the given links: ‖r‖∞ / (1 − contraction). The error of the links themselves, which are samples, is not in
-    /// it: [`RaySolution::bake_with`] says how far its rays differ.
+    /// Bound on the error of any patch's radiosity for the given links, from the last change and the contraction. The error of the links themselves, which
+    /// are samples, is not in it.
     pub bound: f64,
     /// Largest product of reflectance and share of links that meet a patch.
     pub contraction: f64,
@@ -48,16 +48,19 @@ impl RayTransport {
     ///
     /// # Errors
     /// As [`RayTransport::solve`], and [`RadiosityError::CountMismatch`] if there are not as many values as patches.
-    pub fn solve_from(&self, gathered: Vec<Rgb>, options: &SolveOptions) -> Result<RaySolution<'_>, RadiosityError> {
+    pub fn solve_from(
+        &self,
+        gathered: Vec<Rgb>,
+        options: &SolveOptions,
+    ) -> Result<RaySolution<'_>, RadiosityError> {
         options.check()?;
         let patches = self.leaves.len();
         if gathered.len() != patches {
             return Err(RadiosityError::CountMismatch { patches, given: gathered.len() });
         }
         let contraction = self.contraction();
-        if contraction > MOST {
-            return Err(RadiosityError::NoEquilibrium { contraction });
-        }
+        let proof = if contraction > MOST { self.proof() } else { Some(Proof::of_rows(contraction)) };
+        let proof = proof.ok_or(RadiosityError::NoEquilibrium { contraction })?;
         let mut solution = RaySolution {
             transport: self,
             gathered,
@@ -70,7 +73,7 @@ impl RayTransport {
         };
         solution.send();
         while !solution.converged && solution.steps < options.max_sweeps {
-            solution.sweep(options.tolerance);
+            solution.sweep(&proof, options.tolerance);
         }
         Ok(solution)
     }
@@ -82,6 +85,55 @@ impl RayTransport {
             let met = row.iter().filter(|&&hit| hit != NONE).count() as f64 / row.len() as f64;
             most.max(met * self.reflectance(patch).into_iter().fold(0.0, f64::max))
         })
+    }
+}
+
+/// Why the last change of the radiosity bounds its error. If w > 0 and v = (I − ρF) w > 0, then a change of at most m w leaves a
+/// residual of at most m ρF w = m (w − v), and an error of at most m · max (w − v)/v · w.
+struct Proof {
+    /// w; empty for 1 everywhere.
+    weights: Vec<f64>,
+    /// max (w − v)/v · max w.
+    factor: f64,
+}
+
+/// Most sweeps in which weights are looked for.
+const PROOF_SWEEPS: usize = 500;
+/// Least v with which they are accepted.
+const PROVEN: f64 = 0.5;
+
+impl Proof {
+    /// No row reflects more than this.
+    fn of_rows(contraction: f64) -> Self {
+        Self { weights: vec![], factor: contraction / (1.0 - contraction) }
+    }
+}
+
+impl RayTransport {
+    /// Where single rows lose nothing: solves (I − ρF) w = 1 until v is large enough.
+    fn proof(&self) -> Option<Proof> {
+        let count = self.leaves.len();
+        let brightest: Vec<f64> =
+            (0..count).map(|patch| self.reflectance(patch).into_iter().fold(0.0, f64::max)).collect();
+        let mut weights = vec![1.0; count];
+        for _ in 0..PROOF_SWEEPS {
+            let next: Vec<f64> = parallel::map(count, |patch| {
+                let row = self.links.row(patch);
+                let met =
+                    row.iter().filter(|&&hit| hit != NONE).map(|&hit| weights[hit as usize]).sum::<f64>();
+                1.0 + brightest[patch] * met / row.len() as f64
+            });
+            // 1 + ρFw − w is 1 − v.
+            let least = next.iter().zip(&weights).fold(f64::MAX, |m, (n, w)| m.min(1.0 - (n - w)));
+            if least >= PROVEN {
+                let ratio = |(n, w): (&f64, &f64)| (n - 1.0) / (1.0 - (n - w));
+                let ratio = next.iter().zip(&weights).map(ratio).fold(0.0, f64::max);
+                let factor = ratio * weights.iter().copied().fold(0.0, f64::max);
+                return Some(Proof { weights, factor });
+            }
+            weights = next;
+        }
+        None
     }
 }
 
@@ -106,7 +158,8 @@ impl<'c> RaySolution<'c> {
         let (Some(normal), true) = (normal.try_normalize(), point.is_finite()) else {
             return Err(RadiosityError::BadPoint);
         };
-        let bits = point.to_array().into_iter().fold(0, |m, x| crate::rays::sequence::mix(m ^ (x + 0.0).to_bits()));
+        let bits =
+            point.to_array().into_iter().fold(0, |m, x| crate::rays::sequence::mix(m ^ (x + 0.0).to_bits()));
         let (gatherer, place) = (Gatherer::new(self), (self.transport.scene.inward(point), normal, bits));
         let mut gathered = gatherer.start(place.0, place.1, place.2);
         gatherer.go_on(place, self.transport.options.most_rays, &mut gathered);
@@ -114,7 +167,7 @@ impl<'c> RaySolution<'c> {
     }
 
     /// One step, and whether it was the last one needed.
-    fn sweep(&mut self, tolerance: f64) {
+    fn sweep(&mut self, proof: &Proof, tolerance: f64) {
         let transport = self.transport;
         let next: Vec<Rgb> = parallel::map(transport.leaves.len(), |patch| {
             let row = transport.links.row(patch);
@@ -127,13 +180,13 @@ impl<'c> RaySolution<'c> {
         for (patch, (new, old)) in next.iter().zip(&self.gathered).enumerate() {
             let change = add(*new, -1.0, *old);
             let change = times(transport.reflectance(patch), change);
-            residual = change.into_iter().fold(residual, |m, c| m.max(c.abs()));
+            let weight = proof.weights.get(patch).copied().unwrap_or(1.0);
+            residual = change.into_iter().fold(residual, |m, c| m.max(c.abs() / weight));
         }
-        // With the new values: what is left is at most the contraction of it.
         self.gathered = next;
         self.send();
         self.steps += 1;
-        self.bound = residual * self.contraction / (1.0 - self.contraction);
+        self.bound = residual * proof.factor;
         let largest = self.radiosity.iter().flatten().fold(0.0, |m: f64, &v| m.max(v));
         self.converged = self.bound <= tolerance * largest;
     }

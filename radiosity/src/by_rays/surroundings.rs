@@ -37,7 +37,8 @@ impl Surroundings {
         for (occluder, surface) in scene.occluders.iter().zip(&scene.surface_of) {
             let empty = [vec![], vec![]];
             let [front, back] = of_surface.get(surface).unwrap_or(&empty);
-            let backs: HashMap<[i64; 3], ElementId> = back.iter().map(|&leaf| (key(scene, leaf), leaf)).collect();
+            let backs: HashMap<[i64; 3], ElementId> =
+                back.iter().map(|&leaf| (key(scene, leaf), leaf)).collect();
             let matched = front.iter().filter(|&&leaf| backs.contains_key(&key(scene, leaf))).count();
             if front.is_empty() {
                 push(occluder, (sides.len(), false), &mut triangles);
@@ -95,5 +96,9 @@ fn key(scene: &Scene, leaf: ElementId) -> [i64; 3] {
 fn push(polygon: &Polygon, (tag, from_front): (usize, bool), triangles: &mut Vec<Corners>) {
     let ring = polygon.vertices();
     let corners = |i: usize| [ring[0], ring[i], ring[i + 1]];
-    triangles.extend((1..ring.len() - 1).map(|i| Corners { corners: corners(i), tag: tag as u32, from_front }));
+    triangles.extend((1..ring.len() - 1).map(|i| Corners {
+        corners: corners(i),
+        tag: tag as u32,
+        from_front,
+    }));
 }

@@ -124,7 +124,12 @@ impl RayTransport {
     ///
     /// # Errors
     /// As [`Scene::set_material`]; then nothing is changed.
-    pub fn set_material(&mut self, surface: usize, reflectance: Rgb, emission: Rgb) -> Result<(), RadiosityError> {
+    pub fn set_material(
+        &mut self,
+        surface: usize,
+        reflectance: Rgb,
+        emission: Rgb,
+    ) -> Result<(), RadiosityError> {
         if self.scene.set_material(surface, reflectance, emission)? {
             self.light_by_emitters();
         }

@@ -159,7 +159,8 @@ impl<'l> Paths<'l> {
             origin += direction * t + up * (OFF * self.size);
             let lit = self.lit(origin, up, random);
             for band in 0..3 {
-                light[band] += weight[band] * (surface.emission[band] + surface.reflectance[band] * lit[band]);
+                light[band] +=
+                    weight[band] * (surface.emission[band] + surface.reflectance[band] * lit[band]);
                 weight[band] *= surface.reflectance[band];
             }
             let most = weight.into_iter().fold(0.0, f64::max);
@@ -179,10 +180,15 @@ impl<'l> Paths<'l> {
         let mut sum = [0.0; 3];
         for lamp in self.lamps {
             let (way, light, shadow, end) = match *lamp {
-                Lamp::Point { position, irradiance, shadow } => (position - point, irradiance(point, normal), shadow, 1.0),
-                Lamp::Directional { direction, irradiance, shadow } => (-direction, irradiance(point, normal), shadow, f64::INFINITY),
+                Lamp::Point { position, irradiance, shadow } => {
+                    (position - point, irradiance(point, normal), shadow, 1.0)
+                }
+                Lamp::Directional { direction, irradiance, shadow } => {
+                    (-direction, irradiance(point, normal), shadow, f64::INFINITY)
+                }
                 Lamp::Area { polygon, exitance, shadow } => {
-                    let at = crate::rays::sequence::point_of(polygon.vertices(), [random.next(), random.next()]);
+                    let at =
+                        crate::rays::sequence::point_of(polygon.vertices(), [random.next(), random.next()]);
                     let way = at - point;
                     let length2 = way.length_squared();
                     let cosines = normal.dot(way).max(0.0) * polygon.normal().dot(-way).max(0.0);

@@ -120,7 +120,8 @@ impl RayTree {
             let Some((which, &(from, to))) = large.max_by(|a, b| area(*a.1).total_cmp(&area(*b.1))) else {
                 break;
             };
-            let middle = from + if level < LEVELS { split(&mut items[from..to]) } else { halve(&mut items[from..to]) };
+            let middle =
+                from + if level < LEVELS { split(&mut items[from..to]) } else { halve(&mut items[from..to]) };
             parts[which] = (from, middle);
             parts.insert(which + 1, (middle, to));
         }
@@ -166,7 +167,8 @@ impl RayTree {
         let from = origin.as_vec3();
         // A direction within a box's side would give a product that is not a number.
         let apart = |d: f64| if d.abs() < 1e-20 { 1e-20_f64.copysign(d) } else { d };
-        let inverse = DVec3::new(apart(direction.x), apart(direction.y), apart(direction.z)).recip().as_vec3();
+        let inverse =
+            DVec3::new(apart(direction.x), apart(direction.y), apart(direction.z)).recip().as_vec3();
         let mut stack = [(0_u32, 0.0_f32); STACK];
         let mut depth = usize::from(!self.nodes.is_empty());
         while depth > 0 {
@@ -187,7 +189,10 @@ impl RayTree {
             let node = &self.nodes[child as usize];
             let (mut enter, mut leave) = (Vec4::ZERO, Vec4::splat(end.min(1e30) as f32 * 1.000_001));
             for axis in 0..3 {
-                let (a, b) = ((node.low[axis] - from[axis]) * inverse[axis], (node.high[axis] - from[axis]) * inverse[axis]);
+                let (a, b) = (
+                    (node.low[axis] - from[axis]) * inverse[axis],
+                    (node.high[axis] - from[axis]) * inverse[axis],
+                );
                 enter = enter.max(a.min(b));
                 leave = leave.min(a.max(b));
             }

@@ -6,9 +6,7 @@ use cpu_time::ProcessTime;
 use glam::{DVec3, dvec3};
 use pointillist_cli::scene::{Overrides, load_to_bake};
 use pointillist_radiosity::invariants::paths::Paths;
-use pointillist_radiosity::{
-    Baked, Lamp, RayOptions, Scene, SceneOptions, SolveOptions, Surface,
-};
+use pointillist_radiosity::{Baked, Lamp, RayOptions, Scene, SceneOptions, SolveOptions, Surface};
 use pointillist_render::{Lamps, Lightmap, scene_surfaces, with_lamps};
 use rayon::prelude::*;
 
@@ -29,7 +27,8 @@ const COVERED: f64 = 1e-4;
 const ACROSS: f64 = 32.0;
 const FINER: f64 = 8.0;
 
-const SUN: &str = "[[light]]\ntype = \"directional\"\ndirection = [0.25, -1.0, -0.28]\nirradiance = [3.2, 2.9, 2.4]\n";
+const SUN: &str =
+    "[[light]]\ntype = \"directional\"\ndirection = [0.25, -1.0, -0.28]\nirradiance = [3.2, 2.9, 2.4]\n";
 const BUILDINGS: [(&str, &str, &str); 3] = [
     (
         "Dabrovic's Sponza",
@@ -91,10 +90,16 @@ pub(crate) fn solve(text: &mut String) -> Written {
         writeln!(text, "{SKIPPED}")?;
         return Ok(());
     };
-    writeln!(text, "| building | surfaces | patches | links | vertices | processor seconds | error % | noise of the paths % |")?;
+    writeln!(
+        text,
+        "| building | surfaces | patches | links | vertices | processor seconds | error % | noise of the paths % |"
+    )?;
     writeln!(text, "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")?;
     for (name, mesh, lights) in BUILDINGS {
-        let toml = format!("[camera]\neye = [0, 0, 0]\ntarget = [1, 0, 0]\n[[object]]\nmesh = {:?}\n{SUN}{lights}", folder.join(mesh));
+        let toml = format!(
+            "[camera]\neye = [0, 0, 0]\ntarget = [1, 0, 0]\n[[object]]\nmesh = {:?}\n{SUN}{lights}",
+            folder.join(mesh)
+        );
         let file = std::env::temp_dir().join(format!("pointillist-building-{}.toml", std::process::id()));
         std::fs::write(&file, toml)?;
         let scene = load_to_bake(&file, &Overrides::default());
@@ -134,7 +139,11 @@ struct Error {
 }
 
 /// Compares with paths at points that are spread over all sides of surfaces by area; `light` is told surface, whether in front, and where.
-fn compare(surfaces: &[Surface], lamps: &[Lamp<'_>], light: &(dyn Fn(usize, bool, DVec3) -> f64 + Sync)) -> Error {
+fn compare(
+    surfaces: &[Surface],
+    lamps: &[Lamp<'_>],
+    light: &(dyn Fn(usize, bool, DVec3) -> f64 + Sync),
+) -> Error {
     let paths = Paths::new(surfaces, lamps);
     let area = |s: &Surface| (1..s.vertices.len() - 1).map(|i| cross(&s.vertices, i).length()).sum::<f64>();
     let mut sums = vec![];
@@ -158,7 +167,8 @@ fn compare(surfaces: &[Surface], lamps: &[Lamp<'_>], light: &(dyn Fn(usize, bool
         })
         .collect();
     let mean = |v: [f64; 3]| v.iter().sum::<f64>() / 3.0;
-    let pilot: Vec<f64> = candidates.par_iter().map(|&(.., at, normal)| mean(paths.irradiance(at, normal, 49, 1).0)).collect();
+    let pilot: Vec<f64> =
+        candidates.par_iter().map(|&(.., at, normal)| mean(paths.irradiance(at, normal, 49, 1).0)).collect();
     let usual = pilot.iter().sum::<f64>() / pilot.len() as f64;
     let lit = |&&(k, &(.., at, normal)): &&(usize, &(usize, bool, DVec3, DVec3))| {
         pilot[k] > DARK * usual && paths.clearance(at, normal) > COVERED
@@ -174,7 +184,11 @@ fn compare(surfaces: &[Surface], lamps: &[Lamp<'_>], light: &(dyn Fn(usize, bool
     let sums: Vec<[f64; 4]> = sums.collect();
     let [off, squares, total, noise] = sums.iter().fold([0.0; 4], |m, s| [0, 1, 2, 3].map(|i| m[i] + s[i]));
     let count = sums.len() as f64;
-    Error { relative: (off / squares).sqrt(), to_mean: (off / count).sqrt() / (total / count), noise: (noise / squares).sqrt() }
+    Error {
+        relative: (off / squares).sqrt(),
+        to_mean: (off / count).sqrt() / (total / count),
+        noise: (noise / squares).sqrt(),
+    }
 }
 
 fn cross(ring: &[DVec3], i: usize) -> DVec3 {
@@ -183,7 +197,10 @@ fn cross(ring: &[DVec3], i: usize) -> DVec3 {
 
 /// How cost grows with the number of surfaces: halls of columns, each of 24 sides.
 pub(crate) fn growth(text: &mut String) -> Written {
-    writeln!(text, "\n## Cost against the number of surfaces\n\nHalls of columns of 24 sides under a lamp, of the same size, as above.\n")?;
+    writeln!(
+        text,
+        "\n## Cost against the number of surfaces\n\nHalls of columns of 24 sides under a lamp, of the same size, as above.\n"
+    )?;
     writeln!(text, "| columns | surfaces | processor seconds |\n| ---: | ---: | ---: |")?;
     let mut points = vec![];
     for side in [8, 16, 32, 64] {
@@ -216,9 +233,11 @@ fn hall(side: usize) -> Vec<Surface> {
             let (sine, cosine) = (std::f64::consts::TAU * k as f64 / SIDES as f64).sin_cos();
             middle + dvec3(0.2 * step * cosine, 0.2 * step * sine, z)
         };
-        surfaces.extend((0..SIDES).map(|k| {
-            Surface::new(&[rim(k, 0.0), rim(k + 1, 0.0), rim(k + 1, 2.5), rim(k, 2.5)], [0.6; 3])
-        }));
+        surfaces.extend(
+            (0..SIDES).map(|k| {
+                Surface::new(&[rim(k, 0.0), rim(k + 1, 0.0), rim(k + 1, 2.5), rim(k, 2.5)], [0.6; 3])
+            }),
+        );
     }
     surfaces
 }

@@ -95,7 +95,8 @@ fn check(options: &RadiosityBakeOptions) -> Result<(), CliError> {
         return Err(CliError::Usage(message.to_owned()));
     }
     if options.links == LinkKind::Rays && (hemicube || options.method == SolveMethod::Progressive) {
-        let message = "--links rays has form factors and a solver of its own: leave --form-factor and --method out";
+        let message =
+            "--links rays has form factors and a solver of its own: leave --form-factor and --method out";
         return Err(CliError::Usage(message.to_owned()));
     }
     if options.links == LinkKind::Rays && options.least_factor > 0.0 {
