@@ -101,6 +101,54 @@ fn another_material_is_solved_for_with_the_same_links() {
 }
 
 #[test]
+fn pairs_keep_their_factors_when_a_material_changes() {
+    let options = SceneOptions::DEFAULT.with_patch(0.34);
+    let solving = SolveOptions::DEFAULT.with_tolerance(1e-9);
+    let of = |surfaces: &[Surface]| {
+        Scene::new(surfaces, &options).and_then(|s| s.transport(&[])).expect("surfaces")
+    };
+    let mut transport = of(&cornell());
+    let (before, steps) = {
+        let solution = transport.gauss_seidel(&solving).expect("it absorbs");
+        (solution.radiosity.clone(), solution.steps)
+    };
+    transport.set_material(3, [0.68; 3], [0.0; 3]).expect("a material");
+    let again = transport.gauss_seidel_from(&before, &solving).expect("it absorbs");
+    let mut changed = cornell();
+    changed[3].reflectance = [0.68; 3];
+    let fresh = of(&changed);
+    let fresh = fresh.gauss_seidel(&solving).expect("it absorbs");
+    assert!(again.steps <= steps, "{} steps after {steps}", again.steps);
+    for (a, b) in again.radiosity.iter().zip(&fresh.radiosity) {
+        assert!((mean(*a) - mean(*b)).abs() < 1e-6, "{a:?} {b:?}");
+    }
+    // A radiosity of one's own is baked as it is, and its bound says that it is not the solution.
+    let own = transport.solution_of(&before).expect("light");
+    assert_eq!(own.radiosity, before);
+    assert!(own.bound > again.bound && !own.converged && own.bake().vertices.len() > 100);
+    assert!(matches!(transport.gauss_seidel_from(&[], &solving), Err(RadiosityError::CountMismatch { .. })));
+}
+
+#[test]
+fn a_floor_under_many_slats_gets_the_light_between_them() {
+    // More than are cut one by one; each is half as wide as its step.
+    const SLATS: usize = 200;
+    let step = 1.0 / SLATS as f64;
+    let quad = |x: f64, z: f64, width: f64| {
+        let ring = [dvec3(x, 0.0, z), dvec3(x + width, 0.0, z), dvec3(x + width, 1.0, z), dvec3(x, 1.0, z)];
+        Surface::new(&ring, [0.5; 3])
+    };
+    let mut surfaces = vec![quad(0.0, 0.0, 1.0)];
+    surfaces.extend((0..SLATS).map(|i| quad(i as f64 * step, 0.01, 0.5 * step)));
+    let irradiance = |_: DVec3, n: DVec3| [n.z.max(0.0); 3];
+    let lamps = [Lamp::Directional { direction: DVec3::NEG_Z, irradiance: &irradiance, shadow: true }];
+    let mut scene = Scene::new(&surfaces, &SceneOptions::DEFAULT).expect("surfaces");
+    let direct = scene.direct(&lamps).expect("lamps");
+    assert!((mean(direct[0]) - 0.5).abs() < 0.1, "{:?}", direct[0]);
+    assert!(direct[1..].iter().all(|&d| (mean(d) - 1.0).abs() < 1e-9), "slats are in the open");
+}
+
+#[test]
 fn a_closed_room_that_absorbs_nothing_has_no_equilibrium() {
     let transport = by_rays(&room(DVec3::ONE, DQuat::IDENTITY, 1.0, 1.0), 0.5, &RayOptions::DEFAULT);
     assert!(matches!(transport.solve(&SolveOptions::DEFAULT), Err(RadiosityError::NoEquilibrium { .. })));
