@@ -125,10 +125,10 @@ impl<'t> Mesh<'t> {
             }
         }
         self.keys.values_mut().for_each(|place| *place = moved[*place as usize]);
-        for place in 0..moved.len() {
-            if moved[place] as usize != place {
+        for (place, &to) in moved.iter().enumerate() {
+            if to as usize != place {
                 let leaves = std::mem::take(&mut self.places[place].leaves);
-                self.places[moved[place] as usize].leaves.extend(leaves);
+                self.places[to as usize].leaves.extend(leaves);
             }
         }
         self.pack();

@@ -198,15 +198,15 @@ impl RayTree {
             }
             let (enter, meets) = (enter.to_array(), enter.cmple(leave).bitmask());
             let start = depth;
-            for slot in 0..4 {
-                if meets >> slot & 1 == 1 && node.children[slot] != EMPTY && depth < STACK {
+            for (slot, (&child, near)) in node.children.iter().zip(enter).enumerate() {
+                if meets >> slot & 1 == 1 && child != EMPTY && depth < STACK {
                     // The nearest comes last, and is taken first.
                     let mut at = depth;
-                    while at > start && stack[at - 1].1 < enter[slot] {
+                    while at > start && stack[at - 1].1 < near {
                         stack[at] = stack[at - 1];
                         at -= 1;
                     }
-                    stack[at] = (node.children[slot], enter[slot]);
+                    stack[at] = (child, near);
                     depth += 1;
                 }
             }
