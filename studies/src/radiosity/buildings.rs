@@ -38,8 +38,8 @@ const BUILDINGS: [(&str, &str, &str); 3] = [
     (
         "Šibenik",
         "scenes/sibenik/sibenik.obj",
-        "[[light]]\ntype = \"point\"\nposition = [-560, -8, 0]\nintensity = [2e5, 1.8e5, 1.5e5]\n\
-         [[light]]\ntype = \"point\"\nposition = [840, 200, 0]\nintensity = [2e5, 2e5, 2.3e5]\n",
+        "[[light]]\ntype = \"point\"\nposition = [-560, 120, 0]\nintensity = [2e5, 1.8e5, 1.5e5]\n\
+         [[light]]\ntype = \"point\"\nposition = [400, 150, 0]\nintensity = [2e5, 2e5, 2.3e5]\n",
     ),
     (
         "Crytek's Sponza",
