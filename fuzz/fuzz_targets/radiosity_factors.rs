@@ -57,4 +57,5 @@ fuzz_target!(|input: Input| {
     let surfaces: Vec<Surface> = [&a, &b].into_iter().chain(&others).enumerate().map(surface).collect();
     let options = SceneOptions::DEFAULT.with_patch(4.0).with_tolerance(Some(0.2)).with_max_elements(1000);
     scenes::is_refused_or_solved(&surfaces, &options).unwrap();
+    scenes::is_refused_or_solved_by_rays(&surfaces, &options).unwrap();
 });

@@ -6,7 +6,6 @@ use crate::refine::{Found, refine};
 use crate::rgb::{Rgb, check_direct};
 use crate::scene::Scene;
 use crate::transport::{Entry, Transport};
-use crate::visible::boxes::Boxes;
 use crate::visible::shaft::Shaft;
 
 /// Row sums above 1 by at most this are not corrected: they are errors of single form factors, and correcting them would break the
@@ -25,9 +24,8 @@ impl Scene {
     pub fn transport(mut self, direct: &[Rgb]) -> Result<Transport, RadiosityError> {
         check_direct(self.tree.leaves().len(), direct)?;
         let mut of_element = of_elements(&self, direct);
-        let boxes = Boxes::new(&self.occluders);
-        let found = refine(&mut self, &boxes, &mut of_element)?;
-        Ok(Transport::assemble(self, found, boxes, &of_element))
+        let found = refine(&mut self, &mut of_element)?;
+        Ok(Transport::assemble(self, found, &of_element))
     }
 }
 
@@ -67,23 +65,22 @@ impl Transport {
     /// The transport of given links between leaves and the direct irradiance of each leaf. The occluders between the ends
     /// of each link are looked up here.
     pub(crate) fn of_links(scene: Scene, links: Vec<Link>, direct: &[Rgb]) -> Self {
-        let boxes = Boxes::new(&scene.occluders);
         let mut found = Found { links, ..Found::default() };
         found.counts.links = found.links.len();
         for link in &mut found.links {
             let [a, b] = [link.a, link.b].map(|e| &scene.tree.elements[e as usize].polygon);
-            let list = boxes.in_shaft(&Shaft::new(a, b).with_planes(), &scene.occluders);
+            let list = scene.boxes.in_shaft(&Shaft::new(a, b).with_planes(), &scene.occluders);
             let start = found.between.len() as u32;
             found.between.extend(list);
             link.between = (start, found.between.len() as u32);
             found.counts.partly_hidden += usize::from(link.between.1 > start);
         }
         let direct = of_elements(&scene, direct);
-        Self::assemble(scene, found, boxes, &direct)
+        Self::assemble(scene, found, &direct)
     }
 
     /// The matrix of the links; `direct` is the direct irradiance of each element.
-    fn assemble(scene: Scene, found: Found, boxes: Boxes, direct: &[Rgb]) -> Self {
+    fn assemble(scene: Scene, found: Found, direct: &[Rgb]) -> Self {
         let count = scene.tree.elements.len();
         let (starts, entries) = rows_of(&scene, &found.links);
         let leaves = scene.tree.leaves();
@@ -97,7 +94,7 @@ impl Transport {
         let Found { links, between, .. } = found;
         let scale = vec![1.0; leaves.len()];
         let mut transport =
-            Self { scene, links, between, starts, entries, leaves, boxes, parents, scale, direct, counts };
+            Self { scene, links, between, starts, entries, leaves, parents, scale, direct, counts };
         let sums = transport.row_sums();
         transport.counts.row_excess = sums.into_iter().fold(0.0, |m, s| m.max(s - 1.0));
         if transport.counts.row_excess > LEAST_EXCESS {

@@ -18,7 +18,7 @@ const PARALLEL: f64 = 1e-6;
 const MAX_PARTS: usize = 256;
 
 /// The parts into which the edges of `others` that stand on a surface divide it; the surface itself if there are none.
-pub(crate) fn parts(polygon: &Polygon, others: &[Polygon]) -> Vec<Polygon> {
+pub(crate) fn parts<'p>(polygon: &Polygon, others: impl Iterator<Item = &'p Polygon>) -> Vec<Polygon> {
     let mut list = vec![polygon.clone()];
     let standing = STANDING * polygon.radius();
     for other in others {

@@ -79,6 +79,12 @@ pub enum RadiosityError {
         /// Which, from 0.
         surface: usize,
     },
+    /// There is no surface of this number, or it was dropped because it has no area.
+    #[error("there is no surface {surface} with an area")]
+    UnknownSurface {
+        /// The number, from 0.
+        surface: usize,
+    },
     /// There is nothing to light.
     #[error("there is no surface with an area")]
     NoSurface,

@@ -82,7 +82,7 @@ impl Gather<'_> {
             .vertices()
             .iter()
             .fold((self.point, self.point), |(low, high), &v| (low.min(v), high.max(v)));
-        self.solution.transport.boxes.in_box(low, high, &mut self.near);
+        self.solution.transport.scene.boxes.in_box(low, high, &mut self.near);
         let occluders = &self.solution.transport.scene.occluders;
         let list = self.near.iter().map(|&i| &occluders[i as usize]);
         visible_share(self.point, self.normal, polygon, list, &mut self.pieces)

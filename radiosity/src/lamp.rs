@@ -2,21 +2,29 @@
 
 use glam::DVec3;
 
+use crate::by_rays::surroundings::{LIFT, Surroundings};
 use crate::error::RadiosityError;
 use crate::factor;
 use crate::kernel::gauss;
-use crate::polygon::Polygon;
-use crate::rgb::{Rgb, is_light};
+use crate::polygon::{Polygon, edges};
+use crate::rays::sequence::{lattice, point_of};
+use crate::rgb::{Rgb, add, is_light};
 use crate::scene::Scene;
 use crate::tree::{Element, ElementId};
 use crate::visible::cubature;
 use crate::visible::parts::{Eye, Pieces, Source};
+use crate::visible::shaft::Shaft;
 use pointillist_parallel as parallel;
 
 /// Gauss points along each side of a visible piece of a patch.
 const ORDER: usize = 4;
 /// The same where the lamp is nearer than twice the size of the patch.
 const NEAR_ORDER: usize = 10;
+
+/// Most surfaces between a patch and a lamp whose shadows are cut exactly; past more, points of the patch are looked at.
+const MOST_CUT: usize = 96;
+/// How many points.
+const POINTS: u32 = 64;
 
 /// Irradiance at an unshadowed point with this unit normal.
 pub type Irradiance<'l> = &'l (dyn Fn(DVec3, DVec3) -> Rgb + Sync);
@@ -76,6 +84,7 @@ impl Scene {
                 return Err(RadiosityError::BadLamp { lamp });
             }
         }
+        let rays = Surroundings::without_patches(self);
         let mut of_element = vec![None; self.tree.elements.len()];
         loop {
             let open: Vec<ElementId> =
@@ -83,13 +92,15 @@ impl Scene {
             if open.is_empty() {
                 break;
             }
-            let found =
-                parallel::map_with(open.len(), Pieces::default, |pieces, i| self.lit(open[i], lamps, pieces));
+            let found = parallel::map_with(open.len(), Pieces::default, |pieces, i| {
+                self.lit(open[i], lamps, &rays, pieces)
+            });
             for (&leaf, found) in open.iter().zip(found) {
                 let (irradiance, edge) = found.map_err(|problem| self.not_lit(leaf, problem))?;
                 of_element[leaf as usize] = Some(irradiance);
-                let size = self.tree.elements[leaf as usize].size;
-                if edge && size > self.options.smallest_patch * self.scale {
+                let Element { size, polygon, .. } = &self.tree.elements[leaf as usize];
+                let smallest = self.options.smallest_patch * self.scale;
+                if edge && *size > smallest && polygon.area() > self.options.sliver(smallest) {
                     self.tree.divide(leaf);
                 }
             }
@@ -110,18 +121,32 @@ impl Scene {
     }
 
     /// Mean irradiance of one leaf, and whether an edge of a shadow crosses it.
-    fn lit(&self, leaf: ElementId, lamps: &[Lamp<'_>], pieces: &mut Pieces) -> Result<(Rgb, bool), NoLight> {
+    fn lit(
+        &self,
+        leaf: ElementId,
+        lamps: &[Lamp<'_>],
+        rays: &Surroundings,
+        pieces: &mut Pieces,
+    ) -> Result<(Rgb, bool), NoLight> {
         let element = &self.tree.elements[leaf as usize];
         let mut sum = [0.0; 3];
         let mut edge = false;
         for (number, lamp) in lamps.iter().enumerate() {
             let (light, cut) = match *lamp {
-                Lamp::Point { position, irradiance, shadow } => {
-                    self.lit_from(element, Eye::Point(self.inward(position)), irradiance, shadow, pieces)
-                }
-                Lamp::Directional { direction, irradiance, shadow } => {
-                    self.lit_from(element, Eye::Along(direction.normalize()), irradiance, shadow, pieces)
-                }
+                Lamp::Point { position, irradiance, shadow } => self.lit_from(
+                    element,
+                    Eye::Point(self.inward(position)),
+                    irradiance,
+                    shadow,
+                    (rays, &mut *pieces),
+                ),
+                Lamp::Directional { direction, irradiance, shadow } => self.lit_from(
+                    element,
+                    Eye::Along(direction.normalize()),
+                    irradiance,
+                    shadow,
+                    (rays, &mut *pieces),
+                ),
                 Lamp::Area { polygon, exitance, shadow } => {
                     (self.lit_by_area(element, polygon, exitance, shadow, pieces), false)
                 }
@@ -143,7 +168,7 @@ impl Scene {
         eye: Eye,
         irradiance: Irradiance<'_>,
         shadow: bool,
-        pieces: &mut Pieces,
+        (rays, pieces): (&Surroundings, &mut Pieces),
     ) -> (Rgb, bool) {
         let polygon = &element.polygon;
         let (faces, near) = match eye {
@@ -156,16 +181,14 @@ impl Scene {
             return ([0.0; 3], false);
         }
         let source = Source::new(polygon);
-        let between = if shadow { &self.occluders[..] } else { &[] };
-        let towards = |o: &&Polygon| match eye {
-            // Only occluders between the patch and the point of the lamp.
-            Eye::Point(p) => {
-                (polygon.centre() - o.centre()).length()
-                    < (p - polygon.centre()).length() + o.radius() + polygon.radius()
-            }
-            Eye::Along(_) => true,
-        };
-        let (seen, cut) = source.see(eye, between.iter().filter(towards), pieces);
+        let mut near_by = vec![];
+        if shadow {
+            self.between(eye, polygon, &mut near_by);
+        }
+        if near_by.len() > MOST_CUT {
+            return self.sampled(polygon, eye, irradiance, rays);
+        }
+        let (seen, cut) = source.see(eye, near_by.iter().map(|&i| &self.occluders[i as usize]), pieces);
         let order = if near { NEAR_ORDER } else { ORDER };
         let mut sum = [0.0; 3];
         for piece in seen {
@@ -187,6 +210,54 @@ impl Scene {
         (sum, cut && !seen.is_empty())
     }
 
+    /// Occluders that may be between a patch and a lamp.
+    fn between(&self, eye: Eye, polygon: &Polygon, found: &mut Vec<u32>) {
+        let ring = polygon.vertices();
+        let mut planes = vec![(-polygon.normal(), -polygon.normal().dot(polygon.centre()))];
+        for (a, b) in edges(ring) {
+            let normal = match eye {
+                Eye::Point(p) => (b - a).cross(p - a),
+                Eye::Along(d) => d.cross(b - a),
+            };
+            planes.push((normal, normal.dot(a)));
+        }
+        let mut low = ring.iter().fold(DVec3::INFINITY, |m, &v| m.min(v));
+        let mut high = ring.iter().fold(DVec3::NEG_INFINITY, |m, &v| m.max(v));
+        match eye {
+            Eye::Point(p) => (low, high) = (low.min(p), high.max(p)),
+            Eye::Along(d) => {
+                low = DVec3::select(d.cmpgt(DVec3::ZERO), DVec3::NEG_INFINITY, low);
+                high = DVec3::select(d.cmplt(DVec3::ZERO), DVec3::INFINITY, high);
+            }
+        }
+        self.boxes.in_planes(&planes, (low, high), MOST_CUT + 1, found);
+    }
+
+    /// As [`Scene::lit_from`], where so much is between that points are looked at in the place of outlines.
+    fn sampled(
+        &self,
+        polygon: &Polygon,
+        eye: Eye,
+        irradiance: Irradiance<'_>,
+        rays: &Surroundings,
+    ) -> (Rgb, bool) {
+        let normal = polygon.normal();
+        let (mut sum, mut seen) = ([0.0; 3], 0);
+        for k in 0..POINTS {
+            let at = point_of(polygon.vertices(), lattice(k, [0.5; 2]));
+            let from = at + normal * LIFT;
+            let hidden = match eye {
+                Eye::Point(p) => rays.is_blocked(from, p),
+                Eye::Along(d) => rays.is_shaded(from, -d),
+            };
+            if !hidden {
+                seen += 1;
+                sum = add(sum, 1.0 / f64::from(POINTS), irradiance(self.outward(at), normal));
+            }
+        }
+        (sum, seen > 0 && seen < POINTS)
+    }
+
     fn lit_by_area(
         &self,
         element: &Element,
@@ -196,7 +267,9 @@ impl Scene {
         pieces: &mut Pieces,
     ) -> Rgb {
         let near = lamp.moved(self.by, self.scale);
-        let all: Vec<&Polygon> = if shadow { self.occluders.iter().collect() } else { vec![] };
+        let shaft = Shaft::new(&element.polygon, &near).with_planes();
+        let list = if shadow { self.boxes.in_shaft(&shaft, &self.occluders) } else { vec![] };
+        let all: Vec<&Polygon> = list.iter().map(|&i| &self.occluders[i as usize]).collect();
         let goal = self.options.factors.goal(element.polygon.area(), 1);
         let (mutual, _) = cubature::mutual(&element.polygon, &near, &all, goal, pieces);
         let share = factor::of_mutual(mutual, element.polygon.area()).value;

@@ -19,6 +19,7 @@
 //! * [`Scene`]: surfaces, checked and divided into patches; [`Scene::direct`] lights them by lamps.
 //! * [`Transport`]: which patches exchange how much, each with each ([`SceneOptions::tolerance`] `None`) or in groups; solved by
 //!   [`Transport::gauss_seidel`] or [`Transport::progressive`] with a bound on the error of the result.
+//! * [`RayTransport`]: the same for buildings of many thousand surfaces, with links that rays find ([`Scene::transport_by_rays`]).
 //! * [`Solution::bake`] and [`Solution::irradiance`]: light at vertices and at free points.
 //! * [`Hemicube`]: the classic method, and the same with exact coverage in its cells.
 //!
@@ -27,6 +28,9 @@
 //! points (of very different size), contours with closed forms where edges are parallel or touch (near). Past occluders what
 //! a point sees of a polygon is cut exactly, and only the integral over the points is quadrature. Its error is judged by halving, that is, from
 //! samples: what all samples miss by chance is not in the bound.
+//!
+//! Links by rays are samples: the light at a vertex has the standard error that [`RayOptions::tolerance`] asks for, and that of interpolation. Their
+//! cost grows about as the number of surfaces.
 //!
 //! A hierarchy's error is that of its tolerance. Figures are in the README and `studies/results/radiosity.md`.
 //!
@@ -40,10 +44,15 @@
 //! 3. P. Hanrahan, D. Salzman, L. Aupperle: *A rapid hierarchical radiosity algorithm*, SIGGRAPH 1991.
 //! 4. E. A. Haines, J. R. Wallace: *Shaft culling for efficient ray-cast radiosity*, 1991.
 //! 5. M. Feda, W. Purgathofer: *Accelerating radiosity by overshooting*, Eurographics Workshop on Rendering 1992.
+//! 6. B. Smits, J. Arvo, D. Greenberg: *A clustering algorithm for radiosity in complex environments*, SIGGRAPH 1994.
+//! 7. A. Willmott, P. Heckbert, M. Garland: *Face cluster radiosity*, Eurographics Workshop on Rendering 1999.
+//! 8. G. J. Ward, F. M. Rubinstein, R. D. Clear: *A ray tracing solution for diffuse interreflection*, SIGGRAPH 1988.
+//! 9. S. Laine, T. Karras: *Stratified sampling for stochastic transparency*, Eurographics Symposium on Rendering 2011.
 #![forbid(unsafe_code)]
 mod assemble;
 mod bake;
 mod by_hemicube;
+mod by_rays;
 mod contact;
 mod error;
 mod estimate;
@@ -55,8 +64,10 @@ pub mod invariants;
 mod kernel;
 mod lamp;
 mod link;
+mod mesh;
 mod patches;
 mod polygon;
+mod rays;
 mod refine;
 mod rgb;
 mod rows;
@@ -70,6 +81,7 @@ mod visible;
 pub use glam;
 
 pub use bake::{Baked, BakedTriangle, BakedVertex};
+pub use by_rays::{RayCounts, RayOptions, RaySolution, RayTransport};
 pub use error::{PolygonError, RadiosityError};
 pub use factor::{FactorOptions, FormFactor, form_factor};
 pub use hemicube::{Hemicube, HemicubeKind};

@@ -1,6 +1,8 @@
 //! Patches as the caller sees them: leaves of the tree, in the scene's coordinates.
 
+use crate::by_rays::RayTransport;
 use crate::rgb::Rgb;
+use crate::scene::Scene;
 use crate::transport::Transport;
 use crate::tree::ElementId;
 use glam::DVec3;
@@ -34,20 +36,7 @@ impl Transport {
 
     /// The patches, in the order in which all lists about patches are.
     pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
-        let unit2 = self.scene.scale * self.scene.scale;
-        self.leaves.iter().enumerate().map(move |(index, &leaf)| {
-            let element = &self.scene.tree.elements[leaf as usize];
-            let side = &self.scene.sides[element.side as usize];
-            Patch {
-                index,
-                surface: side.surface,
-                back: side.back,
-                centre: self.scene.outward(element.polygon.centre()),
-                area: element.polygon.area() / unit2,
-                reflectance: side.reflectance,
-                emission: side.emission,
-            }
-        })
+        self.leaves.iter().enumerate().map(|(index, &leaf)| self.scene.patch(index, leaf))
     }
 
     /// Corners of the patches, in their order, in the scene's coordinates.
@@ -57,5 +46,28 @@ impl Transport {
             ring.iter().map(|&v| self.scene.outward(v)).collect()
         };
         self.leaves.iter().map(corners)
+    }
+}
+
+impl RayTransport {
+    /// The patches, in the order in which all lists about patches are.
+    pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
+        self.leaves.iter().enumerate().map(|(index, &leaf)| self.scene.patch(index, leaf))
+    }
+}
+
+impl Scene {
+    fn patch(&self, index: usize, leaf: ElementId) -> Patch {
+        let element = &self.tree.elements[leaf as usize];
+        let side = &self.sides[element.side as usize];
+        Patch {
+            index,
+            surface: side.surface,
+            back: side.back,
+            centre: self.outward(element.polygon.centre()),
+            area: element.polygon.area() / (self.scale * self.scale),
+            reflectance: side.reflectance,
+            emission: side.emission,
+        }
     }
 }

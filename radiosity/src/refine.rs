@@ -9,7 +9,6 @@ use crate::polygon::Polygon;
 use crate::rgb::Rgb;
 use crate::scene::Scene;
 use crate::tree::{Element, ElementId};
-use crate::visible::boxes::Boxes;
 use crate::visible::cubature;
 use crate::visible::parts::{Eye, Pieces, Source};
 use crate::visible::shaft::Shaft;
@@ -80,16 +79,12 @@ impl Found {
 ///
 /// Tasks run in parallel and are taken together in their order, so that links do not depend on threads.
 /// `direct` is the irradiance of each element that does not come from patches; it grows with the tree.
-pub(crate) fn refine(
-    scene: &mut Scene,
-    boxes: &Boxes,
-    direct: &mut Vec<Rgb>,
-) -> Result<Found, RadiosityError> {
+pub(crate) fn refine(scene: &mut Scene, direct: &mut Vec<Rgb>) -> Result<Found, RadiosityError> {
     let estimate = Estimate::new(scene, direct);
     let mut all = Found::default();
     all.lost.resize(scene.tree.elements.len(), 0.0);
     let roots = scene.tree.roots.clone();
-    let refiner = Refiner { scene, estimate: &estimate, boxes };
+    let refiner = Refiner { scene, estimate: &estimate };
     let mut round: Vec<Task> = parallel::map_with(roots.len(), Pieces::default, |pieces, i| {
         let mut task = Task::default();
         for &q in &roots[i + 1..] {
@@ -107,7 +102,7 @@ pub(crate) fn refine(
             return Ok(all);
         }
         all.lost.resize(scene.tree.elements.len(), 0.0);
-        let refiner = Refiner { scene, estimate: &estimate, boxes };
+        let refiner = Refiner { scene, estimate: &estimate };
         round = parallel::map_with(wanted.len(), Pieces::default, |pieces, i| {
             let mut task = Task::default();
             let Wanted { pair, which, between } = &wanted[i];
@@ -143,7 +138,6 @@ fn divide_wanted(
 struct Refiner<'s> {
     scene: &'s Scene,
     estimate: &'s Estimate,
-    boxes: &'s Boxes,
 }
 
 impl Refiner<'_> {
@@ -163,7 +157,7 @@ impl Refiner<'_> {
             return;
         }
         let shaft = Shaft::new(&a.polygon, &b.polygon).with_planes();
-        let list = self.boxes.in_shaft(&shaft, &self.scene.occluders);
+        let list = self.scene.boxes.in_shaft(&shaft, &self.scene.occluders);
         self.visit((p, q), &list, false, found, pieces);
     }
 

@@ -7,8 +7,9 @@ use crate::error::RadiosityError;
 use crate::factor::FactorOptions;
 use crate::polygon::Polygon;
 use crate::rgb::Rgb;
-use crate::surface::Surface;
+use crate::surface::{Surface, check_material};
 use crate::tree::Tree;
+use crate::visible::boxes::Boxes;
 
 /// How a scene is divided and how accurate exchange is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,9 @@ pub struct SceneOptions {
     /// Tolerance of one link of a hierarchy, as a share of the scene's mean radiosity; `None` links every
     /// patch with every other one (the full matrix). Default: `None`.
     pub tolerance: Option<f64>,
+    /// Whether surfaces that are much longer than wide are divided into squarer ones even below the size of a patch. Pairs of patches are more accurate
+    /// then; [`Scene::transport_by_rays`] needs it not. Default: true.
+    pub squarer: bool,
     /// Most patches and patches of patches. Default: 4 million.
     pub max_elements: usize,
     /// Form factors below this are left out; how much they add up to is counted. Default: 0.
@@ -36,6 +40,7 @@ impl SceneOptions {
         patch: f64::INFINITY,
         smallest_patch: f64::INFINITY,
         tolerance: None,
+        squarer: true,
         max_elements: 4_000_000,
         least_factor: 0.0,
         factors: FactorOptions::DEFAULT
@@ -66,6 +71,13 @@ impl SceneOptions {
         self
     }
 
+    /// Long surfaces in squarer patches, or not.
+    #[must_use]
+    pub const fn with_squarer(mut self, squarer: bool) -> Self {
+        self.squarer = squarer;
+        self
+    }
+
     /// Another limit of elements.
     #[must_use]
     pub const fn with_max_elements(mut self, limit: usize) -> Self {
@@ -85,6 +97,11 @@ impl SceneOptions {
     pub const fn with_factors(mut self, factors: FactorOptions) -> Self {
         self.factors = factors;
         self
+    }
+
+    /// Area below which patches are not divided, whatever their length, where they should be no longer than `size`.
+    pub(crate) fn sliver(&self, size: f64) -> f64 {
+        if self.squarer { 0.0 } else { SLIVER * size * size }
     }
 
     fn check(&self) -> Result<(), RadiosityError> {
@@ -112,6 +129,9 @@ impl Default for SceneOptions {
     }
 }
 
+/// Where long surfaces may stay as they are, patches are divided no further whose area is below this share of the square of the patch size.
+const SLIVER: f64 = 1.0 / 32.0;
+
 /// One side of a surface, or of a part of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Side {
@@ -137,6 +157,10 @@ pub struct Scene {
     pub(crate) sides: Vec<Side>,
     /// All surfaces, black ones included, as occluders.
     pub(crate) occluders: Vec<Polygon>,
+    /// Where the occluders are.
+    pub(crate) boxes: Boxes,
+    /// The caller's number of each occluder.
+    pub(crate) surface_of: Vec<usize>,
     pub(crate) options: SceneOptions,
     /// Internal coordinates are `(p + by) · scale`, for `p` in the caller's (the scene's) coordinates.
     pub(crate) by: DVec3,
@@ -170,26 +194,38 @@ impl Scene {
             tree: Tree::default(),
             sides: vec![],
             occluders: vec![],
+            boxes: Boxes::default(),
+            surface_of: kept.iter().map(|(i, _)| *i).collect(),
             options: *options,
             by,
             scale,
             dropped,
         };
         scene.occluders = kept.iter().map(|(_, polygon)| polygon.moved(by, scale)).collect();
+        scene.boxes = Boxes::new(&scene.occluders);
+        let mut near = vec![];
         for (slot, (i, _)) in kept.iter().enumerate() {
-            scene.add(*i, &surfaces[*i], slot);
+            scene.add(*i, &surfaces[*i], slot, &mut near);
         }
-        if !scene.tree.divide_all(options.patch * scale, options.max_elements) {
+        let size = options.patch * scale;
+        if !scene.tree.divide_all(size, options.sliver(size), options.max_elements) {
             return Err(RadiosityError::TooManyPatches { limit: options.max_elements });
         }
         Ok(scene)
     }
 
     /// Adds both sides of a surface, in parts where others stand on it.
-    fn add(&mut self, index: usize, surface: &Surface, slot: usize) {
-        let parts = contact::parts(&self.occluders[slot], &self.occluders);
+    fn add(&mut self, index: usize, surface: &Surface, slot: usize, near: &mut Vec<u32>) {
+        let polygon = &self.occluders[slot];
+        let reach = DVec3::splat(2.0 * polygon.radius() * f64::EPSILON.sqrt());
+        let all = polygon.vertices();
+        let low = all.iter().fold(DVec3::INFINITY, |m, &v| m.min(v)) - reach;
+        let high = all.iter().fold(DVec3::NEG_INFINITY, |m, &v| m.max(v)) + reach;
+        self.boxes.in_box(low, high, near);
+        let parts = contact::parts(polygon, near.iter().map(|&i| &self.occluders[i as usize]));
         let Surface { reflectance, emission, .. } = *surface;
         let whole = parts.len() == 1;
+        let shortest = if self.options.squarer { 0.0 } else { self.options.patch * self.scale };
         for back in [false, true] {
             if back && !surface.two_sided {
                 continue;
@@ -199,9 +235,35 @@ impl Scene {
                 let part = if whole { 0 } else { number + 1 };
                 self.sides.push(Side { surface: index, back, reflectance, emission, part });
                 let polygon = if back { polygon.flipped() } else { polygon.clone() };
-                self.tree.add_side(&polygon, number);
+                self.tree.add_side(&polygon, number, shortest);
             }
         }
+    }
+
+    /// Gives a surface another reflectance and emission; returns whether the emission changed.
+    ///
+    /// # Errors
+    /// [`RadiosityError::UnknownSurface`]; [`RadiosityError::Reflectance`], [`RadiosityError::ReflectanceAboveOne`] and
+    /// [`RadiosityError::Emission`] for values that are none. Then nothing is changed.
+    pub fn set_material(
+        &mut self,
+        surface: usize,
+        reflectance: Rgb,
+        emission: Rgb,
+    ) -> Result<bool, RadiosityError> {
+        check_material(surface, reflectance, emission)?;
+        // Sides are in the order of surfaces.
+        let first = self.sides.partition_point(|side| side.surface < surface);
+        let count = self.sides[first..].partition_point(|side| side.surface == surface);
+        if count == 0 {
+            return Err(RadiosityError::UnknownSurface { surface });
+        }
+        let sides = &mut self.sides[first..first + count];
+        let changes = sides.iter().any(|side| side.emission != emission);
+        for side in sides {
+            (side.reflectance, side.emission) = (reflectance, emission);
+        }
+        Ok(changes)
     }
 
     /// How many surfaces without area were dropped.

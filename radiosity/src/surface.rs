@@ -45,17 +45,7 @@ impl Surface {
     /// # Errors
     /// As for the scene.
     pub(crate) fn checked(&self, surface: usize) -> Result<Option<Polygon>, RadiosityError> {
-        for value in self.reflectance {
-            if value.is_nan() || value < 0.0 {
-                return Err(RadiosityError::Reflectance { surface, value });
-            }
-            if value > 1.0 {
-                return Err(RadiosityError::ReflectanceAboveOne { surface, value });
-            }
-        }
-        if let Some(&value) = self.emission.iter().find(|&&e| !is_light(e)) {
-            return Err(RadiosityError::Emission { surface, value });
-        }
+        check_material(surface, self.reflectance, self.emission)?;
         use crate::error::PolygonError::{NoArea, TooFewVertices};
         match Polygon::new(&self.vertices) {
             Ok(polygon) => Ok(Some(polygon)),
@@ -66,4 +56,20 @@ impl Surface {
             Err(problem) => Err(RadiosityError::Outline { surface, problem }),
         }
     }
+}
+
+/// Checks what a material reflects and emits.
+pub(crate) fn check_material(surface: usize, reflectance: Rgb, emission: Rgb) -> Result<(), RadiosityError> {
+    for value in reflectance {
+        if value.is_nan() || value < 0.0 {
+            return Err(RadiosityError::Reflectance { surface, value });
+        }
+        if value > 1.0 {
+            return Err(RadiosityError::ReflectanceAboveOne { surface, value });
+        }
+    }
+    if let Some(&value) = emission.iter().find(|&&e| !is_light(e)) {
+        return Err(RadiosityError::Emission { surface, value });
+    }
+    Ok(())
 }

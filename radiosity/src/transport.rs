@@ -5,7 +5,6 @@ use crate::link::{Link, LinkCounts};
 use crate::rgb::{Rgb, check_direct};
 use crate::scene::Scene;
 use crate::tree::ElementId;
-use crate::visible::boxes::Boxes;
 
 /// A scene with its links and its direct light.
 #[derive(Clone, Debug)]
@@ -18,7 +17,6 @@ pub struct Transport {
     /// Link and form factor from the row's element to the other.
     pub(crate) entries: Vec<Entry>,
     pub(crate) leaves: Vec<ElementId>,
-    pub(crate) boxes: Boxes,
     /// Parent of each element; `None` for roots.
     pub(crate) parents: Vec<Option<ElementId>>,
     /// Factor on the row of each patch, by `even_rows`.
@@ -73,6 +71,26 @@ impl Transport {
         check_direct(self.leaves.len(), direct)?;
         self.direct.fill([0.0; 3]);
         self.direct[..direct.len()].copy_from_slice(direct);
+        Ok(())
+    }
+
+    /// Gives a surface another reflectance and emission. Links stay as they are, refined for the materials that they were made with.
+    ///
+    /// # Errors
+    /// As [`Scene::set_material`]; then nothing is changed. [`RadiosityError::Option`] if the surface was black when links were made: it has none.
+    pub fn set_material(
+        &mut self,
+        surface: usize,
+        reflectance: Rgb,
+        emission: Rgb,
+    ) -> Result<(), RadiosityError> {
+        let was_black = |scene: &Scene| scene.sides.iter().any(|s| s.surface == surface && s.is_black());
+        if was_black(&self.scene) && (reflectance != [0.0; 3] || emission != [0.0; 3]) {
+            let (name, expected) = ("reflectance", "0, since no links were made for a black surface");
+            let value = reflectance.into_iter().chain(emission).fold(0.0, f64::max);
+            return Err(RadiosityError::Option { name, value, expected });
+        }
+        self.scene.set_material(surface, reflectance, emission)?;
         Ok(())
     }
 

@@ -57,13 +57,15 @@ const MAX_ROW: usize = 64;
 
 impl Tree {
     /// Adds the roots of one side of a surface.
-    pub(crate) fn add_side(&mut self, polygon: &Polygon, side: u32) {
+    ///
+    /// Quadrangles much longer than wide become rows of squarer ones, but not of shorter ones than `shortest`.
+    pub(crate) fn add_side(&mut self, polygon: &Polygon, side: u32, shortest: f64) {
         for quad in polygon.quads() {
             if quad[2] == quad[3] {
                 self.add_root(&quad[..3], side);
                 continue;
             }
-            for part in squarer(quad) {
+            for part in squarer(quad, shortest) {
                 self.add_root(&part, side);
             }
         }
@@ -136,8 +138,9 @@ impl Tree {
         true
     }
 
-    /// Divides until no edge is longer than `size` (scaled units); false if that takes more than `limit` elements.
-    pub(crate) fn divide_all(&mut self, size: f64, limit: usize) -> bool {
+    /// Divides until no edge is longer than `size` (scaled units), or until the area is below `area` if that is sooner; false if that takes more
+    /// than `limit` elements.
+    pub(crate) fn divide_all(&mut self, size: f64, area: f64, limit: usize) -> bool {
         // A patch has at most the area of the square of its longest edge, so at least this many are needed: an impossible size is refused
         // before any work.
         let least = self.elements.iter().map(|e| e.polygon.area()).sum::<f64>() / (size * size);
@@ -146,7 +149,8 @@ impl Tree {
         }
         let mut next = 0;
         while next < self.elements.len() {
-            if self.elements[next].size > size && !self.divide(next as u32) {
+            let Element { size: longest, polygon, .. } = &self.elements[next];
+            if *longest > size && polygon.area() > area && !self.divide(next as u32) {
                 // Its parts would have no area in `f64`: it stays a leaf.
                 self.elements[next].size = size;
             }
@@ -180,16 +184,16 @@ impl Tree {
 }
 
 /// A long quadrangle as a row of at most [`MAX_ROW`] squarer ones; as it is if its sides differ by less than [`ASPECT`].
-fn squarer([a, b, c, d]: [DVec3; 4]) -> Vec<[DVec3; 4]> {
+fn squarer([a, b, c, d]: [DVec3; 4], shortest: f64) -> Vec<[DVec3; 4]> {
     let length = 0.5 * ((b - a).length() + (c - d).length());
     let width = 0.5 * ((d - a).length() + (c - b).length());
     if length.max(width) <= ASPECT * length.min(width) {
         return vec![[a, b, c, d]];
     }
     if width > length {
-        return squarer([b, c, d, a]);
+        return squarer([b, c, d, a], shortest);
     }
-    let count = ((length / width).round() as usize).clamp(1, MAX_ROW);
+    let count = (length / width.max(shortest)).round().clamp(1.0, MAX_ROW as f64) as usize;
     let along = |p: DVec3, q: DVec3, i: usize| {
         // The ends are the corners bit for bit: quadrangles that share corners then share vertices.
         if i == 0 {

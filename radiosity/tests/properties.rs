@@ -100,6 +100,7 @@ proptest! {
         let surfaces: Vec<Surface> = list.iter().map(surface).collect();
         let options = SceneOptions::DEFAULT.with_patch(1.0).with_tolerance(tolerance);
         scenes::is_refused_or_solved(&surfaces, &options).map_err(fails)?;
+        scenes::is_refused_or_solved_by_rays(&surfaces, &options).map_err(fails)?;
     }
 
     #[test]

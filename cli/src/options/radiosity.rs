@@ -47,15 +47,17 @@ pub struct RadiosityBakeOptions {
     /// Longest edge of a patch, in the scene's unit (default: a 32nd of the scene's longest side)
     #[arg(long, value_name = "SIZE", value_parser = values::positive)]
     pub patch: Option<f64>,
-    /// Divide patches down to this where light changes fast: at shadow edges and in corners
+    /// Divide patches down to this where light changes fast: at shadow edges and in corners (default with rays: an eighth of a patch)
     #[arg(long, value_name = "SIZE", value_parser = values::positive)]
     pub adaptive: Option<f64>,
-    /// Which patches exchange light directly: all pairs, or groups of patches where --tolerance allows (auto: groups above 1000 patches)
+    /// Which patches exchange light directly: all pairs, groups of patches where --tolerance allows, or those that rays meet (auto: groups above 1000
+    /// patches, rays above 2000 surfaces)
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub links: LinkKind,
-    /// Largest error of one link between groups, as a fraction of the scene's mean radiosity
-    #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = values::positive)]
-    pub tolerance: f64,
+    /// Largest error of one link between groups, as a fraction of the scene's mean radiosity (default 0.01); with rays, standard error of the light
+    /// at a vertex, as a fraction of it (default 0.06)
+    #[arg(long, value_name = "T", value_parser = values::positive)]
+    pub tolerance: Option<f64>,
     /// Leave out form factors below this; what was left out is reported
     #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = values::not_negative)]
     pub least_factor: f64,
@@ -105,6 +107,8 @@ pub enum LinkKind {
     Full,
     /// Groups of patches
     Hierarchical,
+    /// By rays: for buildings of many thousand surfaces
+    Rays,
 }
 
 /// `radiosity factors`.

@@ -3,6 +3,7 @@
 //! Each takes any input at all. What is refused satisfies every fact.
 
 pub mod factors;
+pub mod paths;
 pub mod reference;
 pub mod scenes;
 

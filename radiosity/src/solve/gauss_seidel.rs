@@ -9,13 +9,22 @@ use crate::transport::Transport;
 
 pub(super) fn solve<'t>(
     transport: &'t Transport,
+    before: &[Rgb],
     options: &SolveOptions,
 ) -> Result<Solution<'t>, RadiosityError> {
     options.check()?;
     let mut state = State::new(transport, &transport.direct)?;
+    let (mut bound, mut steps, mut converged) = (0.0, 0, state.power == 0.0);
+    if !before.is_empty() && !converged {
+        let mut radiosity = std::mem::take(&mut state.radiosity);
+        transport.leaves.iter().zip(before).for_each(|(&leaf, b)| radiosity[leaf as usize] = *b);
+        state.pull_all(&mut radiosity);
+        state.radiosity = radiosity;
+        bound = state.bound(&state.residual());
+        converged = bound <= options.tolerance * state.largest(&state.radiosity);
+    }
     let balance = options.balance.then(|| Balance::new(&state));
     let mut history = vec![1.0];
-    let (mut bound, mut steps, mut converged) = (0.0, 0, state.power == 0.0);
     while !converged && steps < options.max_sweeps {
         for &root in &transport.scene.tree.roots {
             state.sweep(root, [0.0; 3]);

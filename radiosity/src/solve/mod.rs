@@ -11,6 +11,7 @@ pub use options::SolveOptions;
 pub use solution::Solution;
 
 use crate::error::RadiosityError;
+use crate::rgb::{Rgb, check_direct};
 use crate::transport::Transport;
 
 impl Transport {
@@ -21,7 +22,31 @@ impl Transport {
     /// # Errors
     /// [`RadiosityError::NoEquilibrium`] where nothing bounds the error: a closed scene that absorbs nothing. [`RadiosityError::Option`].
     pub fn gauss_seidel(&self, options: &SolveOptions) -> Result<Solution<'_>, RadiosityError> {
-        gauss_seidel::solve(self, options)
+        gauss_seidel::solve(self, &[], options)
+    }
+
+    /// As [`Transport::gauss_seidel`], from the radiosity of each patch that was found before some materials or lamps were changed: few sweeps are left.
+    ///
+    /// # Errors
+    /// As [`Transport::gauss_seidel`], and [`RadiosityError::CountMismatch`] or [`RadiosityError::DirectIrradiance`] for what `radiosity` says.
+    pub fn gauss_seidel_from(
+        &self,
+        radiosity: &[Rgb],
+        options: &SolveOptions,
+    ) -> Result<Solution<'_>, RadiosityError> {
+        if radiosity.len() != self.leaves.len() {
+            return Err(RadiosityError::CountMismatch { patches: self.leaves.len(), given: radiosity.len() });
+        }
+        check_direct(self.leaves.len(), radiosity)?;
+        gauss_seidel::solve(self, radiosity, options)
+    }
+
+    /// The solution that has this radiosity at each patch, whoever found it, with the bound on its error: to be baked, or looked at at free points.
+    ///
+    /// # Errors
+    /// As [`Transport::gauss_seidel_from`].
+    pub fn solution_of(&self, radiosity: &[Rgb]) -> Result<Solution<'_>, RadiosityError> {
+        self.gauss_seidel_from(radiosity, &SolveOptions::DEFAULT.with_max_sweeps(0))
     }
 
     /// Solves by shooting, most unshot power first; on a hierarchy by root. Good early, slower in the end than Gauss–Seidel.

@@ -1,5 +1,7 @@
 //! A hierarchy of boxes around occluders.
 
+use std::cell::Cell;
+
 use glam::DVec3;
 
 use super::shaft::Shaft;
@@ -70,6 +72,35 @@ impl Boxes {
     pub(crate) fn in_box(&self, low: DVec3, high: DVec3, found: &mut Vec<u32>) {
         found.clear();
         self.visit(0, &|n| n.low.cmple(high).all() && n.high.cmpge(low).all(), &mut |i| found.push(i));
+        found.sort_unstable();
+    }
+
+    /// The occluders whose boxes may reach to the inner side of all planes (normal outwards, and its product with a point of the plane) and
+    /// into the box from `low` to `high`, by number; some `most` of them if they are more.
+    pub(crate) fn in_planes(
+        &self,
+        planes: &[(DVec3, f64)],
+        (low, high): (DVec3, DVec3),
+        most: usize,
+        found: &mut Vec<u32>,
+    ) {
+        found.clear();
+        // The corner of a box that is farthest inside.
+        let inside = |n: &Node, (normal, offset): &(DVec3, f64)| {
+            let corner = DVec3::select(normal.cmpgt(DVec3::ZERO), n.low, n.high);
+            normal.dot(corner) < *offset
+        };
+        let count = Cell::new(0);
+        let meets = |n: &Node| {
+            count.get() < most
+                && n.low.cmple(high).all()
+                && n.high.cmpge(low).all()
+                && planes.iter().all(|plane| inside(n, plane))
+        };
+        self.visit(0, &meets, &mut |i| {
+            count.set(count.get() + 1);
+            found.push(i);
+        });
         found.sort_unstable();
     }
 

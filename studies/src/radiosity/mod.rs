@@ -1,6 +1,7 @@
 //! `radiosity`: time against error of form factors and of solutions. Writes `radiosity.md`.
 
 mod boxes;
+mod buildings;
 mod peer;
 mod probes;
 mod study;

@@ -11,6 +11,7 @@ use pointillist_radiosity::{
 
 use crate::common::report::{Outcome, machine, timed};
 use crate::radiosity::boxes::{cornell, quad, room};
+use crate::radiosity::buildings;
 use crate::radiosity::peer;
 use crate::radiosity::probes;
 
@@ -26,6 +27,8 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     hemicubes(&mut text)?;
     boxes(&mut text)?;
     rooms(&mut text)?;
+    buildings::solve(&mut text)?;
+    buildings::growth(&mut text)?;
     probes::compare(&mut text)?;
     peer::compare(&mut text)?;
     std::fs::create_dir_all(out_dir)?;

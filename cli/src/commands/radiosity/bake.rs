@@ -1,5 +1,6 @@
 //! `radiosity SCENE`.
 
+use super::by_rays;
 use crate::baked_file::BakedFile;
 use crate::commands::Report;
 use crate::commands::report::{name_of_output, write_text};
@@ -19,14 +20,18 @@ use pointillist_render::{Lamps, SceneError, SceneSurfaces, fingerprint, scene_su
 use std::path::Path;
 
 /// Patches along the scene's longest side, unless said otherwise.
-const PATCHES_ACROSS: f64 = 32.0;
+pub(super) const PATCHES_ACROSS: f64 = 32.0;
 /// Units of the progress bar, and shares of the time after which direct light, form factors and the solution are there, about.
-const PROGRESS_STEPS: u64 = 1000;
+pub(super) const PROGRESS_STEPS: u64 = 1000;
 const LIT: f64 = 0.1;
 const LINKED: f64 = 0.5;
 const SOLVED: f64 = 0.55;
 /// Scenes with more patches are linked by groups, unless said otherwise.
 const MOST_FULL: usize = 1000;
+/// Scenes with more surfaces are linked by rays, unless said otherwise: every pair of surfaces is looked at for groups.
+const MOST_PAIRED: usize = 2000;
+/// `--tolerance` of groups, unless said otherwise.
+const LINK_TOLERANCE: f64 = 0.01;
 
 pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     let report =
@@ -47,6 +52,10 @@ pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     }
     let bake = Bake { options, report: &report, scene: &scene, surfaces: &surfaces };
     let progress = report.progress();
+    if bake.by_rays() {
+        by_rays::run(&bake, &progress)?;
+        return report.finish();
+    }
     let transport = bake.link(&progress)?;
     let solution = bake.solve(&transport, &progress)?;
     let baked = report
@@ -54,8 +63,18 @@ pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
         .stage("gather", || solution.bake_with(&|share| progress.reach(SOLVED + (1.0 - SOLVED) * share)));
     progress.finish();
     bake.tell(&transport, &solution);
-    bake.write(&transport, &baked, &solution)?;
+    let factors = |f: &mut dyn FnMut(usize, usize, f64)| transport.factors(f);
+    let found = Found { patches: transport.patch_count(), bound: solution.bound, factors: &factors };
+    bake.write(&found, &baked)?;
     report.finish()
+}
+
+/// What is written besides the light of vertices.
+pub(super) struct Found<'a> {
+    pub(super) patches: usize,
+    pub(super) bound: f64,
+    /// Calls a function with patch, other patch and form factor.
+    pub(super) factors: &'a dyn Fn(&mut dyn FnMut(usize, usize, f64)),
 }
 
 /// What light cannot be baked for, with the way out.
@@ -73,6 +92,15 @@ fn check(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     let hemicube = options.form_factor != FormFactorKind::Analytic;
     if hemicube && options.links == LinkKind::Hierarchical {
         let message = "--form-factor hemicube takes --links full: a hemicube sees single patches, not groups";
+        return Err(CliError::Usage(message.to_owned()));
+    }
+    if options.links == LinkKind::Rays && (hemicube || options.method == SolveMethod::Progressive) {
+        let message =
+            "--links rays has form factors and a solver of its own: leave --form-factor and --method out";
+        return Err(CliError::Usage(message.to_owned()));
+    }
+    if options.links == LinkKind::Rays && options.least_factor > 0.0 {
+        let message = "--least-factor is about pairs of patches: leave it or --links rays out";
         return Err(CliError::Usage(message.to_owned()));
     }
     if options.adaptive.is_some() && (hemicube || options.links == LinkKind::Full) {
@@ -98,14 +126,24 @@ fn affordable_elements() -> usize {
     memory::available_bytes().map_or(usize::MAX, fits)
 }
 
-struct Bake<'a> {
-    options: &'a RadiosityBakeOptions,
-    report: &'a Report<'a>,
-    scene: &'a Scene,
-    surfaces: &'a SceneSurfaces,
+pub(super) struct Bake<'a> {
+    pub(super) options: &'a RadiosityBakeOptions,
+    pub(super) report: &'a Report<'a>,
+    pub(super) scene: &'a Scene,
+    pub(super) surfaces: &'a SceneSurfaces,
 }
 
 impl Bake<'_> {
+    /// Whether links are found by rays.
+    fn by_rays(&self) -> bool {
+        let Self { options, surfaces, .. } = self;
+        let plain = options.form_factor == FormFactorKind::Analytic
+            && options.method == SolveMethod::GaussSeidel
+            && options.least_factor == 0.0;
+        let many = surfaces.surfaces.len() > MOST_PAIRED;
+        options.links == LinkKind::Rays || (options.links == LinkKind::Auto && plain && many)
+    }
+
     fn link(&self, progress: &Progress) -> Result<Transport, CliError> {
         let Self { options, report, .. } = self;
         progress.begin("radiosity", PROGRESS_STEPS);
@@ -148,15 +186,14 @@ impl Bake<'_> {
             .with_patch(patch)
             .with_smallest_patch(options.adaptive.unwrap_or(patch))
             .with_least_factor(options.least_factor)
-            // A patch of four counts five elements.
-            .with_max_elements(options.max_patches.saturating_mul(2).min(affordable_elements()));
+            .with_max_elements(self.most_elements());
         let new = |settings: &SceneOptions| {
             radiosity::Scene::new(&self.surfaces.surfaces, settings).map_err(|e| self.refused(&e))
         };
         let plain = new(&settings)?;
         let grouped = match options.links {
             LinkKind::Full => false,
-            LinkKind::Hierarchical => true,
+            LinkKind::Hierarchical | LinkKind::Rays => true,
             LinkKind::Auto => {
                 options.form_factor == FormFactorKind::Analytic
                     && (plain.patch_count() > MOST_FULL || options.adaptive.is_some())
@@ -166,12 +203,12 @@ impl Bake<'_> {
             self.check_full_links(plain.patch_count())?;
             return Ok(plain);
         }
-        settings = settings.with_tolerance(Some(options.tolerance));
+        settings = settings.with_tolerance(Some(options.tolerance.unwrap_or(LINK_TOLERANCE)));
         new(&settings)
     }
 
     /// Longest side of the box around all surfaces.
-    fn extent(&self) -> f64 {
+    pub(super) fn extent(&self) -> f64 {
         let all = || self.surfaces.surfaces.iter().flat_map(|s| &s.vertices);
         let low = all().fold(DVec3::INFINITY, |m, &v| m.min(v));
         let high = all().fold(DVec3::NEG_INFINITY, |m, &v| m.max(v));
@@ -180,7 +217,7 @@ impl Bake<'_> {
     }
 
     /// The error with the triangle, the object and the material that it is about.
-    fn refused(&self, error: &RadiosityError) -> CliError {
+    pub(super) fn refused(&self, error: &RadiosityError) -> CliError {
         use RadiosityError::{Emission, EmitterWithoutArea, Outline, Reflectance, ReflectanceAboveOne};
         let surface = match error {
             Outline { surface, .. }
@@ -198,6 +235,12 @@ impl Bake<'_> {
         let name = self.options.scene.as_deref().map(name_of).unwrap_or_default();
         let message = format!("triangle {face} (of `{object}`, material `{material}`): {error}");
         CliError::Input(InputError::of_file(name, message))
+    }
+
+    /// Most patches, and patches of patches, that are asked for and that there is memory for.
+    pub(super) fn most_elements(&self) -> usize {
+        // A patch of four counts five elements.
+        self.options.max_patches.saturating_mul(2).min(affordable_elements())
     }
 
     /// The patches are more than asked for, or than there is memory for.
@@ -263,16 +306,16 @@ impl Bake<'_> {
         }
     }
 
-    fn write(&self, transport: &Transport, baked: &Baked, solution: &Solution) -> Result<(), CliError> {
+    pub(super) fn write(&self, found: &Found<'_>, baked: &Baked) -> Result<(), CliError> {
         let Self { options, report, .. } = self;
         if let Some(path) = &options.factors {
-            report.stats.stage("write", || write_factors(path, transport))?;
+            report.stats.stage("write", || write_factors(path, found))?;
         }
         let mut file = BakedFile::new(baked, &self.surfaces.faces);
         file.geometry = format!("{:016x}", fingerprint::of_geometry(&self.scene.mesh));
         file.light = format!("{:016x}", fingerprint::of_sources(self.scene));
-        file.patches = transport.patch_count();
-        file.bound = solution.bound;
+        file.patches = found.patches;
+        file.bound = found.bound;
         let path = &options.output;
         report.stats.stage("write", || {
             write_text(path, |output| {
@@ -290,10 +333,10 @@ impl Bake<'_> {
     }
 }
 
-fn write_factors(path: &Path, transport: &Transport) -> Result<(), CliError> {
+fn write_factors(path: &Path, found: &Found<'_>) -> Result<(), CliError> {
     write_text(path, |output| {
         let mut result = writeln!(output, "i,j,F");
-        transport.factors(|i, j, factor| {
+        (found.factors)(&mut |i, j, factor| {
             if result.is_ok() {
                 result = writeln!(output, "{i},{j},{factor}");
             }

@@ -1,6 +1,7 @@
 //! `radiosity` and its command.
 
 mod bake;
+mod by_rays;
 mod factor_lines;
 mod factors;
 

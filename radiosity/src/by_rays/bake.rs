@@ -1,0 +1,189 @@
+//! Irradiance and radiosity per vertex of a scene in transport.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::gather::{BLACK, FIRST, Gathered, Gatherer, mean};
+use super::smooth::Places;
+use super::solution::RaySolution;
+use super::surroundings::LIFT;
+use crate::bake::{Baked, INWARD};
+use crate::mesh::{Facets, Mesh, Place};
+use crate::rays::sequence::mix;
+use crate::rgb::Rgb;
+use crate::scene::Scene;
+use crate::tree::ElementId;
+use pointillist_parallel as parallel;
+
+/// Places between two reports of progress.
+const BLOCK: usize = 2048;
+/// Where facets of a hollow surface join at a vertex, rays start this share of the shift inward off the mean plane: the tangent of the
+/// largest angle that is smoothed, halved.
+const HOLLOW: f64 = 0.35;
+/// Rounds of division of patches, at most.
+const ROUNDS: usize = 4;
+/// A patch is divided if irradiance at its corners differs by more than this share of its mean, and it is not small against the distances from which light comes.
+const UNEVEN: f64 = 0.18;
+/// A vertex counts as covered by another surface if the distance from which its light comes is below this share of the size of its patches: in a
+/// corner of three walls it is more, since rays start inward of it.
+const COVERED: f64 = 0.01;
+/// The size of a patch is small if it is below this share of that distance.
+const SMALL: f64 = 0.25;
+
+/// Where a place is and which way it faces, as far as rays are concerned.
+type Key = [u64; 6];
+
+impl RaySolution<'_> {
+    /// Irradiance and radiosity at every vertex. Patches are divided down to
+    /// [`RayOptions::finest`](crate::RayOptions::finest) where irradiance changes fast. `done` is told the share of the work that is done (0 to 1).
+    /// Facets of a curved surface share vertices, whose normal is the mean of theirs.
+    #[must_use]
+    pub fn bake_with(&self, done: &(dyn Fn(f64) + Sync)) -> Baked {
+        let mut scene = self.transport.scene.clone();
+        let gatherer = Gatherer::new(self);
+        let mut known: HashMap<Key, Gathered> = HashMap::new();
+        let mut direct: Vec<Rgb> = vec![[0.0; 3]; scene.tree.elements.len()];
+        self.transport.leaves.iter().zip(&self.transport.direct).for_each(|(&l, d)| direct[l as usize] = *d);
+        for round in 0..=ROUNDS {
+            let leaves = scene.tree.leaves();
+            let mesh = Mesh::new(&scene, &leaves, Facets::Joined);
+            let shares = |share: f64| done((round as f64 + share) / (ROUNDS + 1) as f64);
+            let lights = self.lights(&scene, &mesh, &gatherer, &mut known, &shares);
+            let uneven =
+                if round == ROUNDS { vec![] } else { self.uneven(&scene, &mesh, &lights, gatherer.floor) };
+            if uneven.is_empty() {
+                let mut light: Vec<Rgb> = lights.iter().map(|l| l.light).collect();
+                let covered =
+                    |(place, own): (&Place, &Light)| own.reach < COVERED * size_around(&scene, place);
+                let covered: Vec<bool> = mesh.places.iter().zip(&lights).map(covered).collect();
+                mesh.lift(&covered, &mut light);
+                mesh.lift_buried(&mut light);
+                let direct: Vec<Rgb> = leaves.iter().map(|&l| direct[l as usize]).collect();
+                return mesh.finish(&direct, &light);
+            }
+            for leaf in uneven {
+                if scene.tree.divide(leaf) {
+                    direct.resize(scene.tree.elements.len(), direct[leaf as usize]);
+                }
+            }
+        }
+        unreachable!("the last round divides nothing");
+    }
+
+    /// As [`RaySolution::bake_with`], without word of progress.
+    #[must_use]
+    pub fn bake(&self) -> Baked {
+        self.bake_with(&|_| ())
+    }
+
+    /// Light at all places, each with as many rays as it takes with those of its neighbours.
+    fn lights(
+        &self,
+        scene: &Scene,
+        mesh: &Mesh<'_>,
+        gatherer: &Gatherer<'_>,
+        known: &mut HashMap<Key, Gathered>,
+        done: &dyn Fn(f64),
+    ) -> Vec<Light> {
+        let options = &self.transport.options;
+        let keys: Vec<Key> = mesh.places.iter().map(|p| key(mesh, p)).collect();
+        let starts: Vec<(DVec3, DVec3, u64)> =
+            (0..keys.len()).map(|i| start(scene, mesh, &mesh.places[i], &keys[i])).collect();
+        let positions: Vec<DVec3> = mesh.places.iter().map(|p| p.position).collect();
+        let normals: Vec<DVec3> = starts.iter().map(|s| s.1).collect();
+        let mut gathered: Vec<Gathered> =
+            keys.iter().map(|k| known.get(k).copied().unwrap_or_default()).collect();
+        let mut open: Vec<usize> = (0..keys.len()).filter(|&i| gathered[i].rays() == 0).collect();
+        let places = Places::new(&positions);
+        let mut rays = FIRST;
+        loop {
+            for (number, block) in open.chunks(BLOCK).enumerate() {
+                let more = parallel::map_heavy(block.len(), |i| {
+                    let place = starts[block[i]];
+                    let mut own = gathered[block[i]];
+                    if own.rays() == 0 {
+                        own = gatherer.start(place.0, place.1, place.2);
+                    }
+                    let wanted = (2 * own.rays()).max(rays).min(options.most_rays);
+                    gatherer.go_on(place, wanted, &mut own);
+                    own
+                });
+                block.iter().zip(more).for_each(|(&i, own)| gathered[i] = own);
+                done((number * BLOCK) as f64 / open.len() as f64);
+            }
+            let neighbours = places.smooth(&normals, &gathered, &open);
+            rays *= 2;
+            let wants = |&(i, (light, error)): &(usize, (Rgb, f64))| {
+                let bright = mean(light);
+                let first = gathered[i].rays() == FIRST && bright > BLACK * gatherer.floor;
+                gathered[i].rays() < options.most_rays
+                    && (first || error > options.tolerance * bright.max(gatherer.floor))
+            };
+            open = open.iter().copied().zip(neighbours).filter(wants).map(|(i, _)| i).collect();
+            if open.is_empty() || rays > options.most_rays {
+                break;
+            }
+        }
+        known.extend(keys.into_iter().zip(gathered.iter().copied()));
+        let all: Vec<usize> = (0..gathered.len()).collect();
+        let lights = places.smooth(&normals, &gathered, &all);
+        let light =
+            |((light, error), own): ((Rgb, f64), &Gathered)| Light { light, error, reach: own.reach() };
+        lights.into_iter().zip(&gathered).map(light).collect()
+    }
+
+    /// Leaves over which irradiance changes too fast to be interpolated.
+    fn uneven(&self, scene: &Scene, mesh: &Mesh<'_>, lights: &[Light], floor: f64) -> Vec<ElementId> {
+        let smallest = self.transport.options.finest * scene.scale;
+        let is_uneven = |(leaf, ring, _): &(ElementId, Vec<u32>, Option<u32>)| {
+            let element = &scene.tree.elements[*leaf as usize];
+            let at = || ring.iter().map(|&place| &lights[place as usize]);
+            let reach = at().fold(f64::INFINITY, |m, l| m.min(l.reach));
+            let size = element.polygon.area().sqrt();
+            if size <= smallest || size < SMALL * reach {
+                return false;
+            }
+            let low = at().fold(f64::INFINITY, |m, l| m.min(mean(l.light) + l.error));
+            let high = at().fold(0.0, |m: f64, l| m.max(mean(l.light) - l.error));
+            high - low > UNEVEN * (0.5 * (low + high)).max(floor)
+        };
+        let room = scene.options.max_elements.saturating_sub(scene.tree.elements.len()) / 4;
+        mesh.rings.iter().filter(|r| is_uneven(r)).map(|r| r.0).take(room).collect()
+    }
+}
+
+/// What is known of a place.
+struct Light {
+    light: Rgb,
+    /// Standard error of the mean of the bands.
+    error: f64,
+    /// Harmonic mean of the distances from which light comes.
+    reach: f64,
+}
+
+/// The smallest of the patches around a place.
+fn size_around(scene: &Scene, place: &Place) -> f64 {
+    let size = |leaf: &ElementId| scene.tree.elements[*leaf as usize].polygon.area().sqrt();
+    place.leaves.iter().map(size).fold(f64::INFINITY, f64::min)
+}
+
+fn key(mesh: &Mesh<'_>, place: &Place) -> Key {
+    // Patches are added to places in another order after a division, which rounds the sum of normals differently.
+    let normal = (mesh.normal(place) * 1e6).round();
+    let [x, y, z] = (place.position + 0.0).to_array().map(f64::to_bits);
+    let [u, v, w] = (normal + 0.0).to_array().map(f64::to_bits);
+    [x, y, z, u, v, w]
+}
+
+/// Where the rays of a place start: towards the middle of its patches, and off them.
+fn start(scene: &Scene, mesh: &Mesh<'_>, place: &Place, key: &Key) -> (DVec3, DVec3, u64) {
+    let normal = mesh.normal(place);
+    let of = |leaf: &ElementId| &scene.tree.elements[*leaf as usize].polygon;
+    let centre = place.leaves.iter().map(|l| of(l).centre()).sum::<DVec3>() / place.leaves.len() as f64;
+    let way = (centre - place.position) * INWARD;
+    let shift = way - normal * normal.dot(way);
+    let curved = place.leaves.iter().any(|l| of(l).normal().dot(normal) < 1.0 - 1e-9);
+    let lift = LIFT + if curved { HOLLOW * shift.length() } else { 0.0 };
+    (place.position + shift + normal * lift, normal, key.iter().fold(0, |m, bits| mix(m ^ bits)))
+}

@@ -1,0 +1,111 @@
+//! Averages over neighbouring places where light comes from far away: their rays count for one another (\[8\]'s test for interpolation).
+
+use glam::DVec3;
+
+use super::gather::Gathered;
+use crate::rgb::{Rgb, add};
+use pointillist_parallel as parallel;
+
+/// How much the split-sphere model may say that irradiance differs between places that are averaged.
+const APART: f64 = 0.15;
+/// Weight of normals in that model.
+const TURN: f64 = 1.5;
+/// Neighbours of a place, about, at most.
+const MOST: usize = 64;
+/// Places in a cell of the tree.
+const LEAF: usize = 8;
+
+/// Places by position, halved along the longest axis.
+pub(crate) struct Places<'p> {
+    positions: &'p [DVec3],
+    order: Vec<u32>,
+    cells: Vec<(DVec3, DVec3)>,
+}
+
+impl<'p> Places<'p> {
+    pub(crate) fn new(positions: &'p [DVec3]) -> Self {
+        let mut places = Self { positions, order: (0..positions.len() as u32).collect(), cells: vec![] };
+        let depth = (positions.len() / LEAF).max(1).next_power_of_two();
+        places.cells = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); 2 * depth];
+        places.build(1, 0, positions.len());
+        places
+    }
+
+    /// Irradiance of some places, each its own and that of its neighbours, and its standard error.
+    pub(crate) fn smooth(
+        &self,
+        normals: &[DVec3],
+        gathered: &[Gathered],
+        which: &[usize],
+    ) -> Vec<(Rgb, f64)> {
+        parallel::map_heavy(which.len(), |k| {
+            let i = which[k];
+            let (at, reach) = (self.positions[i], gathered[i].reach());
+            let (mut sum, mut weights, mut errors) = ([0.0; 3], 0.0, 0.0);
+            self.within(at, APART * reach, &mut |j| {
+                let other = &gathered[j];
+                let turn = (1.0 - normals[i].dot(normals[j])).max(0.0).sqrt();
+                let apart = (at - self.positions[j]).length() / reach.min(other.reach()) + TURN * turn;
+                let weight = (1.0 - apart / APART).max(0.0) * f64::from(other.rays());
+                if weight > 0.0 {
+                    sum = add(sum, weight, other.light());
+                    weights += weight;
+                    errors += weight * weight * other.variance();
+                }
+            });
+            let whole = weights.max(f64::MIN_POSITIVE);
+            (sum.map(|s| s / whole), errors.sqrt() / whole)
+        })
+    }
+
+    /// Cell `n` has the cells 2n and 2n + 1 for its halves.
+    fn build(&mut self, cell: usize, from: usize, to: usize) {
+        let all = self.order[from..to].iter().map(|&i| self.positions[i as usize]);
+        let (low, high) = all.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+        self.cells[cell] = (low, high);
+        if 2 * cell >= self.cells.len() {
+            return;
+        }
+        let axis = (high - low).max_position();
+        let at = |i: &u32| self.positions[*i as usize][axis];
+        self.order[from..to].sort_by(|a, b| at(a).total_cmp(&at(b)).then(a.cmp(b)));
+        let middle = from + (to - from) / 2;
+        self.build(2 * cell, from, middle);
+        self.build(2 * cell + 1, middle, to);
+    }
+
+    /// Places nearer than a radius; nearer than less if these are more than [`MOST`].
+    fn within(&self, point: DVec3, mut radius: f64, visit: &mut impl FnMut(usize)) {
+        let mut count = 0;
+        self.visit((1, 0, self.order.len()), point, radius, &mut |_| count += 1);
+        if count > MOST {
+            // On a surface they are as many as the square of the radius.
+            radius *= (MOST as f64 / count as f64).sqrt();
+        }
+        self.visit((1, 0, self.order.len()), point, radius, visit);
+    }
+
+    fn visit(
+        &self,
+        (cell, from, to): (usize, usize, usize),
+        point: DVec3,
+        radius: f64,
+        visit: &mut impl FnMut(usize),
+    ) {
+        let (low, high) = self.cells[cell];
+        if from == to || (point - point.clamp(low, high)).length_squared() > radius * radius {
+            return;
+        }
+        if 2 * cell >= self.cells.len() {
+            for &i in &self.order[from..to] {
+                if (self.positions[i as usize] - point).length_squared() <= radius * radius {
+                    visit(i as usize);
+                }
+            }
+            return;
+        }
+        let middle = from + (to - from) / 2;
+        self.visit((2 * cell, from, middle), point, radius, visit);
+        self.visit((2 * cell + 1, middle, to), point, radius, visit);
+    }
+}
