@@ -116,8 +116,8 @@ fn brackets_hold_the_range_that_no_photograph_has() {
     let merged = off(&sh(&probes[0]), &wanted);
     assert!(merged < 0.01, "{merged}");
     // Of single ones the bright ones are clipped, and the dark one has hardly any levels for the room.
-    for k in 1..4 {
-        assert!(off(&sh(&probes[k]), &wanted) > 2.0 * merged, "{k}");
+    for single in &probes[1..4] {
+        assert!(off(&sh(single), &wanted) > 2.0 * merged, "{single}");
     }
 }
 

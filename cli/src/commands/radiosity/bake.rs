@@ -63,18 +63,21 @@ pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
         .stage("gather", || solution.bake_with(&|share| progress.reach(SOLVED + (1.0 - SOLVED) * share)));
     progress.finish();
     bake.tell(&transport, &solution);
-    let factors = |f: &mut dyn FnMut(usize, usize, f64)| transport.factors(f);
+    let factors = |f: &mut FactorVisitor<'_>| transport.factors(f);
     let found = Found { patches: transport.patch_count(), bound: solution.bound, factors: &factors };
     bake.write(&found, &baked)?;
     report.finish()
 }
 
+/// Takes a patch, another patch and their form factor.
+pub(super) type FactorVisitor<'v> = dyn FnMut(usize, usize, f64) + 'v;
+
 /// What is written besides the light of vertices.
 pub(super) struct Found<'a> {
     pub(super) patches: usize,
     pub(super) bound: f64,
-    /// Calls a function with patch, other patch and form factor.
-    pub(super) factors: &'a dyn Fn(&mut dyn FnMut(usize, usize, f64)),
+    /// Calls a function with all form factors.
+    pub(super) factors: &'a dyn Fn(&mut FactorVisitor<'_>),
 }
 
 /// What light cannot be baked for, with the way out.

@@ -1,6 +1,6 @@
 //! `radiosity SCENE` for buildings: links are found by rays.
 
-use super::bake::{Bake, Found, PATCHES_ACROSS, PROGRESS_STEPS};
+use super::bake::{Bake, FactorVisitor, Found, PATCHES_ACROSS, PROGRESS_STEPS};
 use crate::error::CliError;
 use crate::job::Progress;
 use pointillist_radiosity as radiosity;
@@ -27,7 +27,7 @@ pub(super) fn run(bake: &Bake<'_>, progress: &Progress) -> Result<(), CliError> 
     let baked = stats.stage("gather", || solution.bake_with(&done));
     progress.finish();
     tell(bake, &transport, &solution);
-    let factors = |f: &mut dyn FnMut(usize, usize, f64)| transport.factors(f);
+    let factors = |f: &mut FactorVisitor<'_>| transport.factors(f);
     let patches = transport.counts().patches;
     bake.write(&Found { patches, bound: solution.bound, factors: &factors }, &baked)
 }
