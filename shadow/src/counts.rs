@@ -18,9 +18,9 @@ pub struct ShadowCounts {
     pub casters: u64,
     /// Triangles skipped: away from receivers, behind them, or the lit side of a solid.
     pub casters_culled: u64,
-    /// Receivers whose group has no caster near: lit without a test.
+    /// Receivers whose group or face has no caster near: lit without a test.
     pub lit_by_group: u64,
-    /// Receivers behind one caster that covers their whole group: dark without a test.
+    /// Receivers behind one caster that covers their whole group or face: dark without a test.
     pub dark_by_group: u64,
     /// Receivers that had to be cut.
     pub partial: u64,
@@ -38,6 +38,14 @@ impl std::ops::AddAssign for ShadowCounts {
         self.lit_by_group += o.lit_by_group;
         self.dark_by_group += o.dark_by_group;
         self.partial += o.partial;
+    }
+}
+
+impl ShadowCounts {
+    /// So many receivers that are lit or dark without a test of their own, if they are.
+    pub(crate) fn settle(&mut self, fraction: Option<f64>, receivers: u64) {
+        self.lit_by_group += receivers * u64::from(fraction == Some(1.0));
+        self.dark_by_group += receivers * u64::from(fraction == Some(0.0));
     }
 }
 

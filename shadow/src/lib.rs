@@ -44,6 +44,7 @@ mod receiver;
 mod scratch;
 mod screen;
 mod target;
+mod whole_faces;
 
 pub use glam;
 /// What the viewer sees, and what casts shadows.

@@ -8,9 +8,10 @@ use crate::lit_regions::LitRegions;
 use crate::options::{Resolution, ShadowOptions};
 use crate::query::{Measure, Query, is_edge_on};
 use crate::receiver::{Receivers, Viewer};
-use crate::scratch::{RuleMemory, ShadowScratch, Side, Sum};
+use crate::scratch::{LitFaces, RuleMemory, ShadowScratch, Side, Sum};
 use crate::screen::{Emitter, Screens, sees};
-use crate::target::{Target, Targets};
+use crate::target::{Target, Targets, WHOLE_FACE};
+use crate::whole_faces::{self, casters_before};
 use crate::{copies, exact, layers};
 use glam::{DVec2, DVec3};
 use pointillist_dice::{ConvexPolygon, clip_ring, share_before_crossing};
@@ -103,13 +104,23 @@ impl<'a> ShadowLight<'a> {
         for (index, r) in receivers.list.iter().enumerate() {
             let face = &viewer.faces[r.face as usize];
             let side = match scratch.sides[r.face as usize] {
-                Side::Unknown => self.lit_side(face),
+                Side::Unknown => match self.lit_side(face) {
+                    Side::Lit if self.push_whole(viewer, r.face, &mut scratch.targets) => Side::LitWhole,
+                    side => side,
+                },
                 known => known,
             };
             scratch.sides[r.face as usize] = side;
-            if side == Side::Dark {
-                scratch.counts.facing_away += 1;
-                continue;
+            match side {
+                Side::Dark => {
+                    scratch.counts.facing_away += 1;
+                    continue;
+                }
+                Side::LitWhole => {
+                    scratch.by_face.add(r.face, index as u32);
+                    continue;
+                }
+                Side::Lit | Side::Unknown => {}
             }
             let corners = receivers.corners(r);
             let offset = viewer.lens.origin - self.screens.lenses[0].origin;
@@ -132,6 +143,23 @@ impl<'a> ShadowLight<'a> {
                 }
             }
         }
+    }
+
+    /// Makes a target of a whole face, if it is small and one screen sees all of it.
+    fn push_whole(&self, viewer: Viewer<'_>, index: u32, targets: &mut Targets) -> bool {
+        let face = &viewer.faces[index as usize];
+        if self.options.occlusion == Occlusion::Paper || !whole_faces::is_small(viewer.lens, face.corners) {
+            return false;
+        }
+        let corners = self.geometry.corners(face.source);
+        let screen = self.screens.facing(corners[0] - self.screens.lenses[0].origin);
+        let lens = &self.screens.lenses[screen];
+        let local = corners.map(|c| lens.local(c));
+        if !local.iter().all(|&p| sees(lens, p)) {
+            return false;
+        }
+        targets.push((WHOLE_FACE, index), screen, false, local.iter().map(|&p| placed(lens, p)));
+        true
     }
 
     fn lit_side(&self, face: &Face) -> Side {
@@ -225,44 +253,94 @@ impl<'a> ShadowLight<'a> {
         scratch: &mut ShadowScratch,
     ) {
         let ShadowScratch {
-            grid, casters, nearby, targets, lit_faces, rules, counts, sums, lit_regions, ..
+            grid,
+            casters,
+            nearby,
+            targets,
+            by_face,
+            single,
+            before_face,
+            lit_faces,
+            rules,
+            counts,
+            sums,
+            lit_regions,
+            ..
         } = scratch;
+        let mut work = Work { screen, viewer, receivers, lit_faces, rules, lit_regions };
         for group in &grid.groups {
             casters.of_group(group, nearby);
             let settled = if group.dark { Some(0.0) } else { nearby.is_empty().then_some(1.0) };
-            let order = &grid.order[group.first_target as usize..group.end_target as usize];
-            counts.dark_by_group += order.len() as u64 * u64::from(group.dark);
-            counts.lit_by_group += order.len() as u64 * u64::from(!group.dark && nearby.is_empty());
-            rules.exact.start_group();
             let query = self.query(screen, casters, nearby);
-            for &t in order {
+            work.rules.exact.start_group();
+            for &t in &grid.order[group.first_target as usize..group.end_target as usize] {
                 let target = &targets.list[t as usize];
-                let (fraction, total) = match settled {
-                    // A receiver on one screen needs no weight, and keeps a plain 0 or 1.
-                    Some(fraction) if !target.shared => (fraction, 1.0),
-                    _ => {
-                        let make = || self.face_on_screen(&viewer.faces[target.face as usize], screen);
-                        let face = lit_faces.get(target.face, screen, make);
-                        let measure = Measure { lens: query.lens, viewer: viewer.lens, face };
-                        let outline = targets.outline(target);
-                        let total = if target.shared { measure.area(outline) } else { 1.0 };
-                        let mut regions = self.wanted(viewer, receivers, target).then_some(&mut *lit_regions);
-                        if let (Some(regions), Some(1.0)) = (&mut regions, settled) {
-                            // What another screen sees of the same receiver may be dark.
-                            regions.push(target.receiver, outline, total, &measure);
-                        }
-                        let fraction = settled.unwrap_or_else(|| {
-                            self.lit_fraction(&query, target, outline, &measure, rules, regions)
-                        });
-                        (fraction, total)
+                let outline = targets.outline(target);
+                if target.receiver != WHOLE_FACE {
+                    counts.settle(settled, 1);
+                    let part = self.resolve(&query, target, outline, settled, &mut work);
+                    sums[target.receiver as usize].add(part);
+                    continue;
+                }
+                let settled = settled.or_else(|| {
+                    let face = work.face(self, target.face);
+                    match casters_before(&query, target, (face, outline), before_face) {
+                        true => Some(0.0),
+                        false => before_face.is_empty().then_some(1.0),
                     }
-                };
-                let sum = &mut sums[target.receiver as usize];
-                sum.lit += total * fraction;
-                sum.total += total;
+                });
+                let query = Query { nearby: before_face, ..query };
+                work.rules.exact.start_group();
+                for receiver in by_face.receivers(target.face) {
+                    counts.settle(settled, 1);
+                    if let Some(fraction) = settled {
+                        sums[receiver as usize].add((fraction, 1.0));
+                        continue;
+                    }
+                    single.clear(None);
+                    let offset = viewer.lens.origin - query.lens.origin;
+                    let corners = receivers.corners(&receivers.list[receiver as usize]).iter();
+                    let local = corners.map(|&c| query.lens.local_vector(c + offset));
+                    single.push((receiver, target.face), screen, false, local.map(|p| placed(query.lens, p)));
+                    if let [target] = &single.list[..] {
+                        let part = self.resolve(&query, target, single.outline(target), None, &mut work);
+                        sums[receiver as usize].add(part);
+                    }
+                }
+                work.rules.exact.start_group();
             }
         }
-        counts.partial += rules.take_partial();
+        counts.partial += work.rules.take_partial();
+    }
+
+    /// The lit fraction of a target, which may be settled, and its weight among the parts of its receiver.
+    fn resolve(
+        &self,
+        query: &Query<'_>,
+        target: &Target,
+        outline: &[DVec2],
+        settled: Option<f64>,
+        work: &mut Work<'_>,
+    ) -> (f64, f64) {
+        // A receiver on one screen needs no weight, and keeps a plain 0 or 1.
+        if let Some(fraction) = settled.filter(|_| !target.shared) {
+            return (fraction, 1.0);
+        }
+        let wanted = self.wanted(work.viewer, work.receivers, target);
+        let lit_regions = &mut *work.lit_regions;
+        let Work { screen, viewer, lit_faces, .. } = work;
+        let make = || self.face_on_screen(&viewer.faces[target.face as usize], *screen);
+        let face = lit_faces.get(target.face, *screen, make);
+        let measure = Measure { lens: query.lens, viewer: work.viewer.lens, face };
+        let total = if target.shared { measure.area(outline) } else { 1.0 };
+        let mut regions = wanted.then_some(lit_regions);
+        if let (Some(regions), Some(1.0)) = (&mut regions, settled) {
+            // What another screen sees of the same receiver may be dark.
+            regions.push(target.receiver, outline, total, &measure);
+        }
+        let fraction = settled
+            .unwrap_or_else(|| self.lit_fraction(query, target, outline, &measure, work.rules, regions));
+        (fraction, total)
     }
 
     /// Whether the lit regions of a target are asked for, and known.
@@ -291,6 +369,24 @@ impl<'a> ShadowLight<'a> {
             None => exact::lit_fraction(query, target, outline, measure, &mut rules.exact, regions),
             Some(cells) => layers::lit_fraction(query, outline, measure.face, cells, &mut rules.layers),
         }
+    }
+}
+
+/// What resolving targets needs besides casters.
+struct Work<'s> {
+    screen: usize,
+    viewer: Viewer<'s>,
+    receivers: &'s Receivers,
+    lit_faces: &'s mut LitFaces,
+    rules: &'s mut RuleMemory,
+    lit_regions: &'s mut LitRegions,
+}
+
+impl Work<'_> {
+    /// A face of the viewer in the frame of the screen.
+    fn face(&mut self, light: &ShadowLight<'_>, face: u32) -> &Face {
+        let make = || light.face_on_screen(&self.viewer.faces[face as usize], self.screen);
+        self.lit_faces.get(face, self.screen, make)
     }
 }
 

@@ -6,6 +6,7 @@ use pointillist_dice::HalfPlane;
 use pointillist_micropoint::{Face, Geometry, Lens, LensKind, TexturedOpacity};
 
 /// A target with the casters that may darken it.
+#[derive(Clone, Copy)]
 pub(crate) struct Query<'a> {
     pub(crate) lens: &'a Lens,
     pub(crate) geometry: &'a Geometry,

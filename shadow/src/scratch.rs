@@ -6,6 +6,7 @@ use crate::counts::ShadowCounts;
 use crate::grid::LightGrid;
 use crate::lit_regions::{LitRegion, LitRegions};
 use crate::target::Targets;
+use crate::whole_faces::ByFace;
 use crate::{exact, layers};
 use glam::DVec3;
 use pointillist_micropoint::{Face, VisitMemory};
@@ -14,6 +15,8 @@ use pointillist_micropoint::{Face, VisitMemory};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
     Unknown,
+    /// Lit, and looked at whole: [`crate::whole_faces`].
+    LitWhole,
     Lit,
     Dark,
 }
@@ -26,6 +29,12 @@ pub(crate) struct Sum {
 }
 
 impl Sum {
+    /// Adds the lit fraction of a part, and its weight.
+    pub(crate) fn add(&mut self, (fraction, weight): (f64, f64)) {
+        self.lit += weight * fraction;
+        self.total += weight;
+    }
+
     /// The lit fraction. Fractions within rounding of 0 or 1, which the parts of a receiver on the border of two screens can
     /// add up to, become 0 or 1.
     pub(crate) fn fraction(&self) -> f64 {
@@ -90,6 +99,10 @@ pub struct ShadowScratch {
     pub(crate) counts: ShadowCounts,
     pub(crate) sides: Vec<Side>,
     pub(crate) targets: Targets,
+    pub(crate) by_face: ByFace,
+    /// The receiver at hand of a face, and the casters that may darken some of the face.
+    pub(crate) single: Targets,
+    pub(crate) before_face: Vec<Nearby>,
     /// Corners of the receiver at hand, in the frame of a lens.
     pub(crate) local: Vec<DVec3>,
     pub(crate) lit_faces: LitFaces,
@@ -123,6 +136,7 @@ impl ShadowScratch {
         self.sides.resize(faces, Side::Unknown);
         self.lit_faces.clear(faces);
         self.targets.clear(light_cells);
+        self.by_face.begin(faces, receivers);
         self.sums.clear();
         self.sums.resize(receivers, Sum::default());
         self.lit_regions.clear();

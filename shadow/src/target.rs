@@ -5,6 +5,9 @@ use glam::DVec2;
 use pointillist_dice::convex;
 use pointillist_micropoint::Interval;
 
+/// In the place of a receiver: the target is a whole face of the viewer.
+pub(crate) const WHOLE_FACE: u32 = u32::MAX;
+
 /// A receiver on a light screen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
