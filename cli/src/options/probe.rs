@@ -34,7 +34,7 @@ pub enum ProbeCommand {
     Bake(BakeOptions),
     /// Turn panoramas that were taken at positions into probes
     ///
-    /// LIST is JSON: {"captures":[{"image":"hall.hdr","position":[0,1.6,0],"rotate":[0,90,0],"exposure":0}, …]}. Images are named
+    /// LIST is JSON: `{"captures":[{"image":"hall.hdr","position":[0,1.6,0],"rotate":[0,90,0],"exposure":0}, …]}`. Images are named
     /// relative to the list: equirectangular (row 0 is the zenith, the centre looks along −Z) or a strip of a cube's faces. `rotate`
     /// turns a picture into the world, in degrees about x, then y, then z. `exposure` (default 0) is the stops by which a picture is
     /// to be brightened, as --exposure of `probe project`: of several of one position, the darkest has the highest. Those are
