@@ -155,6 +155,7 @@ fn a_closed_room_that_absorbs_nothing_has_no_equilibrium() {
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "one thread is all there is")]
 fn light_does_not_depend_on_the_number_of_threads() {
     let bake = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
