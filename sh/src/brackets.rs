@@ -7,7 +7,8 @@ use crate::{Clipping, Response, ShError};
 /// with the highest or the lowest level, counts only where no picture has it otherwise.
 #[derive(Clone, Debug, Default)]
 pub struct Brackets {
-    pixels: Vec<[Channel; 3]>,
+    /// `None` before the first picture, which may have no pixels.
+    pixels: Option<Vec<[Channel; 3]>>,
 }
 
 /// What is known of a channel of a pixel.
@@ -48,8 +49,8 @@ impl Brackets {
         response: &Response,
         exposure_ev: f32,
     ) -> Result<(), ShError> {
-        let weight = self.accept(pixels.len(), exposure_ev)?;
-        for (known, pixel) in self.pixels.iter_mut().zip(pixels) {
+        let (known, weight) = self.accept(pixels.len(), exposure_ev)?;
+        for (known, pixel) in known.iter_mut().zip(pixels) {
             for (channel, &level) in known.iter_mut().zip(pixel) {
                 let radiance = response.radiance(level, exposure_ev);
                 match level {
@@ -70,9 +71,9 @@ impl Brackets {
     /// # Errors
     /// As [`Brackets::add_photograph`].
     pub fn add_radiance(&mut self, pixels: &[[f32; 3]], exposure_ev: f32) -> Result<(), ShError> {
-        let weight = self.accept(pixels.len(), exposure_ev)?;
+        let (known, weight) = self.accept(pixels.len(), exposure_ev)?;
         let gain = f64::from(exposure_ev.exp2());
-        for (known, pixel) in self.pixels.iter_mut().zip(pixels) {
+        for (known, pixel) in known.iter_mut().zip(pixels) {
             for (channel, &radiance) in known.iter_mut().zip(pixel) {
                 channel.sum += weight * gain * f64::from(radiance);
                 channel.weight += weight;
@@ -81,27 +82,26 @@ impl Brackets {
         Ok(())
     }
 
-    /// What a picture of this exposure counts.
-    fn accept(&mut self, count: usize, exposure_ev: f32) -> Result<f64, ShError> {
+    /// What is known so far, for a picture of so many pixels, and what one of this exposure counts.
+    fn accept(&mut self, count: usize, exposure_ev: f32) -> Result<(&mut [[Channel; 3]], f64), ShError> {
         if !(-64.0..=64.0).contains(&exposure_ev) {
             return Err(ShError::Exposure { exposure_ev });
         }
-        if self.pixels.is_empty() {
-            self.pixels = vec![[Channel::default(); 3]; count];
-        }
-        let expected = self.pixels.len();
+        let known = self.pixels.get_or_insert_with(|| vec![[Channel::default(); 3]; count]);
+        let expected = known.len();
         if count != expected {
             return Err(ShError::BracketSize { count, expected });
         }
-        Ok(f64::from(-exposure_ev).exp2())
+        Ok((known, f64::from(-exposure_ev).exp2()))
     }
 
     /// Radiance of all pixels, and the share of them of which a channel is clipped in every picture.
     #[must_use]
     pub fn merged(&self) -> (Vec<[f32; 3]>, Clipping) {
+        let pixels = self.pixels.as_deref().unwrap_or_default();
         let mut clipping = Clipping::default();
-        let share = 1.0 / self.pixels.len().max(1) as f64;
-        for pixel in &self.pixels {
+        let share = 1.0 / pixels.len().max(1) as f64;
+        for pixel in pixels {
             let unknown = |channel: &Channel| channel.weight == 0.0;
             if pixel.iter().any(|channel| unknown(channel) && channel.over.is_some()) {
                 clipping.over_exposed += share;
@@ -110,7 +110,7 @@ impl Brackets {
                 clipping.under_exposed += share;
             }
         }
-        (self.pixels.iter().map(|pixel| pixel.map(|channel| channel.value())).collect(), clipping)
+        (pixels.iter().map(|pixel| pixel.map(|channel| channel.value())).collect(), clipping)
     }
 }
 
@@ -176,5 +176,14 @@ mod tests {
         assert!(brackets.add_radiance(&[[1.0; 3]; 4], 65.0).is_err());
         let (merged, _) = brackets.merged();
         assert_eq!(merged, [[1.0; 3]; 4]);
+    }
+
+    /// It counted for none, and the next one could have any size; found by fuzzing.
+    #[test]
+    fn a_picture_without_pixels_is_a_picture() {
+        let mut brackets = Brackets::new();
+        brackets.add_radiance(&[], 0.0).unwrap();
+        let refused = ShError::BracketSize { count: 1, expected: 0 };
+        assert_eq!(brackets.add_photograph(&[[0; 3]], &Response::linear(), 0.0), Err(refused));
     }
 }
