@@ -206,7 +206,7 @@ impl ConvexPolygon {
     }
 
     /// Becomes `other`; what lies beyond its vertices is not moved.
-    fn copy(&mut self, other: &Self) {
+    pub(crate) fn copy(&mut self, other: &Self) {
         self.len = other.len;
         self.vertices[..other.len].copy_from_slice(other.vertices());
     }

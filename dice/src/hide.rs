@@ -255,19 +255,27 @@ impl Regions {
         // An outline whose corners coincide has no edges that would cut anything off.
         edges.peek()?;
         let mut inside = *region;
+        let mut kept = ConvexPolygon::EMPTY;
         for half in edges.chain(front.copied()) {
             if inside.vertices().iter().all(|&v| half.value(v) >= 0.0) {
                 continue;
             }
-            let (kept, cut_off) = inside.divided(&half);
+            // Divided where they are to stay: moving whole polygons costs as much as cutting them.
+            let end = self.outside.len();
+            self.outside.push(ConvexPolygon::EMPTY);
+            let cut_off = &mut self.outside[end];
+            inside.divide_into(&half, &mut kept, cut_off);
             if kept.is_empty() {
                 return None;
             }
             if cut_off.area() > self.negligible {
-                self.outside.push(cut_off);
-                inside = kept;
-            } else if is_less(&kept, &cut_off, half.normal) {
-                return None;
+                inside.copy(&kept);
+            } else {
+                let less = is_less(&kept, cut_off, half.normal);
+                self.outside.truncate(end);
+                if less {
+                    return None;
+                }
             }
         }
         (inside.area() > self.negligible).then_some(inside)

@@ -9,6 +9,7 @@ use crate::resolve::{Occlusion, Visible, resolve_by_layers, resolve_exactly};
 use crate::tile::Tile;
 use glam::DVec2;
 use pointillist_dice::CellWindow;
+use pointillist_parallel::Pool;
 use pointillist_view::{PixelRect, View};
 
 /// How a picture is diced and resolved.
@@ -164,10 +165,13 @@ impl<'a> Renderer<'a> {
             return Err(MicropointError::BadTileSize(size).into());
         }
         let tiles: Vec<PixelRect> = rect.intersection(&self.picture()).tiles(size).collect();
-        let start = || (Tile::default(), start());
-        let render = |(tile, state): &mut (Tile, S), rect: &PixelRect| {
-            self.render(*rect, tile);
-            visit(state, tile)
+        // Threads take up work more often than there are threads; memory that has grown is not given away each time.
+        let memory = Pool::<Tile>::default();
+        let render = |state: &mut S, rect: &PixelRect| {
+            memory.with(|tile| {
+                self.render(*rect, tile);
+                visit(state, tile)
+            })
         };
         #[cfg(feature = "rayon")]
         {

@@ -13,6 +13,7 @@ use crate::prepared::Prepared;
 use crate::shader::{Glow, Shader, Style};
 use crate::shading::ShaderScratch;
 use pointillist_micropoint::{DepthRange, Renderer, TileCounts};
+use pointillist_parallel::Pool;
 use pointillist_shadow::{AreaCounts, ShadowCounts};
 use pointillist_view::{PixelRect, View};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -105,22 +106,26 @@ impl Prepared<'_> {
         let shader = Shader::new(self, &lights, &view, style);
         let canvas = Mutex::new(Canvas::new(self.scene, [view.width(), view.height()], window, layers));
         let totals = Mutex::new((TileCounts::default(), ShadowCounts::default(), AreaCounts::default()));
-        let start = || {
-            monitor.start_lap();
-            ShaderScratch::default()
-        };
-        renderer.for_each_tile(window, TILE_SIZE, start, |scratch, tile| {
-            monitor.lap("visibility");
-            let pixels = shader.shade(tile, &background, layers, scratch, monitor);
-            lock(&canvas).put(tile.rect(), pixels);
-            let mut totals = lock(&totals);
-            totals.0 += tile.counts();
-            let (shadow, whole) = scratch.take_counts();
-            totals.1 += shadow;
-            totals.2 += whole;
-            monitor.advance(1);
-            go_on(monitor)
-        })?;
+        let memory = Pool::<ShaderScratch>::default();
+        renderer.for_each_tile(
+            window,
+            TILE_SIZE,
+            || monitor.start_lap(),
+            |(), tile| {
+                monitor.lap("visibility");
+                memory.with(|scratch| {
+                    let pixels = shader.shade(tile, &background, layers, scratch, monitor);
+                    lock(&canvas).put(tile.rect(), pixels);
+                    let mut totals = lock(&totals);
+                    totals.0 += tile.counts();
+                    let (shadow, whole) = scratch.take_counts();
+                    totals.1 += shadow;
+                    totals.2 += whole;
+                });
+                monitor.advance(1);
+                go_on(monitor)
+            },
+        )?;
         let (tile_counts, shadow_counts, area_counts) = *lock(&totals);
         record(monitor, &tile_counts, &shadow_counts, &area_counts);
         Ok(canvas.into_inner().unwrap_or_else(PoisonError::into_inner).into_frame())

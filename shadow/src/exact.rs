@@ -180,20 +180,20 @@ impl Occluders for TargetOccluders<'_> {
 /// A canonical order of casters: opaque ones before textured ones, whose masks need not be asked where opaque ones hide the receiver;
 /// then by nearness to the light, nearest first, then by place. The triangle's number decides only between equals.
 pub(crate) fn compare(a: &Caster, b: &Caster) -> Ordering {
-    let key = |c: &Caster| {
-        let (low, high) = c.bounds;
-        [-c.face.nearness.most, -c.face.nearness.least, low.x, low.y, high.x, high.y]
-    };
-    let (ka, kb) = (key(a), key(b));
-    let places = ka.iter().zip(&kb).map(|(x, y)| x.total_cmp(y));
-    let by_place = places.fold(Ordering::Equal, Ordering::then);
     let textured = a.opacity.is_none().cmp(&b.opacity.is_none());
+    let (qa, qb) = (a.face.nearness, b.face.nearness);
+    let by_place = || {
+        let ((la, ha), (lb, hb)) = (a.bounds, b.bounds);
+        let corners = [(la.x, lb.x), (la.y, lb.y), (ha.x, hb.x), (ha.y, hb.y)];
+        corners.iter().fold(Ordering::Equal, |order, (x, y)| order.then_with(|| x.total_cmp(y)))
+    };
     // The two halves of a rectangle agree in all that so far.
     let corners = |c: &Caster| c.polygon.vertices().iter().fold(DVec2::ZERO, |sum, &v| sum + v);
     let by_corners = || {
         let (ca, cb) = (corners(a), corners(b));
         ca.x.total_cmp(&cb.x).then(ca.y.total_cmp(&cb.y))
     };
-    let by_number = (a.face.surface, a.face.id).cmp(&(b.face.surface, b.face.id));
-    textured.then(by_place).then_with(by_corners).then(by_number)
+    let by_number = || (a.face.surface, a.face.id).cmp(&(b.face.surface, b.face.id));
+    let by_nearness = qb.most.total_cmp(&qa.most).then(qb.least.total_cmp(&qa.least));
+    textured.then(by_nearness).then_with(by_place).then_with(by_corners).then_with(by_number)
 }

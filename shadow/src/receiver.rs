@@ -4,12 +4,12 @@ use glam::DVec3;
 use pointillist_micropoint::{Face, Fragment, Lens, Micropoint, Tile};
 
 /// Convex planar pieces that may be lit. Corners are relative to the viewer's lens, in world axes.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Receivers {
     pub(crate) list: Vec<Receiver>,
     pub(crate) vertices: Vec<DVec3>,
-    /// Around all vertices; without vertices, nothing is around them.
-    around: Option<(DVec3, DVec3)>,
+    /// The box around all vertices, inside out if there are none.
+    around: (DVec3, DVec3),
     /// Pieces that do not join the one before.
     wholes: usize,
 }
@@ -29,19 +29,27 @@ pub(crate) struct Receiver {
     pub(crate) wants_regions: bool,
 }
 
+const NOTHING: (DVec3, DVec3) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+
+impl Default for Receivers {
+    fn default() -> Self {
+        Self { list: Vec::new(), vertices: Vec::new(), around: NOTHING, wholes: 0 }
+    }
+}
+
 impl Receivers {
     /// Removes all pieces and keeps the memory.
     pub fn clear(&mut self) {
         self.list.clear();
         self.vertices.clear();
-        self.around = None;
+        self.around = NOTHING;
         self.wholes = 0;
     }
 
     /// A box around all corners: its lowest and its highest corner, relative to the viewer's lens. `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        self.around
+        (!self.vertices.is_empty()).then_some(self.around)
     }
 
     /// Number of pieces.
@@ -69,11 +77,10 @@ impl Receivers {
 
     fn add(&mut self, face: u32, corners: impl IntoIterator<Item = DVec3>, wants_regions: bool) {
         let first_vertex = self.vertices.len() as u32;
-        self.vertices.extend(corners);
+        let (mut low, mut high) = self.around;
+        self.vertices.extend(corners.into_iter().inspect(|&v| (low, high) = (low.min(v), high.max(v))));
+        self.around = (low, high);
         let vertex_count = self.vertices.len() as u32 - first_vertex;
-        for &v in &self.vertices[first_vertex as usize..] {
-            self.around = Some(self.around.map_or((v, v), |(low, high)| (low.min(v), high.max(v))));
-        }
         self.wholes += 1;
         self.list.push(Receiver {
             face,
