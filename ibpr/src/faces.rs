@@ -2,11 +2,11 @@
 //!
 //! Four neighbouring pixels are a quad. Those of its corners that hold points of one surface make the
 //! face: four a quadrilateral, three a triangle, as in the paper. Towards corners that are missing (or
-//! belong to another surface) the face reaches half a buffer pixel further: the averaged points lie
-//! inside the outline, not on it.
+//! belong to another surface) the face reaches further, and the outline ([`crate::outline`]) decides how much of that is covered.
 
 use crate::buffer::STEP;
 use crate::buffer::{Buffer, Corner, DepthScale, SUBPIXEL};
+use crate::outline::Outline;
 use crate::raster::{Paint, Pixels, Strip, Vertex};
 
 /// How faces are made.
@@ -39,8 +39,31 @@ const EDGE_ON_COS: f32 = 0.3;
 /// beyond the outline of a corner at the other side of the next.
 const UNDER: f32 = 1.5;
 
+/// Buffer pixels that faces reach beyond the last corners where an outline is known: it decides where the surface ends on the way.
+const BEYOND: f32 = 1.5;
+
+/// The outline that a corner knows of.
+fn outline_of(outlines: &[Outline], at: usize) -> Option<&Outline> {
+    outlines.get(at).filter(|o| o.is_some())
+}
+
+/// Picture pixels from a corner of an incomplete face to its outline.
+fn inside_px(outlines: &[Outline], rules: &FaceRules, at: usize) -> f32 {
+    outline_of(outlines, at).map_or(rules.outline_px, |o| o.inside * rules.pixel + rules.outline_px)
+}
+
+/// Picture pixels from a corner of a complete face to its outline: far, if none is known.
+fn inside_whole_px(outlines: &[Outline], rules: &FaceRules, at: usize) -> f32 {
+    outlines.get(at).map_or(f32::INFINITY, |o| o.inside * rules.pixel + rules.outline_px)
+}
+
 /// Draws all faces of `buffer` that touch `strip`.
-pub(crate) fn draw<P: Pixels>(buffer: &Buffer, rules: &FaceRules, strip: &mut Strip<P>) {
+pub(crate) fn draw<P: Pixels>(
+    buffer: &Buffer,
+    outlines: &[Outline],
+    rules: &FaceRules,
+    strip: &mut Strip<P>,
+) {
     // A corner lies in its own pixel, and faces reach up to `UNDER` beyond.
     let reach = UNDER + 0.5 + 0.5 / rules.pixel;
     let first = strip.first_row as f32 / rules.pixel;
@@ -52,7 +75,7 @@ pub(crate) fn draw<P: Pixels>(buffer: &Buffer, rules: &FaceRules, strip: &mut St
         for at in occupied(buffer, upper) {
             let quad = [at, at + 1, at + 1 + buffer.pitch, at + buffer.pitch];
             if buffer.layers == 1 {
-                draw_quad(buffer, rules, quad, strip);
+                draw_quad(buffer, outlines, rules, quad, strip);
             } else {
                 draw_layers(buffer, rules, quad, strip);
             }
@@ -112,16 +135,22 @@ fn draw_layers<P: Pixels>(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], 
             }
             if group == 15 {
                 let vertices = face.map(|i| vertex(&buffer.corners[i], f32::INFINITY));
-                draw_whole(buffer, rules, face, &vertices, strip);
+                draw_whole::<false, P>(buffer, rules, face, &vertices, strip);
             } else {
-                draw_part(buffer, rules, face, group, strip);
+                draw_part(buffer, &[], rules, face, group, strip);
             }
         }
     }
 }
 
 /// Corners run clockwise in the picture from the upper left.
-fn draw_quad<P: Pixels>(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], strip: &mut Strip<P>) {
+fn draw_quad<P: Pixels>(
+    buffer: &Buffer,
+    outlines: &[Outline],
+    rules: &FaceRules,
+    quad: [usize; 4],
+    strip: &mut Strip<P>,
+) {
     let corners = quad.map(|i| &buffer.corners[i]);
     let depth = corners.map(|c| c.surface[0]);
     let farthest = depth[0].max(depth[1]).max(depth[2].max(depth[3]));
@@ -139,8 +168,12 @@ fn draw_quad<P: Pixels>(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], st
         if y.iter().all(|y| *y < rows.start - 1) || y.iter().all(|y| *y > rows.end) {
             return;
         }
-        let vertices = corners.map(|c| vertex(c, f32::INFINITY));
-        return draw_whole(buffer, rules, quad, &vertices, strip);
+        let inside = quad.map(|i| inside_whole_px(outlines, rules, i));
+        let vertices = [0, 1, 2, 3].map(|k| vertex(corners[k], inside[k]));
+        if inside.iter().any(|px| *px < 0.5) {
+            return draw_whole::<true, P>(buffer, rules, quad, &vertices, strip);
+        }
+        return draw_whole::<false, P>(buffer, rules, quad, &vertices, strip);
     }
     let joined = [0, 1, 2, 3].map(|k: usize| (depth[k] - depth[(k + 1) % 4]).abs() < step);
     let mut left = 0;
@@ -150,7 +183,7 @@ fn draw_quad<P: Pixels>(buffer: &Buffer, rules: &FaceRules, quad: [usize; 4], st
     while left != 0 {
         let group = surface_of(left.trailing_zeros() as usize, left, joined);
         left &= !group;
-        draw_part(buffer, rules, quad, group, strip);
+        draw_part(buffer, outlines, rules, quad, group, strip);
     }
 }
 
@@ -195,7 +228,7 @@ fn paint(buffer: &Buffer, at: usize) -> Paint {
 }
 
 /// Two triangles, along the diagonal whose ends are closer in depth.
-fn draw_whole<P: Pixels>(
+fn draw_whole<const RIM: bool, P: Pixels>(
     buffer: &Buffer,
     rules: &FaceRules,
     quad: [usize; 4],
@@ -208,13 +241,14 @@ fn draw_whole<P: Pixels>(
     let paints = rules.painted.then(|| quad.map(|i| paint(buffer, i)));
     for t in triangles {
         let paints = paints.as_ref().map(|p| t.map(|k: usize| &p[k]));
-        strip.triangle::<false>(t.map(|k: usize| &v[k]), paints);
+        strip.triangle::<RIM>(t.map(|k: usize| &v[k]), paints);
     }
 }
 
 /// The face of some of the corners, with its outline towards the others.
 fn draw_part<P: Pixels>(
     buffer: &Buffer,
+    outlines: &[Outline],
     rules: &FaceRules,
     quad: [usize; 4],
     group: usize,
@@ -237,19 +271,23 @@ fn draw_part<P: Pixels>(
         let p = if rules.painted { paint(buffer, at) } else { [0.0; 4] };
         let outline = rules.outline_px > 0.0;
         if outline && !has(k + 3) {
-            push(beyond(buffer, rules, [at, quad[(k + 3) % 4]], towards(k, (k + 3) % 4)), p);
+            push(beyond(buffer, outlines, rules, [at, quad[(k + 3) % 4]], towards(k, (k + 3) % 4)), p);
         }
-        let inside = if outline && size < 4 { rules.outline_px } else { f32::INFINITY };
+        let inside = match (outline, size) {
+            (false, _) => f32::INFINITY,
+            (true, 4) => inside_whole_px(outlines, rules, at),
+            (true, _) => inside_px(outlines, rules, at),
+        };
         push(vertex(&buffer.corners[at], inside), p);
         if outline && !has(k + 1) {
-            push(beyond(buffer, rules, [at, quad[(k + 1) % 4]], towards(k, (k + 1) % 4)), p);
+            push(beyond(buffer, outlines, rules, [at, quad[(k + 1) % 4]], towards(k, (k + 1) % 4)), p);
         }
     }
     for k in 1..n.saturating_sub(1) {
         let t = [0, k, k + 1];
         let paints = rules.painted.then(|| t.map(|i| &ring[i].1));
         let vertices = t.map(|i| &ring[i].0);
-        if size == 4 || rules.outline_px <= 0.0 {
+        if (size == 4 && outlines.is_empty()) || rules.outline_px <= 0.0 {
             strip.triangle::<false>(vertices, paints);
         } else {
             strip.triangle::<true>(vertices, paints);
@@ -266,13 +304,23 @@ fn towards(from: usize, to: usize) -> (f32, f32) {
 /// The point where the surface of corner `at` ends towards the neighbour `next`: on the corner's plane,
 /// half a picture pixel outside the outline. Behind a nearer neighbour it does not end: there it goes on
 /// until that one hides it.
-fn beyond(buffer: &Buffer, rules: &FaceRules, [at, next]: [usize; 2], direction: (f32, f32)) -> Vertex {
+fn beyond(
+    buffer: &Buffer,
+    outlines: &[Outline],
+    rules: &FaceRules,
+    [at, next]: [usize; 2],
+    direction: (f32, f32),
+) -> Vertex {
     /// From here on a picture pixel is not touched by the surface.
     const OUTSIDE_PX: f32 = 0.5;
     let corner = &buffer.corners[at];
     // Not in translucent frames: the continued surface would show through the nearer one.
     let hidden = buffer.layers == 1 && buffer.corners[next].surface[0] < corner.surface[0];
-    let (length_px, inside) = if hidden {
+    let (length_px, inside) = if let Some(outline) = outline_of(outlines, at) {
+        let length_px = if hidden { UNDER } else { BEYOND } * rules.pixel;
+        let inward = outline.inward.0 * direction.0 + outline.inward.1 * direction.1;
+        (length_px, inside_px(outlines, rules, at) + inward * length_px)
+    } else if hidden {
         (UNDER * rules.pixel, rules.outline_px + UNDER * rules.pixel)
     } else {
         (rules.outline_px + OUTSIDE_PX, -OUTSIDE_PX)

@@ -24,7 +24,7 @@
 //!    nearest one are averaged ([`Weighting`]).
 //! 3. Gaps between pixels of one surface are filled by pull-push ([`Options::fill`]).
 //! 4. Surfaces are fitted to windows of averages ([`Normals`]).
-//! 5. Neighbouring averages make faces, drawn at the picture's size ([`Options::outline`]), lit, and written
+//! 5. Neighbouring averages make faces that end at smooth outlines ([`Options::outline`]), drawn at the picture's size, lit, and written
 //!    as layers ([`Frame`]).
 //!
 //! # Accuracy and cost
@@ -69,6 +69,7 @@ mod noise;
 mod normals;
 mod options;
 mod order;
+mod outline;
 mod parallel;
 mod pixels;
 mod project;

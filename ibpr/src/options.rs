@@ -138,7 +138,9 @@ pub struct Options {
     pub weighting: Weighting,
     /// Default: [`Normals::Plane`].
     pub normals: Normals,
-    /// How far faces reach beyond the outermost means, in buffer pixels; 0 as printed. Default: 0.3.
+    /// How far surfaces reach, in buffer pixels; 0 ends them at the outermost means, as printed. Above 0, opaque surfaces of three
+    /// pixels and wider end at a smooth outline, which lies right for bodies at 0.3, the default; narrower and translucent ones end so
+    /// far beyond their outermost means.
     pub outline: f32,
     /// Levels of pull-push: gaps of less than 2^levels pixels are filled; of
     /// translucent frames only gaps of one pixel, at any level above 0. Default: 2.

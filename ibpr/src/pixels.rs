@@ -7,7 +7,7 @@ use crate::raster::{Paint, Pixels};
 /// Stands for no surface.
 const FAR: [f32; 4] = [f32::INFINITY, 0.0, 0.0, 0.0];
 
-/// The nearest surface of each pixel, and the nearest rim in front of it.
+/// The nearest surface of each pixel, and of the rims in front of it the one that covers most.
 ///
 /// A rim is a surface whose outline crosses the pixel: it covers the pixel in part, and what lies behind
 /// shows through the rest.
@@ -64,7 +64,7 @@ impl Pixels for Nearest {
                     self.solid_paint[at] = paint;
                 }
             }
-        } else if self.rim_cover[at] == 0.0 || surface[0] < self.rim[at][0] {
+        } else if surface[0] < self.solid[at][0] && cover > self.rim_cover[at] {
             self.rim[at] = surface;
             self.rim_cover[at] = cover;
             if let Some(paint) = paint() {

@@ -14,6 +14,7 @@ use crate::frame::{Frame, FrameCounts};
 use crate::noise::Histogram;
 use crate::normals;
 use crate::options::{Culling, Options, Passes, Scale};
+use crate::outline::Outlines;
 use crate::parallel::*;
 use crate::pixels::{Nearest, Stack};
 use crate::raster::{Pixels, Strip};
@@ -49,6 +50,7 @@ struct Pass {
     views: Vec<BlockView>,
     buffer: Buffer,
     noise: Histogram,
+    outlines: Outlines,
 }
 
 impl Renderer {
@@ -236,7 +238,7 @@ impl Drawing<'_> {
             if let Some(rules) = &self.rules[k] {
                 strip.set_rows(self.width, first_row, n / self.width);
                 begin(&mut strip.pixels);
-                faces::draw(&self.passes[k].buffer, rules, strip);
+                faces::draw(&self.passes[k].buffer, &self.passes[k].outlines.list, rules, strip);
             }
         }
     }
@@ -260,6 +262,11 @@ impl Pass {
         accumulate::accumulate(cloud, &self.views, map, rules, &mut self.buffer, bands);
         fill::pull_push(&mut self.buffer, &scale, options.fill, fill);
         normals::make_corners(&mut self.buffer, map, &scale, options.normals, &mut self.noise);
+        if options.outline > 0.0 && self.buffer.layers == 1 {
+            self.outlines.find(&self.buffer, &scale);
+        } else {
+            self.outlines.clear();
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! How far a frame is from the surface that its points were measured on.
 
+use crate::common::contour::Contour;
 use crate::common::layers::Layers;
 use crate::common::true_surface::Truth;
 
@@ -27,6 +28,8 @@ pub(crate) struct FrameError {
     pub(crate) psnr: f64,
     /// Pixels more than [`EDGE`] outside the outline, per pixel of the surface.
     pub(crate) spill: f64,
+    /// Distance between the outline that is drawn, where coverage is 1/2, and the true one: root mean square, in pixels.
+    pub(crate) outline: f64,
 }
 
 /// A truth with the masks that errors are measured in.
@@ -36,6 +39,7 @@ pub(crate) struct Measure {
     interior: Vec<bool>,
     smooth: Vec<bool>,
     outside: Vec<bool>,
+    contour: Contour,
     surface_pixels: usize,
     /// Columns and rows of the box of the picture in which colours are compared.
     columns: std::ops::Range<usize>,
@@ -60,7 +64,8 @@ impl Measure {
         };
         let (columns, rows) = (places(&|i| i % size), places(&|i| i / size));
         let surface_pixels = valid.iter().filter(|v| **v).count();
-        Self { truth, spacing, interior, smooth, outside, surface_pixels, columns, rows }
+        let contour = Contour::new(&truth.coverage, size);
+        Self { truth, spacing, interior, smooth, outside, contour, surface_pixels, columns, rows }
     }
 
     pub(crate) fn truth(&self) -> &Truth {
@@ -102,7 +107,13 @@ impl Measure {
             holes: self.interior_share(|i| !drawn(i)),
             psnr: self.psnr(frame),
             spill: 100.0 * spilt as f64 / self.surface_pixels as f64,
+            outline: self.outline(frame),
         }
+    }
+
+    fn outline(&self, frame: &Layers) -> f64 {
+        let coverage: Vec<f64> = frame.color.iter().map(|c| f64::from(c[3])).collect();
+        Contour::new(&coverage, self.truth.size).rms_distance(&self.contour)
     }
 
     fn psnr(&self, frame: &Layers) -> f64 {

@@ -3,6 +3,7 @@
 pub(crate) mod against_samples;
 pub(crate) mod casters;
 pub(crate) mod closed_form;
+pub(crate) mod contour;
 pub(crate) mod data;
 pub(crate) mod draw;
 pub(crate) mod frame_error;

@@ -150,6 +150,8 @@ pub(crate) struct Truth {
     pub(crate) normal: Vec<DVec3>,
     /// Linear grey, with coverage: black where nothing is.
     pub(crate) grey: Vec<f64>,
+    /// Share of each pixel that the surface covers.
+    pub(crate) coverage: Vec<f64>,
 }
 
 impl Truth {
@@ -171,25 +173,28 @@ impl Truth {
                 (before - after).abs() > 4.0 * pixel
             })
         };
-        let grey = |i: usize| {
+        let shown = |i: usize| {
             let n = if edge(i) { FINE } else { 1 };
             let sample = |k: u32| {
                 let p = dvec2(f64::from(k % n), f64::from(k / n)) + 0.5;
                 let p = p / f64::from(n);
-                at((i % size) as f64 + p.x, (i / size) as f64 + p.y).map_or(0.0, |h| shade(h.normal))
+                at((i % size) as f64 + p.x, (i / size) as f64 + p.y)
+                    .map_or((0.0, 0.0), |h| (shade(h.normal), 1.0))
             };
-            (0..n * n).map(sample).sum::<f64>() / f64::from(n * n)
+            let add = |sum: (f64, f64), s: (f64, f64)| (sum.0 + s.0, sum.1 + s.1);
+            let (grey, coverage) = (0..n * n).map(sample).fold((0.0, 0.0), add);
+            (grey / f64::from(n * n), coverage / f64::from(n * n))
         };
-        let grey = (0..size * size).into_par_iter().map(grey).collect();
+        let (grey, coverage) = (0..size * size).into_par_iter().map(shown).unzip();
         let normal = centres.iter().map(|h| h.map_or(DVec3::ZERO, |h| h.normal)).collect();
-        Self { size, depth, normal, grey }
+        Self { size, depth, normal, grey, coverage }
     }
 
     /// This truth as the layers of a frame: what the metrics must call perfect.
     pub(crate) fn as_layers(&self) -> Layers {
-        let color = |g: &f64| [*g as f32, *g as f32, *g as f32, 1.0];
+        let color = |(g, a): (&f64, &f64)| [*g as f32, *g as f32, *g as f32, *a as f32];
         Layers {
-            color: self.grey.iter().map(color).collect(),
+            color: self.grey.iter().zip(&self.coverage).map(color).collect(),
             depth: self.depth.iter().map(|d| *d as f32).collect(),
             normal: self.normal.iter().map(|n| n.as_vec3().to_array()).collect(),
         }

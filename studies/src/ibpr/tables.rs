@@ -19,7 +19,7 @@ pub(crate) struct Measured {
 }
 
 /// Columns of `ibpr.csv` behind those of all studies.
-pub(crate) const COLUMNS: [&str; 10] = [
+pub(crate) const COLUMNS: [&str; 11] = [
     "scale",
     "skipped_pct",
     "normal_mean_deg",
@@ -30,6 +30,7 @@ pub(crate) const COLUMNS: [&str; 10] = [
     "holes_pct",
     "psnr_db",
     "spill_pct",
+    "outline_px",
 ];
 
 impl Measured {
@@ -52,6 +53,7 @@ impl Measured {
             e.holes,
             e.psnr,
             e.spill,
+            e.outline,
         ];
         Row {
             scene: self.faults.clone(),
@@ -85,11 +87,13 @@ const fn goal(
 }
 
 /// What must be reached.
-const GOALS: [Goal; 7] = [
+const GOALS: [Goal; 9] = [
     goal("σ = 0", "PSNR", Limit::AtLeast(33.0), "dB", |e| e.psnr),
     goal("σ = 0", "interior holes", Limit::AtMost(0.05), "%", |e| e.holes),
     goal("σ = 0", "normals, mean", Limit::AtMost(0.7), "°", |e| e.normal_mean),
     goal("σ = 0.25", "normals, mean", Limit::AtMost(2.5), "°", |e| e.normal_mean),
+    goal("σ = 0", "outline", Limit::AtMost(0.7), "px", |e| e.outline),
+    goal("σ = 0.25", "outline", Limit::AtMost(0.7), "px", |e| e.outline),
     goal("σ = 0.25", "depth RMSE", Limit::AtMost(0.3), "spacings", |e| e.depth_rmse),
     goal("σ = 0.25", "depth bias, either sign", Limit::AtMost(0.05), "spacings", |e| e.bias.abs()),
     goal("σ = 0.5", "normals, mean", Limit::AtMost(5.5), "°", |e| e.normal_mean),
@@ -128,13 +132,13 @@ fn goals(results: &[Measured]) -> String {
     text
 }
 
-const HEAD: &str = "| scans | setting | S | skipped % | CPU ms | normals, mean ° | median ° | depth RMSE | with steps | bias | 95 % | holes % | PSNR dB | spill % |\n\
-                    | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+const HEAD: &str = "| scans | setting | S | skipped % | CPU ms | normals, mean ° | median ° | depth RMSE | with steps | bias | 95 % | holes % | PSNR dB | spill % | outline px |\n\
+                    | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
 
 fn line(m: &Measured) -> String {
     let e = &m.error;
     format!(
-        "| {} | {} | {:.2} | {:.0} | {:.1} | {:.2} | {:.2} | {:.3} | {:.2} | {:+.3} | {:.3} | {:.4} | {:.2} | {:.3} |\n",
+        "| {} | {} | {:.2} | {:.0} | {:.1} | {:.2} | {:.2} | {:.3} | {:.2} | {:+.3} | {:.3} | {:.4} | {:.2} | {:.3} | {:.2} |\n",
         m.faults,
         m.setting,
         m.counts.scale,
@@ -148,7 +152,8 @@ fn line(m: &Measured) -> String {
         e.depth_p95,
         e.holes,
         e.psnr,
-        e.spill
+        e.spill,
+        e.outline
     )
 }
 
@@ -162,6 +167,7 @@ pub(crate) fn markdown(setup: &str, results: &[Measured]) -> String {
          a depth step (there half a pixel decides between two surfaces), *with steps* does not; *bias* is the median, positive \
          behind the surface. *Holes*: interior pixels without a surface. *PSNR*: sRGB, over the surface's box and 8 pixels around, \
          against a picture with 4×4 samples at edges. *Spill*: pixels more than 2 outside the outline, per pixel of the surface. \
+         *Outline*: root mean square distance of the drawn outline (coverage 1/2) from the true one, in pixels. \
          *Skipped*: points that the frame need not look at. *S* is the size of a buffer pixel in picture pixels, *factor* that of `Scale::Auto`.\n\n## Goals\n\n{}",
         machine(),
         goals(results)
