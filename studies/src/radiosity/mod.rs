@@ -2,8 +2,10 @@
 
 mod boxes;
 mod buildings;
+mod memory;
+mod paths;
 mod peer;
 mod probes;
 mod study;
 
-pub(crate) use study::run;
+pub(crate) use study::{run, run_parts};
