@@ -79,6 +79,22 @@ impl Transport {
         Self::assemble(scene, found, &direct)
     }
 
+    /// Lets no row add up to more than 1.
+    fn correct_rows(&mut self) {
+        let before = self.row_sums();
+        let excess = |sums: &[f64]| sums.iter().fold(0.0, |m: f64, s| m.max(s - 1.0));
+        self.counts.row_excess = excess(&before);
+        if self.counts.row_excess <= LEAST_EXCESS {
+            return;
+        }
+        self.share_links();
+        if excess(&self.row_sums()) > LEAST_EXCESS {
+            self.even_rows();
+        }
+        let changes = self.row_sums().into_iter().zip(before).filter(|(_, before)| *before > 0.0);
+        self.counts.row_change = changes.fold(0.0, |m, (after, before)| m.max((after / before - 1.0).abs()));
+    }
+
     /// The matrix of the links; `direct` is the direct irradiance of each element.
     fn assemble(scene: Scene, found: Found, direct: &[Rgb]) -> Self {
         let count = scene.tree.elements.len();
@@ -92,14 +108,10 @@ impl Transport {
             element.children().for_each(|child| parents[child as usize] = Some(i as u32));
         }
         let Found { links, between, .. } = found;
-        let scale = vec![1.0; leaves.len()];
+        let (shares, scale) = (vec![1.0; count], vec![1.0; leaves.len()]);
         let mut transport =
-            Self { scene, links, between, starts, entries, leaves, parents, scale, direct, counts };
-        let sums = transport.row_sums();
-        transport.counts.row_excess = sums.into_iter().fold(0.0, |m, s| m.max(s - 1.0));
-        if transport.counts.row_excess > LEAST_EXCESS {
-            transport.counts.row_change = transport.even_rows();
-        }
+            Self { scene, links, between, starts, entries, leaves, parents, shares, scale, direct, counts };
+        transport.correct_rows();
         transport
     }
 }
