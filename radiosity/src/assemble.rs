@@ -1,6 +1,7 @@
 //! From a scene to its transport: links, rows, direct light.
 
 use crate::error::RadiosityError;
+use crate::kept::Kept;
 use crate::link::Link;
 use crate::refine::{Found, refine};
 use crate::rgb::{Rgb, check_direct};
@@ -21,10 +22,50 @@ impl Scene {
     ///
     /// # Errors
     /// [`RadiosityError::CountMismatch`] and [`RadiosityError::DirectIrradiance`] for `direct`, [`RadiosityError::TooManyPatches`].
-    pub fn transport(mut self, direct: &[Rgb]) -> Result<Transport, RadiosityError> {
+    pub fn transport(self, direct: &[Rgb]) -> Result<Transport, RadiosityError> {
+        self.transport_with(direct, &|_| ())
+    }
+
+    /// As [`Scene::transport`]; `done` is told the share of the work that is done (0 to 1), from any thread.
+    ///
+    /// # Errors
+    /// As [`Scene::transport`].
+    pub fn transport_with(
+        self,
+        direct: &[Rgb],
+        done: &(dyn Fn(f64) + Sync),
+    ) -> Result<Transport, RadiosityError> {
+        self.linked(direct, None, done)
+    }
+
+    /// As [`Scene::transport`], for a scene that is nearly that of a transport that is there already: pairs that are partly hidden by the same surfaces
+    /// as before keep their form factors, so that one moved object pays for its own links and for those that it hides or hid. What was moved need not be said.
+    ///
+    /// Between single patches ([`SceneOptions::tolerance`](crate::SceneOptions::tolerance) is `None`) the result is that of [`Scene::transport`], bit for bit. Between
+    /// groups, form factors that are kept are as accurate as direct light asked for then. Nothing can be kept if the box around
+    /// all surfaces or [`SceneOptions::factors`](crate::SceneOptions::factors) changes; [`LinkCounts::kept`](crate::LinkCounts::kept) says how many were.
+    ///
+    /// # Errors
+    /// As [`Scene::transport`].
+    pub fn transport_after(
+        self,
+        before: &Transport,
+        direct: &[Rgb],
+        done: &(dyn Fn(f64) + Sync),
+    ) -> Result<Transport, RadiosityError> {
+        let kept = Kept::new(before, &self);
+        self.linked(direct, kept.as_ref(), done)
+    }
+
+    fn linked(
+        mut self,
+        direct: &[Rgb],
+        kept: Option<&Kept<'_>>,
+        done: &(dyn Fn(f64) + Sync),
+    ) -> Result<Transport, RadiosityError> {
         check_direct(self.tree.leaves().len(), direct)?;
         let mut of_element = of_elements(&self, direct);
-        let found = refine(&mut self, &mut of_element)?;
+        let found = refine(&mut self, &mut of_element, kept, done)?;
         Ok(Transport::assemble(self, found, &of_element))
     }
 }

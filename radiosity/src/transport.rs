@@ -2,7 +2,7 @@
 
 use crate::error::RadiosityError;
 use crate::link::{Link, LinkCounts};
-use crate::rgb::{Rgb, check_direct};
+use crate::rgb::{Rgb, replace_direct};
 use crate::scene::Scene;
 use crate::tree::ElementId;
 
@@ -71,10 +71,7 @@ impl Transport {
     /// # Errors
     /// [`RadiosityError::CountMismatch`] and [`RadiosityError::DirectIrradiance`]; then nothing is changed.
     pub fn set_direct(&mut self, direct: &[Rgb]) -> Result<(), RadiosityError> {
-        check_direct(self.leaves.len(), direct)?;
-        self.direct.fill([0.0; 3]);
-        self.direct[..direct.len()].copy_from_slice(direct);
-        Ok(())
+        replace_direct(&mut self.direct, direct)
     }
 
     /// Gives a surface another reflectance and emission. Links stay as they are, refined for the materials that they were made with.

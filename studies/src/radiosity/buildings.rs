@@ -7,13 +7,16 @@ use cpu_time::ProcessTime;
 use glam::{DVec3, dvec3};
 use pointillist_cli::scene::{Overrides, load_to_bake};
 use pointillist_radiosity::invariants::paths::Paths;
-use pointillist_radiosity::{Baked, Lamp, RayOptions, Scene, SceneOptions, SolveOptions, Surface};
+use pointillist_radiosity::{
+    Baked, Lamp, RayOptions, RayTransport, Rgb, Scene, SceneOptions, SolveOptions, Surface,
+};
 use pointillist_render::{Lamps, Lightmap, scene_surfaces, with_lamps};
+use rayon::prelude::*;
 
 use crate::common::data::{SKIPPED, folder};
 use crate::common::report::{Outcome, Row, chart_along};
 use crate::radiosity::memory;
-use crate::radiosity::paths::{PATHS, POINTS, Reference, room_around, size_of};
+use crate::radiosity::paths::{Error, PATHS, POINTS, Reference, room_around, size_of};
 
 type Fault = Box<dyn std::error::Error + Send + Sync>;
 
@@ -48,6 +51,8 @@ struct Cost {
     patches: usize,
     links: usize,
     baked: Baked,
+    transport: RayTransport,
+    gathered: Vec<Rgb>,
 }
 
 fn bake(surfaces: &[Surface], lamps: &[Lamp<'_>]) -> Result<Cost, pointillist_radiosity::RadiosityError> {
@@ -68,7 +73,8 @@ fn bake(surfaces: &[Surface], lamps: &[Lamp<'_>]) -> Result<Cost, pointillist_ra
     tell("vertices");
     let counts = transport.counts();
     let seconds = start.elapsed().as_secs_f64();
-    Ok(Cost { seconds, patches: counts.patches, links: counts.links, baked })
+    let gathered = solution.gathered().to_vec();
+    Ok(Cost { seconds, patches: counts.patches, links: counts.links, baked, transport, gathered })
 }
 
 /// Time, memory and error of the buildings among the large data.
@@ -79,7 +85,8 @@ pub(crate) fn solve(text: &mut String) -> Outcome {
          vertices together, in processor seconds of all threads; memory is the most that the process had meanwhile, the scene with its pictures included. Error: of the baked \
          irradiance without the lamps' own, as `render` reads it, at {POINTS} points of surfaces, spread by area, mean of the bands: root mean square over that of the paths' \
          light (in brackets over its mean). The reference is two halves of {PATHS} paths a point each, drawn apart: the mean of the product of the differences from \
-         either has no noise of theirs in it. Its own noise is that of both halves together. ± is the standard error over ten groups of points.\n"
+         either has no noise of theirs in it. Its own noise is that of both halves together. ± is the standard error over ten groups of points. \
+         *At the points themselves*: by rays from there into the solution, without vertices between which light is interpolated.\n"
     )?;
     let Some(folder) = folder() else {
         writeln!(text, "{SKIPPED}")?;
@@ -87,7 +94,7 @@ pub(crate) fn solve(text: &mut String) -> Outcome {
     };
     writeln!(
         text,
-        "| building | surfaces | patches | links | vertices | processor seconds | MiB | error % | noise of the paths % | points |"
+        "| building | surfaces | patches | links | vertices | processor seconds | MiB | error % | without the worst twentieth % | at the points themselves % | noise of the paths % | points |"
     )?;
     writeln!(text, "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")?;
     let mut around = vec![];
@@ -121,9 +128,19 @@ fn building(text: &mut String, name: &str, mesh: &Path, lights: &str) -> Result<
             let face = |&f: &u32| map.irradiance(f, front, position).as_dvec3().element_sum() / 3.0;
             found.faces[surface].first().map_or(0.0, face)
         });
+        if std::env::var_os("WORST").is_some() {
+            reference.tell_worst(
+                &|surface, front, position| {
+                    let face = |&f: &u32| map.irradiance(f, front, position).as_dvec3().element_sum() / 3.0;
+                    found.faces[surface].first().map_or(0.0, face)
+                },
+                &found.surfaces,
+            );
+        }
+        let at_points = itself(&cost, &reference)?;
         writeln!(
             text,
-            "| {name} | {} | {} | {} | {} | {:.0} | {megabytes} | {:.1} ± {:.1} ({:.1}) | {:.1} | {} |",
+            "| {name} | {} | {} | {} | {} | {:.0} | {megabytes} | {:.1} ± {:.1} ({:.1}) | {:.1} | {:.1} ± {:.1} | {:.1} | {} |",
             found.surfaces.len(),
             cost.patches,
             cost.links,
@@ -132,11 +149,34 @@ fn building(text: &mut String, name: &str, mesh: &Path, lights: &str) -> Result<
             100.0 * error.relative,
             100.0 * error.doubt,
             100.0 * error.to_mean,
+            100.0 * error.without_worst,
+            100.0 * at_points.relative,
+            100.0 * at_points.doubt,
             100.0 * error.noise,
             reference.points.len(),
         )?;
         Ok(format!("{name}: {}", room_around(&found.surfaces, lamps)))
     })
+}
+
+/// The error of the solution where light is gathered at the points themselves, by as many rays as its own noise asks for.
+fn itself(cost: &Cost, reference: &Reference) -> Result<Error, Fault> {
+    /// Times that a point is asked, each a hair beside it, which takes other rays.
+    const TIMES: usize = 16;
+    let solution =
+        cost.transport.solve_from(cost.gathered.clone(), &SolveOptions::DEFAULT.with_tolerance(1e-4))?;
+    let lights = reference
+        .points
+        .par_iter()
+        .map(|p| {
+            (1..=TIMES).try_fold(0.0, |sum, k| {
+                let beside = p.at + p.normal * (p.at.abs().max_element() * 1e-12 * k as f64 + reference.lift);
+                Ok(sum + solution.irradiance(beside, p.normal)?.iter().sum::<f64>() / (3 * TIMES) as f64)
+            })
+        })
+        .collect::<Vec<Result<f64, pointillist_radiosity::RadiosityError>>>();
+    let lights: Vec<f64> = lights.into_iter().collect::<Result<_, _>>()?;
+    Ok(reference.error_of(&lights))
 }
 
 /// How cost grows with the number of surfaces: halls of columns, each of 24 sides. Draws `radiosity-growth.svg`.

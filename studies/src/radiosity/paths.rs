@@ -18,6 +18,10 @@ const COVERED: f64 = 1e-4;
 /// Most points that are looked at for each that is chosen, and paths of a look.
 const LOOKS: usize = 12;
 const LOOK_PATHS: usize = 49;
+/// Rays start this far off their surface, as a share of the scene's size.
+const OFF: f64 = 1e-6;
+/// Share of the points that are the worst.
+const WORST: f64 = 0.05;
 /// Groups of points whose errors are compared.
 const GROUPS: usize = 10;
 
@@ -26,7 +30,7 @@ pub(crate) struct Point {
     pub(crate) surface: usize,
     pub(crate) front: bool,
     pub(crate) at: DVec3,
-    normal: DVec3,
+    pub(crate) normal: DVec3,
 }
 
 /// Points and their light.
@@ -34,6 +38,8 @@ pub(crate) struct Reference {
     pub(crate) points: Vec<Point>,
     /// Mean of the bands, by either half of the paths.
     halves: Vec<[f64; 2]>,
+    /// How far off their surfaces points are looked from.
+    pub(crate) lift: f64,
 }
 
 /// Root mean squares.
@@ -42,6 +48,8 @@ pub(crate) struct Error {
     pub(crate) relative: f64,
     /// Standard error of that.
     pub(crate) doubt: f64,
+    /// Without the points of the largest errors, a twentieth of all.
+    pub(crate) without_worst: f64,
     /// Over the mean of the light.
     pub(crate) to_mean: f64,
     /// Of the mean of both halves, over the root mean square of the light.
@@ -67,18 +75,26 @@ impl Reference {
         let half = |p: &Point, seed: usize| mean(paths.irradiance(p.at, p.normal, PATHS, seed as u64).0);
         let both = |(k, p): (usize, &Point)| [half(p, 2 * k + 7), half(p, 2 * k + 8)];
         let halves = points.par_iter().enumerate().map(both).collect();
-        Self { points, halves }
+        Self { points, halves, lift: OFF * size_of(surfaces) }
     }
 
     /// Of the `light` that is said to arrive at a surface, on its front or not, at a position.
     pub(crate) fn error(&self, light: &dyn Fn(usize, bool, DVec3) -> f64) -> Error {
+        let lights: Vec<f64> = self.points.iter().map(|p| light(p.surface, p.front, p.at)).collect();
+        self.error_of(&lights)
+    }
+
+    /// Of the light that is said to arrive at each point.
+    pub(crate) fn error_of(&self, lights: &[f64]) -> Error {
         let mut groups = [[0.0; 5]; GROUPS];
-        for (k, (p, [a, b])) in self.points.iter().zip(&self.halves).enumerate() {
-            let found = light(p.surface, p.front, p.at);
-            let sums = &mut groups[k % GROUPS];
+        let mut products = vec![];
+        for (k, (found, [a, b])) in lights.iter().zip(&self.halves).enumerate() {
             let own = [(found - a) * (found - b), a * b, 0.5 * (a + b), 0.25 * (a - b) * (a - b), 1.0];
-            sums.iter_mut().zip(own).for_each(|(s, o)| *s += o);
+            groups[k % GROUPS].iter_mut().zip(own).for_each(|(s, o)| *s += o);
+            products.push(own[0]);
         }
+        products.sort_by(f64::total_cmp);
+        products.truncate(products.len() - (WORST * products.len() as f64) as usize);
         let [off, squares, total, noise, count] =
             groups.iter().fold([0.0; 5], |m, s| [0, 1, 2, 3, 4].map(|i| m[i] + s[i]));
         let relative = (off / squares).max(0.0).sqrt();
@@ -88,8 +104,41 @@ impl Reference {
         Error {
             relative,
             doubt: spread / (2.0 * relative.max(1e-9)),
+            without_worst: (products.iter().sum::<f64>() / squares).max(0.0).sqrt(),
             to_mean: (off / count).max(0.0).sqrt() / (total / count),
             noise: (noise / squares).sqrt(),
+        }
+    }
+}
+
+impl Reference {
+    pub(crate) fn tell_worst(&self, light: &dyn Fn(usize, bool, DVec3) -> f64, surfaces: &[Surface]) {
+        let squares: f64 = self.halves.iter().map(|[a, b]| a * b).sum();
+        let mut list: Vec<(f64, String)> = self
+            .points
+            .iter()
+            .zip(&self.halves)
+            .map(|(p, [a, b])| {
+                let f = light(p.surface, p.front, p.at);
+                let s = &surfaces[p.surface];
+                let area: f64 =
+                    (1..s.vertices.len() - 1).map(|i| cross(&s.vertices, i).length()).sum::<f64>() * 0.5;
+                (
+                    (f - a) * (f - b) / squares,
+                    format!(
+                        "{f:.4} for {a:.4} {b:.4} at {} n {} front {} two {} area {area:.4} n {}",
+                        p.at,
+                        p.normal,
+                        p.front,
+                        s.two_sided,
+                        s.vertices.len()
+                    ),
+                )
+            })
+            .collect();
+        list.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (s, t) in list.iter().take(40) {
+            eprintln!("{:.5} {t}", s);
         }
     }
 }
