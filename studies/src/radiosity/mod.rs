@@ -3,6 +3,7 @@
 mod boxes;
 mod buildings;
 mod memory;
+mod moved;
 mod paths;
 mod peer;
 mod probes;

@@ -10,7 +10,7 @@ use crate::common::ray_reference::random;
 /// Points at which light is compared.
 pub(crate) const POINTS: usize = 500;
 /// Paths of each, in either half.
-pub(crate) const PATHS: usize = 1600;
+pub(crate) const PATHS: usize = 1024;
 /// Points darker than this share of the mean are left out: most are inside walls.
 const DARK: f64 = 0.02;
 /// So are points that another surface covers at less than this share of the scene's size.
@@ -107,38 +107,6 @@ impl Reference {
             without_worst: (products.iter().sum::<f64>() / squares).max(0.0).sqrt(),
             to_mean: (off / count).max(0.0).sqrt() / (total / count),
             noise: (noise / squares).sqrt(),
-        }
-    }
-}
-
-impl Reference {
-    pub(crate) fn tell_worst(&self, light: &dyn Fn(usize, bool, DVec3) -> f64, surfaces: &[Surface]) {
-        let squares: f64 = self.halves.iter().map(|[a, b]| a * b).sum();
-        let mut list: Vec<(f64, String)> = self
-            .points
-            .iter()
-            .zip(&self.halves)
-            .map(|(p, [a, b])| {
-                let f = light(p.surface, p.front, p.at);
-                let s = &surfaces[p.surface];
-                let area: f64 =
-                    (1..s.vertices.len() - 1).map(|i| cross(&s.vertices, i).length()).sum::<f64>() * 0.5;
-                (
-                    (f - a) * (f - b) / squares,
-                    format!(
-                        "{f:.4} for {a:.4} {b:.4} at {} n {} front {} two {} area {area:.4} n {}",
-                        p.at,
-                        p.normal,
-                        p.front,
-                        s.two_sided,
-                        s.vertices.len()
-                    ),
-                )
-            })
-            .collect();
-        list.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (s, t) in list.iter().take(40) {
-            eprintln!("{:.5} {t}", s);
         }
     }
 }

@@ -12,18 +12,20 @@ use pointillist_radiosity::{
 use crate::common::report::{Outcome, machine, timed, write};
 use crate::radiosity::boxes::{cornell, quad, room};
 use crate::radiosity::buildings;
+use crate::radiosity::moved;
 use crate::radiosity::peer;
 use crate::radiosity::probes;
 
 /// A part of the study: appends its sections.
 type Part = fn(&mut String) -> Outcome;
 
-const PARTS: [(&str, Part); 8] = [
+const PARTS: [(&str, Part); 9] = [
     ("open", |text| Ok(open_pairs(text).map(|()| true)?)),
     ("hidden", |text| Ok(hidden_pairs(text).map(|()| true)?)),
     ("hemicubes", |text| Ok(hemicubes(text).map(|()| true)?)),
     ("boxes", boxes),
     ("rooms", rooms),
+    ("moved", moved::compare),
     ("probes", |text| Ok(probes::compare(text).map(|()| true)?)),
     ("peer", peer::compare),
     ("buildings", buildings::solve),
