@@ -292,7 +292,7 @@ fn light_solved_by_rays_is_that_by_pairs_and_tells_how_far_it_is() {
         light
     });
     let lit = |light: &pointillist_render::Lightmap| -> Vec<Vec3> {
-        let middle = |t: &[u32; 3]| t.iter().map(|&v| scene.mesh.vertices[v as usize]).sum::<DVec3>() / 3.0;
+        let middle = |t: &[u32; 3]| t.iter().map(|&v| scene.mesh.positions[v as usize]).sum::<DVec3>() / 3.0;
         triangles.iter().zip(0..).map(|(t, number)| light.irradiance(number, true, middle(t))).collect()
     };
     let [pairs, rays] = [&lights[0], &lights[1]].map(lit);

@@ -55,16 +55,23 @@ struct Cost {
     gathered: Vec<Rgb>,
 }
 
-fn bake(surfaces: &[Surface], lamps: &[Lamp<'_>]) -> Result<Cost, pointillist_radiosity::RadiosityError> {
+/// Patches along the longest side, and how much finer they may become.
+type Sizes = (f64, f64);
+
+fn bake(
+    surfaces: &[Surface],
+    lamps: &[Lamp<'_>],
+    (across, finer): Sizes,
+) -> Result<Cost, pointillist_radiosity::RadiosityError> {
     let start = ProcessTime::now();
     let tell = |what: &str| eprintln!("    {:6.1} s {what}", start.elapsed().as_secs_f64());
-    let patch = size_of(surfaces) / ACROSS;
+    let patch = size_of(surfaces) / across;
     let options = SceneOptions::DEFAULT.with_squarer(false).with_patch(patch).with_smallest_patch(patch);
     let mut scene = Scene::new(surfaces, &options)?;
     tell("divided");
     let direct = scene.direct(lamps)?;
     tell("direct light");
-    let options = RayOptions::DEFAULT.with_finest(patch / FINER);
+    let options = RayOptions::DEFAULT.with_finest(patch / finer);
     let transport = scene.transport_by_rays(&direct, &options, &|_| ())?;
     tell("links");
     let solution = transport.solve(&SolveOptions::DEFAULT.with_tolerance(1e-4))?;
@@ -106,20 +113,25 @@ pub(crate) fn solve(text: &mut String) -> Outcome {
     Ok(true)
 }
 
-/// One row of the table; returns what is around the lamps.
-fn building(text: &mut String, name: &str, mesh: &Path, lights: &str) -> Result<String, Fault> {
+/// The scene of a building in the sun and in the light of some lamps.
+fn load(mesh: &Path, lights: &str) -> Result<pointillist_render::Scene, Fault> {
     let toml =
         format!("[camera]\neye = [0, 0, 0]\ntarget = [1, 0, 0]\n[[object]]\nmesh = {mesh:?}\n{SUN}{lights}");
     let file = std::env::temp_dir().join(format!("pointillist-building-{}.toml", std::process::id()));
     std::fs::write(&file, toml)?;
     let scene = load_to_bake(&file, &Overrides::default());
     std::fs::remove_file(&file)?;
-    let scene = scene?.scene;
+    Ok(scene?.scene)
+}
+
+/// One row of the table; returns what is around the lamps.
+fn building(text: &mut String, name: &str, mesh: &Path, lights: &str) -> Result<String, Fault> {
+    let scene = load(mesh, lights)?;
     let found = scene_surfaces(&scene)?;
     let lamps = Lamps::new(&scene);
     with_lamps(&lamps, |lamps| {
         memory::forget_peak();
-        let cost = bake(&found.surfaces, lamps)?;
+        let cost = bake(&found.surfaces, lamps, (ACROSS, FINER))?;
         let megabytes = memory::peak_mebibytes().map_or("–".to_owned(), |m| format!("{m:.0}"));
         let map = Lightmap::of_baked(&cost.baked, &found.faces, scene.mesh.triangles.len())?;
         let reference = Reference::new(&found.surfaces, &Paths::new(&found.surfaces, lamps));
@@ -148,6 +160,49 @@ fn building(text: &mut String, name: &str, mesh: &Path, lights: &str) -> Result<
         eprintln!("    {row}");
         writeln!(text, "{row}")?;
         Ok(format!("{name}: {}", room_around(&found.surfaces, lamps)))
+    })
+}
+
+/// Sizes of patches: cost and error of the first building.
+pub(crate) fn sizes(text: &mut String) -> Outcome {
+    const TRIED: [Sizes; 5] = [(32.0, 1.0), (32.0, 4.0), (32.0, 8.0), (32.0, 16.0), (64.0, 4.0)];
+    let (name, mesh, lights) = BUILDINGS[0];
+    writeln!(
+        text,
+        "\n## Error against the size of patches\n\n{name} as above: patches along the longest side, and how much finer those for drawing may become.\n"
+    )?;
+    let Some(folder) = folder() else {
+        writeln!(text, "{SKIPPED}")?;
+        return Ok(true);
+    };
+    writeln!(
+        text,
+        "| patches | finer | vertices | processor seconds | error % | without the worst twentieth % |\n| ---: | ---: | ---: | ---: | ---: | ---: |"
+    )?;
+    let scene = load(&folder.join(mesh), lights)?;
+    let found = scene_surfaces(&scene)?;
+    let lamps = Lamps::new(&scene);
+    with_lamps(&lamps, |lamps| {
+        let reference = Reference::new(&found.surfaces, &Paths::new(&found.surfaces, lamps));
+        for (across, finer) in TRIED {
+            let cost = bake(&found.surfaces, lamps, (across, finer))?;
+            let map = Lightmap::of_baked(&cost.baked, &found.faces, scene.mesh.triangles.len())?;
+            let error = reference.error(&|surface, front, position| {
+                let face = |&f: &u32| map.irradiance(f, front, position).as_dvec3().element_sum() / 3.0;
+                found.faces[surface].first().map_or(0.0, face)
+            });
+            let row = format!(
+                "| {across} | {finer} | {} | {:.0} | {:.1} ± {:.1} | {:.1} |",
+                cost.baked.vertices.len(),
+                cost.seconds,
+                100.0 * error.relative,
+                100.0 * error.doubt,
+                100.0 * error.without_worst
+            );
+            eprintln!("    {row}");
+            writeln!(text, "{row}")?;
+        }
+        Ok(true)
     })
 }
 
@@ -191,7 +246,7 @@ pub(crate) fn growth(text: &mut String, out_dir: &Path) -> Outcome {
             [10.0 * way.dot(n).max(0.0) / way.length().powi(3); 3]
         };
         let lamps = [Lamp::Point { position, irradiance: &irradiance, shadow: true }];
-        let cost = bake(&surfaces, &lamps)?;
+        let cost = bake(&surfaces, &lamps, (ACROSS, FINER))?;
         let vertices = cost.baked.vertices.len();
         writeln!(
             text,

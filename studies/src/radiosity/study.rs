@@ -19,7 +19,7 @@ use crate::radiosity::probes;
 /// A part of the study: appends its sections.
 type Part = fn(&mut String) -> Outcome;
 
-const PARTS: [(&str, Part); 9] = [
+const PARTS: [(&str, Part); 10] = [
     ("open", |text| Ok(open_pairs(text).map(|()| true)?)),
     ("hidden", |text| Ok(hidden_pairs(text).map(|()| true)?)),
     ("hemicubes", |text| Ok(hemicubes(text).map(|()| true)?)),
@@ -29,6 +29,7 @@ const PARTS: [(&str, Part); 9] = [
     ("probes", |text| Ok(probes::compare(text).map(|()| true)?)),
     ("peer", peer::compare),
     ("buildings", buildings::solve),
+    ("sizes", buildings::sizes),
 ];
 
 /// Runs the study.
