@@ -167,3 +167,27 @@ fn a_ply_holds_the_light_of_vertices() {
     );
     folder.prints(&["info", "light.ply"]);
 }
+
+/// Between direct light and the solution nothing was said, for a minute.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_bake_while_it_is_linking() {
+    use std::io::{BufRead, BufReader};
+    use std::process::{Command, Stdio};
+    let folder = Folder::new();
+    let house = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/house.toml");
+    let mut bake = Command::new(assert_cmd::cargo::cargo_bin!("pointillist"));
+    bake.current_dir(folder.path(".")).args(["radiosity", house, "-o", "baked.json", "--progress", "openjd"]);
+    let mut bake = bake.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("the command runs");
+    let lines = BufReader::new(bake.stdout.take().expect("standard output")).lines();
+    // Direct light takes the first two of a hundred, links those up to eighty.
+    let told = lines.map_while(Result::ok).find_map(|line| {
+        let percent: u32 = line.strip_prefix("openjd_progress: ")?.parse().ok()?;
+        (percent >= 5).then_some(percent)
+    });
+    assert!(told.is_some_and(|percent| percent < 80), "linking says how far it is: {told:?}");
+    let sent = Command::new("kill").args(["-INT", &bake.id().to_string()]).status();
+    assert!(sent.expect("`kill` runs").success());
+    assert_eq!(bake.wait().expect("it ends").code(), Some(130));
+    assert_eq!(folder.names(), ["scene.toml", "triangle.obj"], "nothing half written is left");
+}

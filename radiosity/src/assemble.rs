@@ -1,6 +1,7 @@
 //! From a scene to its transport: links, rows, direct light.
 
 use crate::error::RadiosityError;
+use crate::kept::Kept;
 use crate::link::Link;
 use crate::refine::{Found, refine};
 use crate::rgb::{Rgb, check_direct};
@@ -21,10 +22,50 @@ impl Scene {
     ///
     /// # Errors
     /// [`RadiosityError::CountMismatch`] and [`RadiosityError::DirectIrradiance`] for `direct`, [`RadiosityError::TooManyPatches`].
-    pub fn transport(mut self, direct: &[Rgb]) -> Result<Transport, RadiosityError> {
+    pub fn transport(self, direct: &[Rgb]) -> Result<Transport, RadiosityError> {
+        self.transport_with(direct, &|_| ())
+    }
+
+    /// As [`Scene::transport`]; `done` is told the share of the work that is done (0 to 1), from any thread.
+    ///
+    /// # Errors
+    /// As [`Scene::transport`].
+    pub fn transport_with(
+        self,
+        direct: &[Rgb],
+        done: &(dyn Fn(f64) + Sync),
+    ) -> Result<Transport, RadiosityError> {
+        self.linked(direct, None, done)
+    }
+
+    /// As [`Scene::transport`], for a scene that is nearly that of a transport that is there already: pairs that are partly hidden by the same surfaces
+    /// as before keep their form factors, so that one moved object pays for its own links and for those that it hides or hid. What was moved need not be said.
+    ///
+    /// Between single patches ([`SceneOptions::tolerance`](crate::SceneOptions::tolerance) is `None`) the result is that of [`Scene::transport`], bit for bit. Between
+    /// groups, form factors that are kept are as accurate as direct light asked for then. Nothing can be kept if the box around
+    /// all surfaces or [`SceneOptions::factors`](crate::SceneOptions::factors) changes; [`LinkCounts::kept`](crate::LinkCounts::kept) says how many were.
+    ///
+    /// # Errors
+    /// As [`Scene::transport`].
+    pub fn transport_after(
+        self,
+        before: &Transport,
+        direct: &[Rgb],
+        done: &(dyn Fn(f64) + Sync),
+    ) -> Result<Transport, RadiosityError> {
+        let kept = Kept::new(before, &self);
+        self.linked(direct, kept.as_ref(), done)
+    }
+
+    fn linked(
+        mut self,
+        direct: &[Rgb],
+        kept: Option<&Kept<'_>>,
+        done: &(dyn Fn(f64) + Sync),
+    ) -> Result<Transport, RadiosityError> {
         check_direct(self.tree.leaves().len(), direct)?;
         let mut of_element = of_elements(&self, direct);
-        let found = refine(&mut self, &mut of_element)?;
+        let found = refine(&mut self, &mut of_element, kept, done)?;
         Ok(Transport::assemble(self, found, &of_element))
     }
 }
@@ -79,6 +120,22 @@ impl Transport {
         Self::assemble(scene, found, &direct)
     }
 
+    /// Lets no row add up to more than 1.
+    fn correct_rows(&mut self) {
+        let before = self.row_sums();
+        let excess = |sums: &[f64]| sums.iter().fold(0.0, |m: f64, s| m.max(s - 1.0));
+        self.counts.row_excess = excess(&before);
+        if self.counts.row_excess <= LEAST_EXCESS {
+            return;
+        }
+        self.share_links();
+        if excess(&self.row_sums()) > LEAST_EXCESS {
+            self.even_rows();
+        }
+        let changes = self.row_sums().into_iter().zip(before).filter(|(_, before)| *before > 0.0);
+        self.counts.row_change = changes.fold(0.0, |m, (after, before)| m.max((after / before - 1.0).abs()));
+    }
+
     /// The matrix of the links; `direct` is the direct irradiance of each element.
     fn assemble(scene: Scene, found: Found, direct: &[Rgb]) -> Self {
         let count = scene.tree.elements.len();
@@ -92,14 +149,10 @@ impl Transport {
             element.children().for_each(|child| parents[child as usize] = Some(i as u32));
         }
         let Found { links, between, .. } = found;
-        let scale = vec![1.0; leaves.len()];
+        let (shares, scale) = (vec![1.0; count], vec![1.0; leaves.len()]);
         let mut transport =
-            Self { scene, links, between, starts, entries, leaves, parents, scale, direct, counts };
-        let sums = transport.row_sums();
-        transport.counts.row_excess = sums.into_iter().fold(0.0, |m, s| m.max(s - 1.0));
-        if transport.counts.row_excess > LEAST_EXCESS {
-            transport.counts.row_change = transport.even_rows();
-        }
+            Self { scene, links, between, starts, entries, leaves, parents, shares, scale, direct, counts };
+        transport.correct_rows();
         transport
     }
 }

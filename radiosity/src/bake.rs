@@ -10,9 +10,11 @@ use glam::DVec3;
 
 use crate::gather::visible_share;
 use crate::mesh::{Facets, Mesh, Place};
-use crate::rgb::Rgb;
+use crate::polygon::edges;
+use crate::rgb::{Rgb, add};
 use crate::solve::Solution;
 use crate::transport::{Entry, Transport};
+use crate::tree::ElementId;
 use crate::visible::parts::Pieces;
 use pointillist_dice::lambert;
 use pointillist_parallel as parallel;
@@ -76,27 +78,31 @@ impl Solution<'_> {
         mesh.finish(&transport.direct, &light)
     }
 
-    /// Irradiance at one place: the mean over its leaves of what arrives along the links of the leaf and of the elements above it.
+    /// Irradiance at one place: what arrives there along the links of the leaf that holds the point, and of the elements above it. All leaves around a place
+    /// lie in one plane; their links to the same sources differ by what may be between, and only those of this leaf have all that is before the point.
     fn light_at(&self, place: &Place, pieces: &mut Pieces) -> Rgb {
         let transport = self.transport;
         let tree = &transport.scene.tree;
         let count = place.leaves.len() as f64;
-        let centre = place.leaves.iter().map(|&l| tree.elements[l as usize].polygon.centre()).sum::<DVec3>();
+        let of = |leaf: ElementId| &tree.elements[leaf as usize].polygon;
+        let centre = place.leaves.iter().map(|&l| of(l).centre()).sum::<DVec3>();
         let point = place.position.lerp(centre / count, INWARD);
+        let inside = |leaf: ElementId| {
+            let polygon = of(leaf);
+            let depth = |(a, b): (DVec3, DVec3)| polygon.normal().cross((b - a).normalize()).dot(point - a);
+            edges(polygon.vertices()).map(depth).fold(f64::INFINITY, f64::min)
+        };
+        let deepest = place.leaves.iter().map(|&leaf| (inside(leaf), leaf));
+        let deepest = deepest.reduce(|best, other| if other.0 > best.0 { other } else { best });
+        let mut element = deepest.map(|(_, leaf)| leaf);
         let mut sum = [0.0; 3];
-        for &leaf in &place.leaves {
-            let normal = tree.elements[leaf as usize].polygon.normal();
-            let mut element = Some(leaf);
-            while let Some(id) = element {
-                for entry in transport.row(id) {
-                    let share = transport.share_of(entry, point, normal, pieces);
-                    let light = self.of_element[entry.to as usize];
-                    for (s, l) in sum.iter_mut().zip(light) {
-                        *s += share * l / count;
-                    }
-                }
-                element = transport.parents[id as usize];
+        while let Some(id) = element {
+            let normal = of(id).normal();
+            for entry in transport.row(id) {
+                let share = transport.share_of(entry, point, normal, pieces);
+                sum = add(sum, share, self.of_element[entry.to as usize]);
             }
+            element = transport.parents[id as usize];
         }
         sum
     }

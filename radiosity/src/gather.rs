@@ -55,7 +55,7 @@ impl Gather<'_> {
     fn visit(&mut self, id: ElementId) {
         let element = &self.solution.transport.scene.tree.elements[id as usize];
         let polygon = &element.polygon;
-        if self.solution.of_element[id as usize] == [0.0; 3] || polygon.height(self.point) <= 0.0 {
+        if self.solution.by_area[id as usize] == [0.0; 3] || polygon.height(self.point) <= 0.0 {
             return;
         }
         if polygon.vertices().iter().all(|&v| self.normal.dot(v - self.point) <= 0.0) {
@@ -67,7 +67,7 @@ impl Gather<'_> {
             return;
         }
         let share = if self.visibility { self.seen(polygon) } else { self.whole(polygon) };
-        let light = self.solution.of_element[id as usize];
+        let light = self.solution.by_area[id as usize];
         for (s, l) in self.sum.iter_mut().zip(light) {
             *s += share * l;
         }

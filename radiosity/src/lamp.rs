@@ -1,5 +1,7 @@
 //! Direct light of lamps: points, directions, and areas that are not surfaces of the scene.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::DVec3;
 
 use crate::by_rays::surroundings::{LIFT, Surroundings};
@@ -74,6 +76,18 @@ impl Scene {
     /// # Errors
     /// [`RadiosityError::BadLamp`], [`RadiosityError::LampIrradiance`], [`RadiosityError::TooManyPatches`].
     pub fn direct(&mut self, lamps: &[Lamp<'_>]) -> Result<Vec<Rgb>, RadiosityError> {
+        self.direct_with(lamps, &|_| ())
+    }
+
+    /// As [`Scene::direct`]; `done` is told the share of the work that is done (0 to 1), from any thread.
+    ///
+    /// # Errors
+    /// As [`Scene::direct`].
+    pub fn direct_with(
+        &mut self,
+        lamps: &[Lamp<'_>],
+        done: &(dyn Fn(f64) + Sync),
+    ) -> Result<Vec<Rgb>, RadiosityError> {
         for (lamp, kind) in lamps.iter().enumerate() {
             let usable = match kind {
                 Lamp::Point { position, .. } => position.is_finite(),
@@ -92,8 +106,12 @@ impl Scene {
             if open.is_empty() {
                 break;
             }
+            let ended = AtomicUsize::new(0);
+            let (before, all) = (of_element.iter().flatten().count(), self.tree.elements.len() as f64);
             let found = parallel::map_with(open.len(), Pieces::default, |pieces, i| {
-                self.lit(open[i], lamps, &rays, pieces)
+                let lit = self.lit(open[i], lamps, &rays, pieces);
+                done((before + ended.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all);
+                lit
             });
             for (&leaf, found) in open.iter().zip(found) {
                 let (irradiance, edge) = found.map_err(|problem| self.not_lit(leaf, problem))?;

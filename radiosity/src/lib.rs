@@ -61,6 +61,7 @@ mod gather;
 mod hemicube;
 #[cfg(feature = "invariants")]
 pub mod invariants;
+mod kept;
 mod kernel;
 mod lamp;
 mod link;

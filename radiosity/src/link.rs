@@ -35,6 +35,8 @@ pub struct LinkCounts {
     pub links: usize,
     /// Links with occluders between their elements.
     pub partly_hidden: usize,
+    /// Partly hidden links whose form factor was kept from before ([`Scene::transport_after`](crate::Scene::transport_after)).
+    pub kept: usize,
     /// Unoccluded links, by the rule that computed them.
     pub by_rule: RuleCounts,
     /// Pairs skipped because no part of one is in front of the other.
@@ -59,6 +61,7 @@ impl std::ops::AddAssign for LinkCounts {
     fn add_assign(&mut self, o: Self) {
         self.links += o.links;
         self.partly_hidden += o.partly_hidden;
+        self.kept += o.kept;
         self.by_rule.areas += o.by_rule.areas;
         self.by_rule.points += o.by_rule.points;
         self.by_rule.contours += o.by_rule.contours;

@@ -1,8 +1,11 @@
 //! Which elements exchange light, and how finely they must be divided for it (\[3\]).
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use crate::error::RadiosityError;
 use crate::estimate::Estimate;
-use crate::factor::{FactorOptions, of_mutual};
+use crate::factor::FactorOptions;
+use crate::kept::Kept;
 use crate::kernel::pair::{self, Rule, facing_parts};
 use crate::link::{Link, LinkCounts};
 use crate::polygon::Polygon;
@@ -19,7 +22,7 @@ use pointillist_parallel as parallel;
 /// the share of the other wall is discontinuous.
 const INWARD: f64 = 0.1;
 /// Share of a link's tolerance that the error of its form factor may use up.
-const FACTOR_SHARE: f64 = 0.1;
+const FACTOR_SHARE: f64 = 0.3;
 /// Assumed variation of the radiosity over a source, as a share of its mean.
 const UNEVEN: f64 = 0.05;
 /// A link is too coarse, whatever its radiosity, if the share of the hemisphere that one element takes varies over the other by more than
@@ -79,19 +82,28 @@ impl Found {
 ///
 /// Tasks run in parallel and are taken together in their order, so that links do not depend on threads.
 /// `direct` is the irradiance of each element that does not come from patches; it grows with the tree.
-pub(crate) fn refine(scene: &mut Scene, direct: &mut Vec<Rgb>) -> Result<Found, RadiosityError> {
+/// Form factors that are `kept` are not computed again; `done` is told the share of the work that is done.
+pub(crate) fn refine(
+    scene: &mut Scene,
+    direct: &mut Vec<Rgb>,
+    kept: Option<&Kept<'_>>,
+    done: &(dyn Fn(f64) + Sync),
+) -> Result<Found, RadiosityError> {
     let estimate = Estimate::new(scene, direct);
     let mut all = Found::default();
     all.lost.resize(scene.tree.elements.len(), 0.0);
     let roots = scene.tree.roots.clone();
-    let refiner = Refiner { scene, estimate: &estimate };
+    let refiner = Refiner { scene, estimate: &estimate, kept };
+    let told = Rounds::new(done, roots.len());
     let mut round: Vec<Task> = parallel::map_with(roots.len(), Pieces::default, |pieces, i| {
         let mut task = Task::default();
         for &q in &roots[i + 1..] {
             refiner.roots(roots[i], q, &mut task, pieces);
         }
+        told.one_more();
         task
     });
+    let mut number = 0;
     loop {
         let mut wanted = vec![];
         for task in round {
@@ -102,15 +114,38 @@ pub(crate) fn refine(scene: &mut Scene, direct: &mut Vec<Rgb>) -> Result<Found, 
             return Ok(all);
         }
         all.lost.resize(scene.tree.elements.len(), 0.0);
-        let refiner = Refiner { scene, estimate: &estimate };
+        let refiner = Refiner { scene, estimate: &estimate, kept };
+        number += 1;
+        let told = Rounds { number, ..Rounds::new(done, wanted.len()) };
         round = parallel::map_with(wanted.len(), Pieces::default, |pieces, i| {
             let mut task = Task::default();
             let Wanted { pair, which, between } = &wanted[i];
             // Elements that cannot be divided any further are linked as they are.
             let last = !divided || scene.tree.elements[*which as usize].is_leaf();
             refiner.visit(*pair, between, last, &mut task, pieces);
+            told.one_more();
             task
         });
+    }
+}
+
+/// Progress of a round. How many there will be nobody knows: each is taken for half of what is left.
+struct Rounds<'d> {
+    done: &'d (dyn Fn(f64) + Sync),
+    number: i32,
+    tasks: usize,
+    ended: AtomicUsize,
+}
+
+impl<'d> Rounds<'d> {
+    fn new(done: &'d (dyn Fn(f64) + Sync), tasks: usize) -> Self {
+        Self { done, number: 0, tasks, ended: AtomicUsize::new(0) }
+    }
+
+    fn one_more(&self) {
+        let share = (self.ended.fetch_add(1, Ordering::Relaxed) + 1) as f64 / self.tasks as f64;
+        let left = 0.5_f64.powi(self.number);
+        (self.done)(1.0 - left + 0.5 * left * share);
     }
 }
 
@@ -138,6 +173,7 @@ fn divide_wanted(
 struct Refiner<'s> {
     scene: &'s Scene,
     estimate: &'s Estimate,
+    kept: Option<&'s Kept<'s>>,
 }
 
 impl Refiner<'_> {
@@ -276,6 +312,10 @@ impl Refiner<'_> {
         let mutual = if between.is_empty() {
             pair::mutual(&a.polygon, &b.polygon, goal.unoccluded)
         } else {
+            if let Some(link) = self.kept.and_then(|kept| kept.link(&a.polygon, &b.polygon, between)) {
+                found.counts.kept += 1;
+                return self.push((p, q), (link.mutual, link.error), between, found);
+            }
             let list: Vec<&Polygon> = between.iter().map(|&i| &self.scene.occluders[i as usize]).collect();
             let (mutual, work) = cubature::mutual_in_shaft(&a.polygon, &b.polygon, &list, goal, pieces);
             found.counts.cells += work.cells;
@@ -285,32 +325,36 @@ impl Refiner<'_> {
             found.counts.hidden += 1;
             return;
         }
-        let factors = [a, b].map(|e| of_mutual(mutual, e.polygon.area()).value);
-        if factors.iter().all(|&f| f < self.scene.options.least_factor) {
-            found.counts.below_bound += 1;
-            found.left_out.extend([(p, factors[0]), (q, factors[1])]);
-            return;
-        }
-        found.counts.links += 1;
         if between.is_empty() {
             match mutual.rule {
                 Rule::Areas => found.counts.by_rule.areas += 1,
                 Rule::Points => found.counts.by_rule.points += 1,
                 Rule::Contours | Rule::Apart => found.counts.by_rule.contours += 1,
             }
-        } else {
-            found.counts.partly_hidden += 1;
         }
+        self.push((p, q), (mutual.value, mutual.error), between, found);
+    }
+
+    /// Adds a link, unless its form factors are below the bound.
+    fn push(
+        &self,
+        (p, q): (ElementId, ElementId),
+        (mutual, error): (f64, f64),
+        between: &[u32],
+        found: &mut Task,
+    ) {
+        let factors = [p, q].map(|e| (mutual / self.element(e).polygon.area()).min(1.0));
+        if factors.iter().all(|&f| f < self.scene.options.least_factor) {
+            found.counts.below_bound += 1;
+            found.left_out.extend([(p, factors[0]), (q, factors[1])]);
+            return;
+        }
+        found.counts.links += 1;
+        found.counts.partly_hidden += usize::from(!between.is_empty());
         let start = found.between.len() as u32;
         found.between.extend(between);
         let end = found.between.len() as u32;
-        found.links.push(Link {
-            a: p,
-            b: q,
-            mutual: mutual.value,
-            error: mutual.error,
-            between: (start, end),
-        });
+        found.links.push(Link { a: p, b: q, mutual, error, between: (start, end) });
     }
 
     /// In a hierarchy form factors need no smaller error than the tolerance of links.

@@ -38,3 +38,11 @@ pub(crate) fn check_direct(patches: usize, direct: &[Rgb]) -> Result<(), Radiosi
     }
     Ok(())
 }
+
+/// Replaces the direct irradiance of patches by one light for each, or by none.
+pub(crate) fn replace_direct(all: &mut [Rgb], direct: &[Rgb]) -> Result<(), RadiosityError> {
+    check_direct(all.len(), direct)?;
+    all.fill([0.0; 3]);
+    all[..direct.len()].copy_from_slice(direct);
+    Ok(())
+}

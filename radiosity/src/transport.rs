@@ -2,7 +2,7 @@
 
 use crate::error::RadiosityError;
 use crate::link::{Link, LinkCounts};
-use crate::rgb::{Rgb, check_direct};
+use crate::rgb::{Rgb, replace_direct};
 use crate::scene::Scene;
 use crate::tree::ElementId;
 
@@ -19,6 +19,9 @@ pub struct Transport {
     pub(crate) leaves: Vec<ElementId>,
     /// Parent of each element; `None` for roots.
     pub(crate) parents: Vec<Option<ElementId>>,
+    /// Of each element: what it gets of the mean that arrives along its parent's links, and its weight in the mean that these see of its parent,
+    /// by `share_links`. 1 for roots.
+    pub(crate) shares: Vec<f64>,
     /// Factor on the row of each patch, by `even_rows`.
     pub(crate) scale: Vec<f64>,
     /// Irradiance of each patch that does not come from patches.
@@ -68,10 +71,7 @@ impl Transport {
     /// # Errors
     /// [`RadiosityError::CountMismatch`] and [`RadiosityError::DirectIrradiance`]; then nothing is changed.
     pub fn set_direct(&mut self, direct: &[Rgb]) -> Result<(), RadiosityError> {
-        check_direct(self.leaves.len(), direct)?;
-        self.direct.fill([0.0; 3]);
-        self.direct[..direct.len()].copy_from_slice(direct);
-        Ok(())
+        replace_direct(&mut self.direct, direct)
     }
 
     /// Gives a surface another reflectance and emission. Links stay as they are, refined for the materials that they were made with.
@@ -99,7 +99,7 @@ impl Transport {
     }
 
     /// Calls `f` with patch, other patch and form factor from the first to the second. A link of groups is distributed over their patches in
-    /// proportion to area.
+    /// proportion to area, and less to those that their own links leave no room for more.
     pub fn factors(&self, mut f: impl FnMut(usize, usize, f64)) {
         let tree = &self.scene.tree;
         let mut number = vec![0; tree.elements.len()];
@@ -110,14 +110,29 @@ impl Transport {
             for entry in self.row(element) {
                 let area = tree.elements[entry.to as usize].polygon.area();
                 tree.leaves_below(element, &mut |from| {
+                    let received = self.share_below(element, from);
+                    let from = number[from as usize];
                     tree.leaves_below(entry.to, &mut |to| {
-                        let share = tree.elements[to as usize].polygon.area() / area;
-                        let from = number[from as usize];
-                        f(from, number[to as usize], entry.factor * share * self.scale[from]);
+                        let sent =
+                            tree.elements[to as usize].polygon.area() / area * self.share_below(entry.to, to);
+                        f(from, number[to as usize], entry.factor * sent * received * self.scale[from]);
                     });
                 });
             }
         }
+    }
+
+    /// What a leaf gets of the mean that arrives along the links of an element above it, or of itself.
+    fn share_below(&self, element: ElementId, leaf: ElementId) -> f64 {
+        let (mut share, mut at) = (1.0, leaf);
+        while at != element {
+            share *= self.shares[at as usize];
+            match self.parents[at as usize] {
+                Some(parent) => at = parent,
+                None => break,
+            }
+        }
+        share
     }
 
     /// Largest relative error bound of the form factors' own.

@@ -201,6 +201,32 @@ fn absorbed(patches: impl Iterator<Item = (f64, [f64; 3], [f64; 3])>) -> f64 {
     taken / given
 }
 
+/// Rows of a hierarchy were scaled as a whole where they were above 1: what the ceiling got from the lamp was scaled with what it had
+/// from behind it, and 5 % of all light was lost.
+#[test]
+fn a_hierarchy_loses_no_light_of_a_lamp_close_to_the_ceiling() {
+    for (gap, two_sided) in [(0.1, true), (1e-3, true), (0.1, false), (1e-3, false)] {
+        let mut surfaces = lamp_below_the_ceiling(gap);
+        let lamp = surfaces.last_mut().expect("a lamp");
+        lamp.two_sided = two_sided;
+        for tolerance in [0.05, 0.01] {
+            let options = SceneOptions::DEFAULT
+                .with_patch(0.5)
+                .with_smallest_patch(0.25)
+                .with_tolerance(Some(tolerance));
+            let transport = Scene::new(&surfaces, &options).and_then(|s| s.transport(&[])).expect("surfaces");
+            let solution = transport.gauss_seidel(&SolveOptions::DEFAULT).expect("it absorbs");
+            let list = transport.patches().zip(&solution.radiosity).map(|(p, b)| (p.area, p.emission, *b));
+            let share = absorbed(list);
+            assert!(
+                (share - 1.0).abs() < 0.005,
+                "{gap} below, {two_sided}, {tolerance}: {share} of the light is absorbed, {:?}",
+                transport.counts()
+            );
+        }
+    }
+}
+
 #[test]
 fn a_lamp_close_to_the_ceiling_loses_no_light() {
     for gap in [0.1, 1e-3] {

@@ -5,7 +5,7 @@ mod common;
 use common::{cornell, quad, room};
 use glam::{DQuat, DVec3, dvec3};
 use pointillist_radiosity::{
-    FactorOptions, HemicubeKind, Lamp, RadiosityError, Scene, SceneOptions, SolveOptions, Surface,
+    FactorOptions, HemicubeKind, Lamp, RadiosityError, Scene, SceneOptions, SolveOptions, Surface, Transport,
     form_factor,
 };
 
@@ -232,4 +232,60 @@ fn a_transport_owns_its_direct_light() {
     relit.set_direct(&[]).expect("none");
     let again = relit.gauss_seidel(&SolveOptions::DEFAULT).expect("solved");
     assert_eq!(again.radiosity, dark);
+}
+
+/// Every edit of a room paid for all form factors.
+#[test]
+fn a_moved_object_pays_for_its_own_links() {
+    let furnished = |x: f64| {
+        let mut surfaces = room(dvec3(4.0, 2.5, 3.0), DQuat::IDENTITY, 0.7, 0.0);
+        for (low, size) in
+            [(dvec3(1.0, 0.9, 0.8), 0.3), (dvec3(2.9, 1.2, 1.9), 0.25), (dvec3(x, 0.5, 2.2), 0.3)]
+        {
+            let around = room(DVec3::splat(size), DQuat::IDENTITY, 0.5, 0.0);
+            surfaces.extend(around.into_iter().map(|mut surface| {
+                // Rooms look inward, boxes outward.
+                surface.vertices.reverse();
+                surface.vertices.iter_mut().for_each(|v| *v += low);
+                surface
+            }));
+        }
+        surfaces[1].emission = [1.0; 3];
+        surfaces
+    };
+    let options = SceneOptions::DEFAULT.with_patch(0.51);
+    let scene = |x: f64| Scene::new(&furnished(x), &options).expect("a room");
+    let before = scene(0.5).transport(&[]).expect("a room");
+    let fresh = scene(0.6).transport(&[]).expect("a room");
+    let after = scene(0.6).transport_after(&before, &[], &|_| ()).expect("a room");
+    let all = |transport: &Transport| {
+        let mut list = vec![];
+        transport.factors(|a, b, factor| list.push((a, b, factor.to_bits())));
+        list
+    };
+    assert!(all(&fresh) == all(&after), "form factors are those of a fresh build");
+    let [fresh, after] = [fresh.counts(), after.counts()];
+    assert_eq!((fresh.links, fresh.partly_hidden, fresh.kept), (after.links, after.partly_hidden, 0));
+    assert!(3 * after.kept > fresh.partly_hidden && after.cells < fresh.cells, "{fresh:?} {after:?}");
+    let same = scene(0.5).transport_after(&before, &[], &|_| ()).expect("a room").counts();
+    assert_eq!(same.kept, same.partly_hidden, "where nothing moves, all is kept");
+    println!("{} of {} kept, {} of {} cells", after.kept, fresh.partly_hidden, after.cells, fresh.cells);
+}
+
+/// Linking was silent.
+#[test]
+fn progress_is_told_while_light_and_links_are_found() {
+    let surfaces = room(DVec3::ONE, DQuat::IDENTITY, 0.5, 1.0);
+    let options = SceneOptions::DEFAULT.with_patch(0.3).with_smallest_patch(0.1).with_tolerance(Some(0.01));
+    let told = std::sync::Mutex::new(vec![]);
+    let done = |share: f64| told.lock().expect("no panic").push(share);
+    let irradiance = |_: DVec3, n: DVec3| [n.y.max(0.0); 3];
+    let lamps = [Lamp::Point { position: dvec3(0.5, 0.9, 0.5), irradiance: &irradiance, shadow: true }];
+    let mut scene = Scene::new(&surfaces, &options).expect("a room");
+    let direct = scene.direct_with(&lamps, &done).expect("a lamp");
+    let lit = told.lock().expect("no panic").len();
+    assert!(lit >= scene.patch_count());
+    scene.transport_with(&direct, &done).expect("a room");
+    let told = told.into_inner().expect("no panic");
+    assert!(told.len() > lit + 6 && told.iter().all(|share| (0.0..=1.0).contains(share)));
 }

@@ -8,7 +8,8 @@ use crate::radiosity_surfaces::{SceneSurfaces, scene_surfaces};
 use crate::scene::{Scene, SceneError};
 use glam::DVec3;
 use pointillist_radiosity as radiosity;
-use pointillist_radiosity::{RadiosityError, SceneOptions, SolveOptions};
+use pointillist_radiosity::{Baked, RadiosityError, RayOptions, SceneOptions, SolveOptions};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How light between surfaces is solved for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,11 +21,23 @@ pub struct IndirectOptions {
     pub tolerance: f64,
     /// Scenes of more patches are linked by groups. Default: 1000.
     pub most_full: usize,
+    /// Scenes of more surfaces are linked by rays: every pair of surfaces is looked at for groups. Default: 2000.
+    pub most_paired: usize,
 }
+
+/// Units of work that a monitor is told of, and shares of it after which direct light, links and the solution are there, about: by pairs, and by rays.
+const UNITS: u64 = 1000;
+const OF_PAIRS: [f64; 3] = [0.02, 0.8, 0.82];
+const OF_RAYS: [f64; 3] = [0.1, 0.2, 0.25];
+/// By rays, patches are divided down to this share of their size where light changes fast.
+const FINEST: f64 = 1.0 / 8.0;
+/// Tolerance of the solver by rays: far below the error of links.
+const SOLVED_TO: f64 = 1e-4;
 
 impl IndirectOptions {
     /// The defaults, as a constant.
-    pub const DEFAULT: Self = Self { patches_across: 32.0, tolerance: 0.01, most_full: 1000 };
+    pub const DEFAULT: Self =
+        Self { patches_across: 32.0, tolerance: 0.01, most_full: 1000, most_paired: 2000 };
 
     /// Divides the longest side of the scene into so many patches.
     #[must_use]
@@ -44,6 +57,13 @@ impl IndirectOptions {
     #[must_use]
     pub const fn with_most_full(mut self, patches: usize) -> Self {
         self.most_full = patches;
+        self
+    }
+
+    /// Looks at pairs in scenes of at most so many surfaces.
+    #[must_use]
+    pub const fn with_most_paired(mut self, surfaces: usize) -> Self {
+        self.most_paired = surfaces;
         self
     }
 }
@@ -83,17 +103,84 @@ pub fn solve_indirect(
     monitor: &dyn Monitor,
 ) -> Result<Lightmap, IndirectError> {
     let surfaces = scene_surfaces(scene)?;
-    let mut patches = stage(monitor, "divide", || divided(&surfaces, options))?;
+    monitor.begin(UNITS);
+    let baked = if surfaces.surfaces.len() > options.most_paired {
+        by_rays(scene, &surfaces, options, monitor)?
+    } else {
+        by_pairs(scene, &surfaces, options, monitor)?
+    };
+    Ok(Lightmap::of_baked(&baked, &surfaces.faces, scene.mesh.triangles.len())?)
+}
+
+/// Tells a monitor how far all the work is.
+struct Told<'m> {
+    monitor: &'m dyn Monitor,
+    units: AtomicU64,
+}
+
+impl Told<'_> {
+    /// As far as this share of the way between two shares of all.
+    fn reach(&self, [from, to]: [f64; 2], share: f64) {
+        let units = ((from + (to - from) * share).clamp(0.0, 1.0) * UNITS as f64) as u64;
+        let before = self.units.fetch_max(units, Ordering::Relaxed);
+        if units > before {
+            self.monitor.advance(units - before);
+        }
+    }
+}
+
+/// By links between patches, or groups of them.
+fn by_pairs(
+    scene: &Scene,
+    surfaces: &SceneSurfaces,
+    options: &IndirectOptions,
+    monitor: &dyn Monitor,
+) -> Result<Baked, IndirectError> {
+    let [lit, linked, solved] = OF_PAIRS;
+    let told = Told { monitor, units: AtomicU64::new(0) };
+    let mut patches = stage(monitor, "divide", || divided(surfaces, options))?;
     go_on(monitor)?;
     let lamps = Lamps::new(scene);
-    let direct = stage(monitor, "direct", || with_lamps(&lamps, |list| patches.direct(list)))?;
+    let done = |share| told.reach([0.0, lit], share);
+    let direct = stage(monitor, "direct", || with_lamps(&lamps, |list| patches.direct_with(list, &done)))?;
     go_on(monitor)?;
-    let transport = stage(monitor, "factors", || patches.transport(&direct))?;
+    let done = |share| told.reach([lit, linked], share);
+    let transport = stage(monitor, "factors", || patches.transport_with(&direct, &done))?;
     go_on(monitor)?;
     let solution = stage(monitor, "solve", || transport.gauss_seidel(&SolveOptions::DEFAULT))?;
-    let baked = stage(monitor, "gather", || solution.bake());
+    go_on(monitor)?;
+    let done = |share| told.reach([solved, 1.0], share);
     monitor.count("patches", transport.patch_count() as u64);
-    Ok(Lightmap::of_baked(&baked, &surfaces.faces, scene.mesh.triangles.len())?)
+    Ok(stage(monitor, "gather", || solution.bake_with(&done)))
+}
+
+/// By links that rays find, for buildings.
+fn by_rays(
+    scene: &Scene,
+    surfaces: &SceneSurfaces,
+    options: &IndirectOptions,
+    monitor: &dyn Monitor,
+) -> Result<Baked, IndirectError> {
+    let [lit, linked, solved] = OF_RAYS;
+    let told = Told { monitor, units: AtomicU64::new(0) };
+    let patch = extent(surfaces) / options.patches_across;
+    let settings = SceneOptions::DEFAULT.with_squarer(false).with_patch(patch).with_smallest_patch(patch);
+    let mut patches = stage(monitor, "divide", || radiosity::Scene::new(&surfaces.surfaces, &settings))?;
+    go_on(monitor)?;
+    let lamps = Lamps::new(scene);
+    let done = |share| told.reach([0.0, lit], share);
+    let direct = stage(monitor, "direct", || with_lamps(&lamps, |list| patches.direct_with(list, &done)))?;
+    go_on(monitor)?;
+    let done = |share| told.reach([lit, linked], share);
+    let rays = RayOptions::DEFAULT.with_finest(patch * FINEST);
+    let transport = stage(monitor, "factors", || patches.transport_by_rays(&direct, &rays, &done))?;
+    go_on(monitor)?;
+    let settings = SolveOptions::DEFAULT.with_tolerance(SOLVED_TO);
+    let solution = stage(monitor, "solve", || transport.solve(&settings))?;
+    go_on(monitor)?;
+    let done = |share| told.reach([solved, 1.0], share);
+    monitor.count("patches", transport.counts().patches as u64);
+    Ok(stage(monitor, "gather", || solution.bake_with(&done)))
 }
 
 /// The surfaces in patches: linked one by one if they are few, by groups if they are many.

@@ -12,8 +12,9 @@ use crate::radiosity_surfaces::SceneSurfaces;
 use glam::DVec3;
 use pointillist_radiosity::Surface;
 
-/// Scenes of more surfaces are left as they are: their surfaces are small, and so is what is hidden of one.
-const MOST: usize = 20_000;
+/// Scenes of more surfaces are left as they are: the sweep looks at all that overlap along x. The error of light in Sponza and Šibenik, with 50,000 surfaces, is
+/// the same within its doubt with and without cuts; they add 2 and 11 % to the surfaces.
+const MOST: usize = 100_000;
 
 /// Pieces of one surface at most.
 const MOST_PIECES: usize = 32;

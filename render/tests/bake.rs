@@ -269,6 +269,37 @@ fn probes_in_the_light_of_a_radiosity_solution_hold_all_bounces() {
     assert!(error_by_probes > 2.0 * error, "bounces by three probes are off by {error_by_probes}");
 }
 
+/// Buildings were linked pair by pair, which took for ever, and nothing was said meanwhile.
+#[test]
+fn light_solved_by_rays_is_that_by_pairs_and_tells_how_far_it_is() {
+    #[derive(Default)]
+    struct Told([std::sync::atomic::AtomicU64; 2]);
+    impl pointillist_render::Monitor for Told {
+        fn begin(&self, units: u64) {
+            self.0[0].fetch_add(units, std::sync::atomic::Ordering::Relaxed);
+        }
+        fn advance(&self, units: u64) {
+            self.0[1].fetch_add(units, std::sync::atomic::Ordering::Relaxed);
+        }
+    }
+    let scene = lamp_room(bulb());
+    let triangles = scene.mesh.triangles.clone();
+    let lights = [IndirectOptions::DEFAULT, IndirectOptions::DEFAULT.with_most_paired(0)].map(|options| {
+        let told = Told::default();
+        let light = solve_indirect(&scene, &options, &told).unwrap();
+        let [all, done] = told.0.map(std::sync::atomic::AtomicU64::into_inner);
+        assert!(all > 0 && done <= all && done > all / 2, "{done} of {all}");
+        light
+    });
+    let lit = |light: &pointillist_render::Lightmap| -> Vec<Vec3> {
+        let middle = |t: &[u32; 3]| t.iter().map(|&v| scene.mesh.positions[v as usize]).sum::<DVec3>() / 3.0;
+        triangles.iter().zip(0..).map(|(t, number)| light.irradiance(number, true, middle(t))).collect()
+    };
+    let [pairs, rays] = [&lights[0], &lights[1]].map(lit);
+    assert!(pairs.iter().any(|e| e.x > 0.0));
+    assert!(off(&rays, &pairs) < 0.05, "{}", off(&rays, &pairs));
+}
+
 #[test]
 fn economy_asks_for_no_more_shadows_than_thorough_pictures_and_errs_little() {
     let area = shade::Light::Rect {

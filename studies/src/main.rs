@@ -47,7 +47,7 @@ fn usage() -> String {
     for (name, what, _) in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`micropoint quick` prints a trial of a minute; `surfel quick` and `shprobe quick` take as long and write elsewhere. `shprobe --pictures DIR` draws, too.\n"
+    text + "  all         all of these\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`micropoint quick` prints a trial of a minute; `surfel quick` and `shprobe quick` take as long and write elsewhere. `shprobe --pictures DIR` draws, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`.\n"
 }
 
 fn main() -> ExitCode {
@@ -69,6 +69,7 @@ fn main() -> ExitCode {
         ["micropoint", "foliage"] => return code(micropoint::foliage::run(&out_dir)),
         ["micropoint", "checker"] => return code(micropoint::checker::run(&out_dir)),
         ["shadow", "area"] => return code(shadow::area::run(&out_dir)),
+        ["radiosity", _, ..] => return code(radiosity::run_parts(&out_dir, &arguments[1..])),
         ["shprobe", _, ..] => return code(shprobe::run_with(&out_dir, &arguments[1..])),
         [name] if name == "all" || STUDIES.iter().any(|s| s.0 == name) => name,
         _ => {

@@ -6,7 +6,7 @@ use super::options::RayOptions;
 use super::surroundings::{LIFT, Surroundings};
 use crate::error::RadiosityError;
 use crate::rays::sequence::shift_of;
-use crate::rgb::{Rgb, add, check_direct};
+use crate::rgb::{Rgb, add, replace_direct};
 use crate::scene::Scene;
 use crate::tree::ElementId;
 use pointillist_parallel as parallel;
@@ -56,12 +56,11 @@ impl Scene {
     ) -> Result<RayTransport, RadiosityError> {
         options.check()?;
         let leaves = self.tree.leaves();
-        check_direct(leaves.len(), direct)?;
+        let mut all = vec![[0.0; 3]; leaves.len()];
+        replace_direct(&mut all, direct)?;
         let around = Surroundings::new(&self, &leaves);
         let size = if options.size > 0.0 { options.size * self.scale } else { 1.0 / ACROSS };
         let links = Links::new(&self, &around, &leaves, (size * size, options.links), done);
-        let mut all = vec![[0.0; 3]; leaves.len()];
-        all[..direct.len()].copy_from_slice(direct);
         let mut transport = RayTransport {
             scene: self,
             leaves,
@@ -114,10 +113,7 @@ impl RayTransport {
     /// # Errors
     /// [`RadiosityError::CountMismatch`] and [`RadiosityError::DirectIrradiance`]; then nothing is changed.
     pub fn set_direct(&mut self, direct: &[Rgb]) -> Result<(), RadiosityError> {
-        check_direct(self.leaves.len(), direct)?;
-        self.direct.fill([0.0; 3]);
-        self.direct[..direct.len()].copy_from_slice(direct);
-        Ok(())
+        replace_direct(&mut self.direct, direct)
     }
 
     /// Gives a surface another reflectance and emission. Links stay; what emitters give is found anew only if the emission changes.

@@ -1,7 +1,7 @@
 //! Gauss–Seidel, root by root.
 
 use super::options::SolveOptions;
-use super::solution::Solution;
+use super::solution::{Solution, by_area};
 use super::state::State;
 use crate::error::RadiosityError;
 use crate::rgb::{Rgb, add, times};
@@ -40,7 +40,8 @@ pub(super) fn solve<'t>(
     }
     let radiosity = transport.leaves.iter().map(|&leaf| state.radiosity[leaf as usize]).collect();
     let State { radiosity: of_element, contraction, .. } = state;
-    Ok(Solution { transport, of_element, radiosity, bound, contraction, steps, history, converged })
+    let by_area = by_area(transport, &of_element);
+    Ok(Solution { transport, of_element, by_area, radiosity, bound, contraction, steps, history, converged })
 }
 
 /// A correction along v = ρ, which in bright closed rooms is close to the slowest mode of the error. The step is the one after which the

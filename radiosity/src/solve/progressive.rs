@@ -2,7 +2,7 @@
 
 use super::importance::check_importance;
 use super::options::SolveOptions;
-use super::solution::Solution;
+use super::solution::{Solution, by_area};
 use super::state::State;
 use crate::error::RadiosityError;
 use crate::rgb::{Rgb, add, times};
@@ -44,6 +44,7 @@ pub(super) fn solve<'t>(
     let radiosity = transport.leaves.iter().map(|&leaf| of_element[leaf as usize]).collect();
     Ok(Solution {
         transport,
+        by_area: by_area(transport, &of_element),
         of_element,
         radiosity,
         bound,

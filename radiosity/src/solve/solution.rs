@@ -11,8 +11,10 @@ use crate::transport::Transport;
 pub struct Solution<'t> {
     /// What was solved.
     pub(crate) transport: &'t Transport,
-    /// Radiosity of every element of the tree.
+    /// Radiosity of every element of the tree, as links see it.
     pub(crate) of_element: Vec<Rgb>,
+    /// The same, as free points see it: means by area alone.
+    pub(crate) by_area: Vec<Rgb>,
     /// Radiosity of each patch, power per area.
     pub radiosity: Vec<Rgb>,
     /// Bound on the error of any patch's radiosity, for the given form factors: ‖r‖∞ / (1 − max ρ·row sum), or where rows add
@@ -42,6 +44,23 @@ impl std::fmt::Debug for Solution<'_> {
     }
 }
 
+/// Means by area of all elements, of values that are right at the leaves.
+pub(super) fn by_area(transport: &Transport, of_element: &[Rgb]) -> Vec<Rgb> {
+    let mut means = of_element.to_vec();
+    let elements = &transport.scene.tree.elements;
+    // Children come after their parents.
+    for (i, element) in elements.iter().enumerate().rev().filter(|(_, e)| !e.is_leaf()) {
+        let (mut sum, mut area) = ([0.0; 3], 0.0);
+        for child in element.children() {
+            let own = elements[child as usize].polygon.area();
+            sum = add(sum, own, means[child as usize]);
+            area += own;
+        }
+        means[i] = sum.map(|s| s / area);
+    }
+    means
+}
+
 impl<'t> Solution<'t> {
     /// The transport that was solved.
     #[must_use]
@@ -58,10 +77,12 @@ impl<'t> Solution<'t> {
         let transport = self.transport;
         let mut sum = [0.0; 3];
         let mut element = Some(transport.leaves[index]);
+        let mut share = transport.scale[index];
         while let Some(id) = element {
             for entry in transport.row(id) {
-                sum = add(sum, entry.factor * transport.scale[index], self.of_element[entry.to as usize]);
+                sum = add(sum, entry.factor * share, self.of_element[entry.to as usize]);
             }
+            share *= transport.shares[id as usize];
             element = transport.parents[id as usize];
         }
         sum

@@ -13,7 +13,7 @@ pub(crate) struct State<'t> {
     pub(crate) transport: &'t Transport,
     /// Emission and reflected direct light of leaves, by element.
     pub(crate) source: Vec<Rgb>,
-    /// Mean radiosity of every element.
+    /// Mean radiosity of every element, as links see it.
     pub(crate) radiosity: Vec<Rgb>,
     /// Reflectance of leaves times the scale of their rows, by element.
     pub(crate) reflectance: Vec<Rgb>,
@@ -68,7 +68,8 @@ impl<'t> State<'t> {
             return;
         }
         for child in children {
-            self.sweep(child, arriving);
+            let share = self.transport.shares[child as usize];
+            self.sweep(child, arriving.map(|a| a * share));
         }
         self.radiosity[i] = self.pulled(&self.radiosity, element);
     }
@@ -80,11 +81,11 @@ impl<'t> State<'t> {
         row.iter().fold([0.0; 3], |sum, e| add(sum, e.factor, radiosity[e.to as usize]))
     }
 
-    /// Area-weighted mean of the children.
+    /// Mean of the children as links see it: by area and share.
     pub(crate) fn pulled(&self, values: &[Rgb], element: ElementId) -> Rgb {
         let (mut sum, mut area) = ([0.0; 3], 0.0);
         for child in self.transport.scene.tree.elements[element as usize].children() {
-            sum = add(sum, self.area(child), values[child as usize]);
+            sum = add(sum, self.area(child) * self.transport.shares[child as usize], values[child as usize]);
             area += self.area(child);
         }
         sum.map(|s| s / area)
@@ -107,7 +108,8 @@ impl<'t> State<'t> {
         for element in 0..elements.len() as u32 {
             let here = add(arriving[element as usize], 1.0, self.gathered(values, element));
             for child in elements[element as usize].children() {
-                arriving[child as usize] = here;
+                let share = self.transport.shares[child as usize];
+                arriving[child as usize] = here.map(|h| h * share);
             }
             arriving[element as usize] = here;
         }

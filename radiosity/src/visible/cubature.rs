@@ -262,11 +262,15 @@ impl Cubature<'_> {
         self.work.cells += 1;
         let normal = self.receiver.normal();
         let list: Vec<&Polygon> = cell.occluders.iter().map(|&i| self.occluders[i as usize]).collect();
-        let mut met = vec![false; list.len()];
+        let searched = cell.depth < SEARCHED;
+        let mut met = vec![false; if searched { list.len() } else { 0 }];
         let (mut area, mut least, mut most) = (0.0, f64::MAX, 0.0_f64);
         let mut hidden_at = |p: DVec3| {
             let occluders = list.iter().copied();
-            let hidden = self.flat.hidden_share((p, normal), occluders, self.pieces, |i| met[i] = true);
+            let mut meets = |i: usize| met[i] = true;
+            // Only the upper cells look for occluders that slip through.
+            let meets: Option<&mut dyn FnMut(usize)> = if searched { Some(&mut meets) } else { None };
+            let hidden = self.flat.hidden_share((p, normal), occluders, self.pieces, meets);
             (least, most) = (least.min(hidden), most.max(hidden));
             hidden
         };
@@ -287,7 +291,7 @@ impl Cubature<'_> {
             }
         }
         cell.spread = SPREAD * area * (most - least);
-        if cell.depth < SEARCHED {
+        if searched {
             let unmet = met.iter().zip(&list).filter(|(met, _)| !**met).map(|(_, occluder)| *occluder);
             cell.error = unmet.map(|occluder| self.missed(&cell.quad, occluder)).sum();
         }

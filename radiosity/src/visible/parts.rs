@@ -96,7 +96,7 @@ impl Source {
         pieces: &'s mut Pieces,
     ) -> (&'s [ConvexPolygon], bool) {
         let mut cut = false;
-        self.hide((eye, Last::LeavesPieces), occluders, pieces, |_| (), |_| cut = true);
+        self.hide((eye, Last::LeavesPieces), occluders, pieces, None, |_| cut = true);
         (&pieces.seen, cut)
     }
 
@@ -106,7 +106,7 @@ impl Source {
         (point, normal): (DVec3, DVec3),
         occluders: impl Iterator<Item = &'p Polygon>,
         pieces: &mut Pieces,
-        meets: impl FnMut(usize),
+        meets: Option<&mut dyn FnMut(usize)>,
     ) -> f64 {
         let mut sum = 0.0;
         let visit = |hidden: &ConvexPolygon| sum += self.share_of(point, normal, hidden);
@@ -115,13 +115,13 @@ impl Source {
     }
 
     /// Takes from the source, occluder by occluder, what it hides of what is left; `visit` gets these pieces, which do not overlap.
-    /// `meets` is told of every occluder before the source, whether others hide the same or not.
+    /// `meets` is told of every occluder before the source, whether others hide the same or not; without it, nothing is looked at once all is hidden.
     fn hide<'p>(
         &self,
         (eye, last): (Eye, Last),
         occluders: impl Iterator<Item = &'p Polygon>,
         pieces: &mut Pieces,
-        mut meets: impl FnMut(usize),
+        mut meets: Option<&mut dyn FnMut(usize)>,
         mut visit: impl FnMut(&ConvexPolygon),
     ) {
         pieces.seen.clear();
@@ -129,11 +129,14 @@ impl Source {
         let mut any = false;
         let mut occluders = occluders.enumerate().peekable();
         while let Some((index, occluder)) = occluders.next() {
+            if pieces.seen.is_empty() && meets.is_none() {
+                break;
+            }
             if self.shadow(eye, occluder, &mut pieces.sides) {
                 let goes_on = last == Last::LeavesPieces || occluders.peek().is_some();
                 let hides = pieces.subtract(goes_on, &mut visit);
                 // What is behind others already may still be before the source.
-                if hides || any {
+                if let (true, Some(meets)) = (hides || any, &mut meets) {
                     meets(index);
                 }
                 any |= hides;
@@ -195,11 +198,20 @@ impl Source {
 impl Pieces {
     /// Takes away what lies in all half-planes, and visits it; false if there is none. Pieces are `kept` if what is left matters.
     fn subtract(&mut self, kept: bool, mut visit: impl FnMut(&ConvexPolygon)) -> bool {
+        let is_apart = |piece: &ConvexPolygon, sides: &[HalfPlane]| {
+            sides.iter().any(|half| piece.vertices().iter().all(|&v| half.value(v) <= 0.0))
+        };
+        // Most occluders hide nothing of what others have left, and then nothing is copied.
+        let Some(first) = self.seen.iter().position(|piece| !is_apart(piece, &self.sides)) else {
+            return false;
+        };
         self.next.clear();
+        if kept {
+            self.next.extend_from_slice(&self.seen[..first]);
+        }
         let mut any = false;
-        for piece in &self.seen {
-            let apart = |half: &HalfPlane| piece.vertices().iter().all(|&v| half.value(v) <= 0.0);
-            if self.sides.iter().any(apart) {
+        for (number, piece) in self.seen.iter().enumerate().skip(first) {
+            if number > first && is_apart(piece, &self.sides) {
                 if kept {
                     self.next.push(*piece);
                 }

@@ -1,28 +1,25 @@
 //! Buildings by links that are rays: cost, and error against paths.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use cpu_time::ProcessTime;
 use glam::{DVec3, dvec3};
 use pointillist_cli::scene::{Overrides, load_to_bake};
 use pointillist_radiosity::invariants::paths::Paths;
-use pointillist_radiosity::{Baked, Lamp, RayOptions, Scene, SceneOptions, SolveOptions, Surface};
+use pointillist_radiosity::{
+    Baked, Lamp, RayOptions, RayTransport, Rgb, Scene, SceneOptions, SolveOptions, Surface,
+};
 use pointillist_render::{Lamps, Lightmap, scene_surfaces, with_lamps};
 use rayon::prelude::*;
 
 use crate::common::data::{SKIPPED, folder};
-use crate::common::ray_reference::random;
+use crate::common::report::{Outcome, Row, chart_along};
+use crate::radiosity::memory;
+use crate::radiosity::paths::{Error, PATHS, POINTS, Reference, room_around, size_of};
 
-type Written = Result<(), Box<dyn std::error::Error + Send + Sync>>;
+type Fault = Box<dyn std::error::Error + Send + Sync>;
 
-/// Points at which light is compared.
-const POINTS: usize = 500;
-/// Paths of each.
-const PATHS: usize = 4096;
-/// Points darker than this share of the mean are left out: most are inside walls.
-const DARK: f64 = 0.02;
-/// So are points that another surface covers at less than this share of the scene's size.
-const COVERED: f64 = 1e-4;
 /// Patches along the longest side, and how much finer they may become.
 const ACROSS: f64 = 32.0;
 const FINER: f64 = 8.0;
@@ -38,7 +35,7 @@ const BUILDINGS: [(&str, &str, &str); 3] = [
     (
         "Šibenik",
         "scenes/sibenik/sibenik.obj",
-        "[[light]]\ntype = \"point\"\nposition = [-560, 120, 0]\nintensity = [2e5, 1.8e5, 1.5e5]\n\
+        "[[light]]\ntype = \"point\"\nposition = [-100, 120, 0]\nintensity = [2e5, 1.8e5, 1.5e5]\n\
          [[light]]\ntype = \"point\"\nposition = [400, 150, 0]\nintensity = [2e5, 2e5, 2.3e5]\n",
     ),
     (
@@ -54,172 +51,235 @@ struct Cost {
     patches: usize,
     links: usize,
     baked: Baked,
+    transport: RayTransport,
+    gathered: Vec<Rgb>,
 }
 
-fn bake(surfaces: &[Surface], lamps: &[Lamp<'_>]) -> Result<Cost, pointillist_radiosity::RadiosityError> {
+/// Patches along the longest side, and how much finer they may become.
+type Sizes = (f64, f64);
+
+fn bake(
+    surfaces: &[Surface],
+    lamps: &[Lamp<'_>],
+    (across, finer): Sizes,
+) -> Result<Cost, pointillist_radiosity::RadiosityError> {
     let start = ProcessTime::now();
-    let patch = size_of(surfaces) / ACROSS;
+    let tell = |what: &str| eprintln!("    {:6.1} s {what}", start.elapsed().as_secs_f64());
+    let patch = size_of(surfaces) / across;
     let options = SceneOptions::DEFAULT.with_squarer(false).with_patch(patch).with_smallest_patch(patch);
     let mut scene = Scene::new(surfaces, &options)?;
+    tell("divided");
     let direct = scene.direct(lamps)?;
-    let options = RayOptions::DEFAULT.with_finest(patch / FINER);
+    tell("direct light");
+    let options = RayOptions::DEFAULT.with_finest(patch / finer);
     let transport = scene.transport_by_rays(&direct, &options, &|_| ())?;
+    tell("links");
     let solution = transport.solve(&SolveOptions::DEFAULT.with_tolerance(1e-4))?;
+    tell("solution");
     let baked = solution.bake();
+    tell("vertices");
     let counts = transport.counts();
     let seconds = start.elapsed().as_secs_f64();
-    Ok(Cost { seconds, patches: counts.patches, links: counts.links, baked })
+    let gathered = solution.gathered().to_vec();
+    Ok(Cost { seconds, patches: counts.patches, links: counts.links, baked, transport, gathered })
 }
 
-fn size_of(surfaces: &[Surface]) -> f64 {
-    let all = surfaces.iter().flat_map(|s| &s.vertices);
-    let (low, high) = all.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
-    (high - low).max_element()
-}
-
-/// Time and error of the buildings among the large data.
-pub(crate) fn solve(text: &mut String) -> Written {
+/// Time, memory and error of the buildings among the large data.
+pub(crate) fn solve(text: &mut String) -> Outcome {
     writeln!(
         text,
         "\n## Buildings\n\nLinks by rays, patches of a {ACROSS}nd of the longest side, for drawing divided down to an {FINER}th of that; direct light, links, solution and \
-         vertices together. Error: of the baked irradiance without the lamps' own, as `render` reads it, root mean square over {POINTS} points of surfaces of the mean of \
-         the bands, relative to that of the paths' (in brackets relative to their mean); {PATHS} paths a point. Points darker than {DARK} of the mean or \
-         covered by another surface are left out.\n"
+         vertices together, in processor seconds of all threads; memory is the most that the process had meanwhile, the scene with its pictures included. Error: of the baked \
+         irradiance without the lamps' own, as `render` reads it, at {POINTS} points of surfaces, spread by area, mean of the bands: root mean square over that of the paths' \
+         light (in brackets over its mean). The reference is two halves of {PATHS} paths a point each, drawn apart: the mean of the product of the differences from \
+         either has no noise of theirs in it. Its own noise is that of both halves together. ± is the standard error over ten groups of points. \
+         *At the points themselves*: by rays from there into the solution, without vertices between which light is interpolated.\n"
     )?;
     let Some(folder) = folder() else {
         writeln!(text, "{SKIPPED}")?;
-        return Ok(());
+        return Ok(true);
     };
     writeln!(
         text,
-        "| building | surfaces | patches | links | vertices | processor seconds | error % | noise of the paths % |"
+        "| building | surfaces | patches | links | vertices | processor seconds | MiB | error % | without the worst twentieth % | at the points themselves % | noise of the paths % | points |"
     )?;
-    writeln!(text, "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")?;
+    writeln!(text, "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")?;
+    let mut around = vec![];
     for (name, mesh, lights) in BUILDINGS {
-        let toml = format!(
-            "[camera]\neye = [0, 0, 0]\ntarget = [1, 0, 0]\n[[object]]\nmesh = {:?}\n{SUN}{lights}",
-            folder.join(mesh)
+        eprintln!("  {name}");
+        around.push(building(text, name, &folder.join(mesh), lights)?);
+    }
+    writeln!(text, "\nAround the lamps: {}.", around.join("; "))?;
+    Ok(true)
+}
+
+/// The scene of a building in the sun and in the light of some lamps.
+fn load(mesh: &Path, lights: &str) -> Result<pointillist_render::Scene, Fault> {
+    let toml =
+        format!("[camera]\neye = [0, 0, 0]\ntarget = [1, 0, 0]\n[[object]]\nmesh = {mesh:?}\n{SUN}{lights}");
+    let file = std::env::temp_dir().join(format!("pointillist-building-{}.toml", std::process::id()));
+    std::fs::write(&file, toml)?;
+    let scene = load_to_bake(&file, &Overrides::default());
+    std::fs::remove_file(&file)?;
+    Ok(scene?.scene)
+}
+
+/// One row of the table; returns what is around the lamps.
+fn building(text: &mut String, name: &str, mesh: &Path, lights: &str) -> Result<String, Fault> {
+    let scene = load(mesh, lights)?;
+    let found = scene_surfaces(&scene)?;
+    let lamps = Lamps::new(&scene);
+    with_lamps(&lamps, |lamps| {
+        memory::forget_peak();
+        let cost = bake(&found.surfaces, lamps, (ACROSS, FINER))?;
+        let megabytes = memory::peak_mebibytes().map_or("–".to_owned(), |m| format!("{m:.0}"));
+        let map = Lightmap::of_baked(&cost.baked, &found.faces, scene.mesh.triangles.len())?;
+        let reference = Reference::new(&found.surfaces, &Paths::new(&found.surfaces, lamps));
+        eprintln!("    reference of {} points", reference.points.len());
+        let error = reference.error(&|surface, front, position| {
+            let face = |&f: &u32| map.irradiance(f, front, position).as_dvec3().element_sum() / 3.0;
+            found.faces[surface].first().map_or(0.0, face)
+        });
+        let at_points = itself(&cost, &reference)?;
+        let row = format!(
+            "| {name} | {} | {} | {} | {} | {:.0} | {megabytes} | {:.1} ± {:.1} ({:.1}) | {:.1} | {:.1} ± {:.1} | {:.1} | {} |",
+            found.surfaces.len(),
+            cost.patches,
+            cost.links,
+            cost.baked.vertices.len(),
+            cost.seconds,
+            100.0 * error.relative,
+            100.0 * error.doubt,
+            100.0 * error.to_mean,
+            100.0 * error.without_worst,
+            100.0 * at_points.relative,
+            100.0 * at_points.doubt,
+            100.0 * error.noise,
+            reference.points.len(),
         );
-        let file = std::env::temp_dir().join(format!("pointillist-building-{}.toml", std::process::id()));
-        std::fs::write(&file, toml)?;
-        let scene = load_to_bake(&file, &Overrides::default());
-        std::fs::remove_file(&file)?;
-        let scene = scene?.scene;
-        let found = scene_surfaces(&scene)?;
-        let lamps = Lamps::new(&scene);
-        with_lamps(&lamps, |lamps| -> Written {
-            let cost = bake(&found.surfaces, lamps)?;
+        eprintln!("    {row}");
+        writeln!(text, "{row}")?;
+        Ok(format!("{name}: {}", room_around(&found.surfaces, lamps)))
+    })
+}
+
+/// Sizes of patches: cost and error of the first building.
+pub(crate) fn sizes(text: &mut String) -> Outcome {
+    const TRIED: [Sizes; 5] = [(32.0, 1.0), (32.0, 4.0), (32.0, 8.0), (32.0, 16.0), (64.0, 4.0)];
+    let (name, mesh, lights) = BUILDINGS[0];
+    writeln!(
+        text,
+        "\n## Error against the size of patches\n\n{name} as above: patches along the longest side, and how much finer those for drawing may become.\n"
+    )?;
+    let Some(folder) = folder() else {
+        writeln!(text, "{SKIPPED}")?;
+        return Ok(true);
+    };
+    writeln!(
+        text,
+        "| patches | finer | vertices | processor seconds | error % | without the worst twentieth % |\n| ---: | ---: | ---: | ---: | ---: | ---: |"
+    )?;
+    let scene = load(&folder.join(mesh), lights)?;
+    let found = scene_surfaces(&scene)?;
+    let lamps = Lamps::new(&scene);
+    with_lamps(&lamps, |lamps| {
+        let reference = Reference::new(&found.surfaces, &Paths::new(&found.surfaces, lamps));
+        for (across, finer) in TRIED {
+            let cost = bake(&found.surfaces, lamps, (across, finer))?;
             let map = Lightmap::of_baked(&cost.baked, &found.faces, scene.mesh.triangles.len())?;
-            let error = compare(&found.surfaces, lamps, &|surface, front, position| {
+            let error = reference.error(&|surface, front, position| {
                 let face = |&f: &u32| map.irradiance(f, front, position).as_dvec3().element_sum() / 3.0;
                 found.faces[surface].first().map_or(0.0, face)
             });
-            writeln!(
-                text,
-                "| {name} | {} | {} | {} | {} | {:.0} | {:.1} ({:.1}) | {:.1} |",
-                found.surfaces.len(),
-                cost.patches,
-                cost.links,
+            let row = format!(
+                "| {across} | {finer} | {} | {:.0} | {:.1} ± {:.1} | {:.1} |",
                 cost.baked.vertices.len(),
                 cost.seconds,
                 100.0 * error.relative,
-                100.0 * error.to_mean,
-                100.0 * error.noise
-            )?;
-            Ok(())
-        })?;
-    }
-    Ok(())
+                100.0 * error.doubt,
+                100.0 * error.without_worst
+            );
+            eprintln!("    {row}");
+            writeln!(text, "{row}")?;
+        }
+        Ok(true)
+    })
 }
 
-struct Error {
-    relative: f64,
-    to_mean: f64,
-    noise: f64,
-}
-
-/// Compares with paths at points that are spread over all sides of surfaces by area; `light` is told surface, whether in front, and where.
-fn compare(
-    surfaces: &[Surface],
-    lamps: &[Lamp<'_>],
-    light: &(dyn Fn(usize, bool, DVec3) -> f64 + Sync),
-) -> Error {
-    let paths = Paths::new(surfaces, lamps);
-    let area = |s: &Surface| (1..s.vertices.len() - 1).map(|i| cross(&s.vertices, i).length()).sum::<f64>();
-    let mut sums = vec![];
-    let mut whole = 0.0;
-    for surface in surfaces {
-        whole += area(surface);
-        sums.push(whole);
-    }
-    let mut state = 0x1234_5678_9abc_def1;
-    let candidates: Vec<(usize, bool, DVec3, DVec3)> = (0..20 * POINTS)
-        .map(|_| {
-            let wanted = random(&mut state) * whole;
-            let surface = sums.partition_point(|&s| s < wanted).min(sums.len() - 1);
-            let ring = &surfaces[surface].vertices;
-            let i = 1 + (random(&mut state) * (ring.len() - 2) as f64) as usize;
-            let (x, y) = (random(&mut state).sqrt(), random(&mut state));
-            let at = ring[0] * (1.0 - x) + ring[i] * (x * (1.0 - y)) + ring[i + 1] * (x * y);
-            let front = !surfaces[surface].two_sided || random(&mut state) < 0.5;
-            let normal = cross(ring, i).normalize_or_zero() * if front { 1.0 } else { -1.0 };
-            (surface, front, at, normal)
+/// The error of the solution where light is gathered at the points themselves, by as many rays as its own noise asks for.
+fn itself(cost: &Cost, reference: &Reference) -> Result<Error, Fault> {
+    /// Times that a point is asked, each a hair beside it, which takes other rays.
+    const TIMES: usize = 16;
+    let solution =
+        cost.transport.solve_from(cost.gathered.clone(), &SolveOptions::DEFAULT.with_tolerance(1e-4))?;
+    let lights = reference
+        .points
+        .par_iter()
+        .map(|p| {
+            (1..=TIMES).try_fold(0.0, |sum, k| {
+                let beside = p.at + p.normal * (p.at.abs().max_element() * 1e-12 * k as f64 + reference.lift);
+                Ok(sum + solution.irradiance(beside, p.normal)?.iter().sum::<f64>() / (3 * TIMES) as f64)
+            })
         })
-        .collect();
-    let mean = |v: [f64; 3]| v.iter().sum::<f64>() / 3.0;
-    let pilot: Vec<f64> =
-        candidates.par_iter().map(|&(.., at, normal)| mean(paths.irradiance(at, normal, 49, 1).0)).collect();
-    let usual = pilot.iter().sum::<f64>() / pilot.len() as f64;
-    let lit = |&&(k, &(.., at, normal)): &&(usize, &(usize, bool, DVec3, DVec3))| {
-        pilot[k] > DARK * usual && paths.clearance(at, normal) > COVERED
-    };
-    let list: Vec<_> = candidates.iter().enumerate().collect();
-    let chosen: Vec<_> = list.iter().filter(lit).take(POINTS).collect();
-    let sums = chosen.par_iter().map(|&&(k, &(surface, front, at, normal))| {
-        let (exact, noise) = paths.irradiance(at, normal, PATHS, k as u64 + 7);
-        let (exact, noise) = (mean(exact), mean(noise));
-        let off = light(surface, front, at) - exact;
-        [off * off, exact * exact, exact, noise * noise]
-    });
-    let sums: Vec<[f64; 4]> = sums.collect();
-    let [off, squares, total, noise] = sums.iter().fold([0.0; 4], |m, s| [0, 1, 2, 3].map(|i| m[i] + s[i]));
-    let count = sums.len() as f64;
-    Error {
-        relative: (off / squares).sqrt(),
-        to_mean: (off / count).sqrt() / (total / count),
-        noise: (noise / squares).sqrt(),
-    }
+        .collect::<Vec<Result<f64, pointillist_radiosity::RadiosityError>>>();
+    let lights: Vec<f64> = lights.into_iter().collect::<Result<_, _>>()?;
+    Ok(reference.error_of(&lights))
 }
 
-fn cross(ring: &[DVec3], i: usize) -> DVec3 {
-    (ring[i] - ring[0]).cross(ring[i + 1] - ring[0])
-}
-
-/// How cost grows with the number of surfaces: halls of columns, each of 24 sides.
-pub(crate) fn growth(text: &mut String) -> Written {
+/// How cost grows with the number of surfaces: halls of columns, each of 24 sides. Draws `radiosity-growth.svg`.
+pub(crate) fn growth(text: &mut String, out_dir: &Path) -> Outcome {
     writeln!(
         text,
-        "\n## Cost against the number of surfaces\n\nHalls of columns of 24 sides under a lamp, of the same size, as above.\n"
+        "\n## Cost against the number of surfaces\n\nHalls of columns of 24 sides under a lamp, of the same size, as above (`radiosity-growth.svg`).\n"
     )?;
-    writeln!(text, "| columns | surfaces | processor seconds |\n| ---: | ---: | ---: |")?;
-    let mut points = vec![];
+    writeln!(
+        text,
+        "| columns | surfaces | patches | vertices | processor seconds |\n| ---: | ---: | ---: | ---: | ---: |"
+    )?;
+    let mut rows = vec![];
     for side in [8, 16, 32, 64] {
         let surfaces = hall(side);
+        eprintln!("  {} surfaces", surfaces.len());
         let position = dvec3(5.03, 5.1, 2.2);
         let irradiance = |p: DVec3, n: DVec3| {
             let way = position - p;
             [10.0 * way.dot(n).max(0.0) / way.length().powi(3); 3]
         };
         let lamps = [Lamp::Point { position, irradiance: &irradiance, shadow: true }];
-        let cost = bake(&surfaces, &lamps)?;
-        writeln!(text, "| {} | {} | {:.1} |", side * side, surfaces.len(), cost.seconds)?;
-        points.push(((surfaces.len() as f64).ln(), cost.seconds.ln()));
+        let cost = bake(&surfaces, &lamps, (ACROSS, FINER))?;
+        let vertices = cost.baked.vertices.len();
+        writeln!(
+            text,
+            "| {} | {} | {} | {vertices} | {:.1} |",
+            side * side,
+            surfaces.len(),
+            cost.patches,
+            cost.seconds
+        )?;
+        let count = surfaces.len() as f64;
+        let row = |series: &str, seconds: f64, value: f64| Row {
+            scene: "halls of columns".to_owned(),
+            series: series.to_owned(),
+            setting: side.to_string(),
+            seconds,
+            rmse: value,
+            largest: value,
+            more: vec![],
+        };
+        rows.push(row("processor seconds", count, cost.seconds));
     }
+    let points: Vec<(f64, f64)> = rows.iter().map(|r| (r.seconds.ln(), r.rmse.ln())).collect();
     let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / points.len() as f64;
     let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
     let slope = mean(&|p| (p.0 - x) * (p.1 - y)) / mean(&|p| (p.0 - x) * (p.0 - x));
-    writeln!(text, "\nFitted: seconds grow with the power {slope:.2} of the number of surfaces.")?;
-    Ok(())
+    let last = points.len() - 1;
+    let end = (points[last].1 - points[last - 1].1) / (points[last].0 - points[last - 1].0);
+    writeln!(
+        text,
+        "\nFitted: seconds grow with the power {slope:.2} of the number of surfaces; over the last step, {end:.2}."
+    )?;
+    chart_along(out_dir, "radiosity-growth", ["surfaces", "processor seconds"], &rows)?;
+    Ok(true)
 }
 
 /// A closed hall of 10 × 10 × 2.5 with `side` × `side` columns.

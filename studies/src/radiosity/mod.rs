@@ -2,8 +2,11 @@
 
 mod boxes;
 mod buildings;
+mod memory;
+mod moved;
+mod paths;
 mod peer;
 mod probes;
 mod study;
 
-pub(crate) use study::run;
+pub(crate) use study::{run, run_parts};

@@ -9,32 +9,81 @@ use pointillist_radiosity::{
     FactorOptions, Hemicube, HemicubeKind, Polygon, Scene, SceneOptions, SolveOptions, form_factor,
 };
 
-use crate::common::report::{Outcome, machine, timed};
+use crate::common::report::{Outcome, machine, timed, write};
 use crate::radiosity::boxes::{cornell, quad, room};
 use crate::radiosity::buildings;
+use crate::radiosity::moved;
 use crate::radiosity::peer;
 use crate::radiosity::probes;
 
+/// A part of the study: appends its sections.
+type Part = fn(&mut String) -> Outcome;
+
+const PARTS: [(&str, Part); 10] = [
+    ("open", |text| Ok(open_pairs(text).map(|()| true)?)),
+    ("hidden", |text| Ok(hidden_pairs(text).map(|()| true)?)),
+    ("hemicubes", |text| Ok(hemicubes(text).map(|()| true)?)),
+    ("boxes", boxes),
+    ("rooms", rooms),
+    ("moved", moved::compare),
+    ("probes", |text| probes::compare(text).map(|()| true)),
+    ("peer", peer::compare),
+    ("buildings", buildings::solve),
+    ("sizes", buildings::sizes),
+];
+
 /// Runs the study.
 pub(crate) fn run(out_dir: &Path) -> Outcome {
-    let mut text = format!(
-        "# Radiosity: time against error\n\n`cargo run --release -p studies -- radiosity`, on {}. Times are wall-clock, on a machine that does \
-         other things, too.\n",
+    for (name, part) in PARTS {
+        run_part(out_dir, name, part)?;
+    }
+    run_part(out_dir, "growth", |text| buildings::growth(text, out_dir))
+}
+
+/// Runs some of its parts; the others' sections stay as they are.
+pub(crate) fn run_parts(out_dir: &Path, names: &[&str]) -> Outcome {
+    for &name in names {
+        match PARTS.iter().find(|part| part.0 == name) {
+            Some((_, part)) => run_part(out_dir, name, part)?,
+            None if name == "growth" => run_part(out_dir, name, |text| buildings::growth(text, out_dir))?,
+            None => {
+                let known: Vec<&str> = PARTS.iter().map(|part| part.0).chain(["growth"]).collect();
+                return Err(format!("no part `{name}`: there are {}", known.join(", ")).into());
+            }
+        };
+    }
+    Ok(true)
+}
+
+/// Runs a part, and puts its sections in the place of those of the same name.
+fn run_part(out_dir: &Path, name: &str, part: impl Fn(&mut String) -> Outcome) -> Outcome {
+    eprintln!("radiosity: {name}");
+    let mut text = String::new();
+    part(&mut text)?;
+    println!("{text}");
+    let file = out_dir.join("radiosity.md");
+    let before = std::fs::read_to_string(&file).unwrap_or_default();
+    let mut sections: Vec<String> = sections(&before).map(str::to_owned).collect();
+    for section in self::sections(&text) {
+        let title = section.lines().next();
+        match sections.iter().position(|s| s.lines().next() == title) {
+            Some(place) => sections[place] = section.to_owned(),
+            None => sections.push(section.to_owned()),
+        }
+    }
+    let mut whole = format!(
+        "# Radiosity: time against error\n\n`cargo run --release -p studies -- radiosity`, on {}. Times are wall-clock unless they are said to be the \
+         processor's, on a machine that does other things, too. `radiosity PART…` runs some parts alone.\n",
         machine()
     );
-    open_pairs(&mut text)?;
-    hidden_pairs(&mut text)?;
-    hemicubes(&mut text)?;
-    boxes(&mut text)?;
-    rooms(&mut text)?;
-    buildings::solve(&mut text)?;
-    buildings::growth(&mut text)?;
-    probes::compare(&mut text)?;
-    peer::compare(&mut text)?;
-    std::fs::create_dir_all(out_dir)?;
-    std::fs::write(out_dir.join("radiosity.md"), &text)?;
-    println!("{text}");
+    sections.iter().for_each(|section| whole += &format!("\n## {}\n", section.trim_end()));
+    write(out_dir, "radiosity.md", &whole)?;
     Ok(true)
+}
+
+/// What follows each heading, with its title.
+fn sections(text: &str) -> impl Iterator<Item = &str> {
+    text.split("\n## ").skip(1)
 }
 
 fn polygon(o: DVec3, u: DVec3, v: DVec3) -> Polygon {

@@ -6,6 +6,7 @@ use crate::commands::Report;
 use crate::error::CliError;
 use crate::input;
 use crate::input_error::InputError;
+use crate::job::Watch;
 use crate::options::{BakeOptions, Indirect};
 use crate::scene::Scene;
 use glam::Vec3;
@@ -40,7 +41,10 @@ pub(super) fn known_light(
     let known = match indirect {
         Indirect::File(path) => read(path, scene)?,
         Indirect::Solve => {
-            let light = solve_indirect(scene, &IndirectOptions::DEFAULT, &report.stats);
+            let progress = report.progress();
+            let watch = Watch { task: "radiosity", progress: &progress, stats: &report.stats };
+            let light = solve_indirect(scene, &IndirectOptions::DEFAULT, &watch);
+            progress.finish();
             KnownLight {
                 light: light.map_err(|error| unsolved(&options.scene, error))?,
                 name: "solve".into(),

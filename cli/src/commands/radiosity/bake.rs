@@ -23,9 +23,9 @@ use std::path::Path;
 pub(super) const PATCHES_ACROSS: f64 = 32.0;
 /// Units of the progress bar, and shares of the time after which direct light, form factors and the solution are there, about.
 pub(super) const PROGRESS_STEPS: u64 = 1000;
-const LIT: f64 = 0.1;
-const LINKED: f64 = 0.5;
-const SOLVED: f64 = 0.55;
+const LIT: f64 = 0.02;
+const LINKED: f64 = 0.8;
+const SOLVED: f64 = 0.82;
 /// Scenes with more patches are linked by groups, unless said otherwise.
 const MOST_FULL: usize = 1000;
 /// Scenes with more surfaces are linked by rays, unless said otherwise: every pair of surfaces is looked at for groups.
@@ -153,7 +153,8 @@ impl Bake<'_> {
         let stats = &report.stats;
         let mut patches = stats.stage("divide", || self.divided())?;
         let lamps = Lamps::new(self.scene);
-        let direct = stats.stage("direct", || with_lamps(&lamps, |list| patches.direct(list)));
+        let done = |share| progress.reach(LIT * share);
+        let direct = stats.stage("direct", || with_lamps(&lamps, |list| patches.direct_with(list, &done)));
         let direct = direct.map_err(|e| self.refused(&e))?;
         progress.reach(LIT);
         let kind = match options.form_factor {
@@ -162,7 +163,7 @@ impl Bake<'_> {
             FormFactorKind::HemicubeClassic => Some(HemicubeKind::Classic),
         };
         let linked = stats.stage("factors", || match kind {
-            None => patches.transport(&direct),
+            None => patches.transport_with(&direct, &|share| progress.reach(LIT + (LINKED - LIT) * share)),
             Some(kind) => patches.transport_by_hemicubes(kind, options.resolution as usize, &direct),
         });
         let transport = linked.map_err(|e| self.refused(&e))?;

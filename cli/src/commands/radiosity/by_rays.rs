@@ -44,7 +44,8 @@ fn link(bake: &Bake<'_>, progress: &Progress) -> Result<RayTransport, CliError> 
     let divided = || radiosity::Scene::new(&bake.surfaces.surfaces, &settings);
     let mut scene = stats.stage("divide", divided).map_err(|e| bake.refused(&e))?;
     let lamps = Lamps::new(bake.scene);
-    let direct = stats.stage("direct", || with_lamps(&lamps, |list| scene.direct(list)));
+    let lit = |share| progress.reach(LIT * share);
+    let direct = stats.stage("direct", || with_lamps(&lamps, |list| scene.direct_with(list, &lit)));
     let direct = direct.map_err(|e| bake.refused(&e))?;
     progress.reach(LIT);
     let mut options = RayOptions::DEFAULT.with_finest(bake.options.adaptive.unwrap_or(patch * FINEST));
