@@ -20,10 +20,10 @@ pub(crate) struct Tree {
 /// A probe that was found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
-    /// Its effective distance: the distance over its factor.
+    /// Its effective distance: [`Extent::effective`].
     pub(crate) distance: f64,
-    /// What the distance was divided by.
-    pub(crate) factor: f64,
+    /// How much it sees of the position, 0 to 1.
+    pub(crate) seen: f64,
     /// From the position to the probe.
     pub(crate) offset: DVec3,
     pub(crate) probe: u32,
@@ -35,9 +35,16 @@ pub(crate) struct Extent {
     pub(crate) count: usize,
     pub(crate) rim: f64,
     pub(crate) most: usize,
+    /// What the distance of a probe that sees nothing of the position is divided by: above 0, at most 1.
+    pub(crate) unseen: f64,
 }
 
 impl Extent {
+    /// The distance of a probe that is farther the less it sees of the position.
+    pub(crate) fn effective(&self, distance: f64, seen: f64) -> f64 {
+        distance / (self.unseen + (1.0 - self.unseen) * seen)
+    }
+
     /// The effective distance up to which probes are found: `rim` times that of the `count`-th, but not more than that of
     /// the one after `most`. Infinite if there are fewer than `count` in this list, by rising distance.
     pub(crate) fn limit(&self, found: &[Found]) -> f64 {
@@ -64,16 +71,15 @@ impl Tree {
         Self { nodes, axes, low: low - margin, high: high + margin }
     }
 
-    /// Probes by rising effective distance, those of equal distance by their number. `factor` is above 0 and at most 1:
-    /// no probe is nearer than it is, so that a part of the tree that is too far as it is need not be asked. An empty
-    /// tree has none.
-    pub(crate) fn nearest(&self, p: DVec3, extent: Extent, factor: impl Fn(u32, DVec3) -> f64) -> Vec<Found> {
+    /// Probes by rising effective distance, those of equal distance by their number. `seen` is 0 to 1: no probe is nearer
+    /// than it is, so that a part of the tree that is too far as it is need not be asked. An empty tree has none.
+    pub(crate) fn nearest(&self, p: DVec3, extent: Extent, seen: impl Fn(u32, DVec3) -> f64) -> Vec<Found> {
         if self.nodes.is_empty() {
             return vec![];
         }
         let p = p.clamp(self.low, self.high);
         let found = Vec::with_capacity(extent.most + 2);
-        let mut search = Search { p, extent, factor, found, limit: f64::INFINITY };
+        let mut search = Search { p, extent, seen, found, limit: f64::INFINITY };
         self.visit(&mut search, 0, self.nodes.len(), DVec3::ZERO);
         search.found
     }
@@ -109,7 +115,7 @@ impl Tree {
 struct Search<F> {
     p: DVec3,
     extent: Extent,
-    factor: F,
+    seen: F,
     /// By rising distance.
     found: Vec<Found>,
     /// Nothing farther than this is wanted.
@@ -123,14 +129,14 @@ impl<F: Fn(u32, DVec3) -> f64> Search<F> {
         if plain > self.limit {
             return;
         }
-        let factor = (self.factor)(probe, position);
-        let distance = plain / factor;
+        let seen = (self.seen)(probe, position);
+        let distance = self.extent.effective(plain, seen);
         if distance > self.limit {
             return;
         }
         let before = |f: &Found| f.distance < distance || f.distance == distance && f.probe < probe;
         let at = self.found.partition_point(before);
-        self.found.insert(at, Found { distance, factor, offset, probe });
+        self.found.insert(at, Found { distance, seen, offset, probe });
         self.limit = self.extent.limit(&self.found);
         while self.found.last().is_some_and(|f| f.distance > self.limit) {
             self.found.pop();
@@ -169,16 +175,17 @@ mod tests {
     fn what_is_found_is_what_a_search_of_all_finds() {
         let positions = place::random(DVec3::ZERO, DVec3::ONE, 300, 3);
         let tree = Tree::new(positions.iter().copied().zip(0..), 1.0);
-        let extent = Extent { count: 6, rim: 1.3, most: 20 };
+        let extent = Extent { count: 6, rim: 1.3, most: 20, unseen: 0.1 };
         // Every third probe is ten times as far.
-        let factor = |probe: u32| if probe.is_multiple_of(3) { 0.1 } else { 1.0 };
+        let seen = |probe: u32| if probe.is_multiple_of(3) { 0.0 } else { 1.0 };
+        let factor = |probe: u32| 0.1 + 0.9 * seen(probe);
         for p in place::random(DVec3::splat(-0.5), DVec3::splat(1.5), 200, 4) {
             let mut all: Vec<(f64, u32)> =
                 (0..300).map(|i| ((positions[i as usize] - p).length() / factor(i), i)).collect();
             all.sort_by(|a, b| a.0.total_cmp(&b.0));
             let rim = (1.3 * all[5].0).min(all[20].0);
             let wanted: Vec<u32> = all.iter().filter(|a| a.0 <= rim).map(|a| a.1).collect();
-            let found: Vec<u32> = tree.nearest(p, extent, |i, _| factor(i)).iter().map(|f| f.probe).collect();
+            let found: Vec<u32> = tree.nearest(p, extent, |i, _| seen(i)).iter().map(|f| f.probe).collect();
             assert_eq!(found, wanted, "at {p}");
         }
     }
