@@ -28,6 +28,9 @@ pub const DEFAULT_DISTANCE_SIZE: usize = 16;
 /// Samples along a cell's side, at least and at most; between these there is one for half a texel of the cube map.
 const SAMPLES: [usize; 2] = [2, 8];
 
+/// Least distance that counts, over the mean of all: visibility is continuous also where a probe touches a surface.
+const LEAST: f64 = 1e-3;
+
 /// How much farther than the surface, relative to the position's distance, something is seen for certain: that many
 /// deviations, but at most so much. Where two walls meet, the square holds a surface that is nearer than both: without
 /// this what is in corners would be hidden. With more, light leaks about edges. By experiment, with two rooms and with
@@ -108,9 +111,10 @@ impl DistanceMap {
         if let Some(index) = distances.iter().position(|d| d.is_nan() || *d < 0.0) {
             return Err(ProbeError::BadDistances { index });
         }
+        let least = LEAST * mean_of(distances, far);
         // In the metric of the cube, ‖x‖∞, in which planes are linear on its faces.
         let nearness = |i: usize| {
-            let distance = f64::from(distances[i].clamp(Self::FARTHEST.recip(), far));
+            let distance = f64::from(distances[i].min(far)).max(least);
             1.0 / (distance * direction(i / area, i % area, cube_size).normalize().abs().max_element())
         };
         let cube: Vec<f64> = (0..6 * area).map(nearness).collect();
@@ -233,6 +237,12 @@ fn places(cell: usize, size: usize, parts: usize) -> impl Iterator<Item = DVec2>
     let corner = dvec2((cell % size) as f64, (cell / size) as f64);
     let part = move |k: usize| dvec2((k % parts) as f64, (k / parts) as f64) + 0.5;
     (0..parts * parts).map(move |k| (corner + part(k) / parts as f64) / size as f64)
+}
+
+/// The mean of distances of which none counts as more than `far`; above 0.
+fn mean_of(distances: &[f32], far: f32) -> f64 {
+    let sum: f64 = distances.iter().map(|d| f64::from(d.min(far))).sum();
+    (sum / distances.len() as f64).max(f64::from(DistanceMap::FARTHEST.recip()))
 }
 
 fn direction(face: usize, texel: usize, size: usize) -> DVec3 {

@@ -109,7 +109,7 @@ impl Field {
             glossy: GlossyLight::new(radiance),
             lights: radiance.iter().map(Irradiance::new).collect(),
             distances: None,
-            tree: Tree::new(positions.iter().copied().zip(0..), spacing),
+            tree: Tree::new(positions.iter().copied().zip(0..), spacing).with_lists(),
             bias: None,
         })
     }
@@ -122,7 +122,7 @@ impl Field {
         self.partition = partition;
         self.positions = positions;
         self.spacing = spacing(&self.positions, &self.partition);
-        self.tree = Tree::new(self.positions.iter().copied().zip(0..), self.spacing);
+        self.tree = Tree::new(self.positions.iter().copied().zip(0..), self.spacing).with_lists();
         Ok(())
     }
 
