@@ -12,7 +12,8 @@ use glam::{DVec3, Vec3};
 ///
 /// Space is divided into Delaunay tetrahedra; a position takes from the four probes around it by barycentric weights.
 /// Where the probes' distances are known, it takes from the nearest that see it instead, the nearer the more: within 1.3
-/// times the distance of the sixth of them, where a probe that does not see it counts as a hundred times as far.
+/// times the distance of the sixth of them, where a probe that does not see it counts as ten times as far and has next to
+/// no weight beside those that do.
 ///
 /// A surface takes from probes in front of it only, which fade out towards its plane, and where there is none from the
 /// nearest. Shares are continuous in the position and the normal, for any number of probes.
