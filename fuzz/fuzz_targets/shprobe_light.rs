@@ -13,8 +13,8 @@ struct Probe {
     /// Sixteenths of it are lattice points: grids, planes, lines and repeats come often.
     position: [i8; 3],
     radiance: [i16; 3],
-    /// Moments of a map of two by two texels.
-    moments: [[f32; 2]; 4],
+    /// Nearness and deviation of a map of one cell.
+    nodes: [[f32; 2]; 4],
 }
 
 #[derive(Arbitrary, Debug)]
@@ -42,7 +42,7 @@ fuzz_target!(|input: Input| {
         |p: &Probe| Sh::constant(DVec3::from_array(p.radiance.map(f64::from)), 1).expect("order 1");
     let radiance: Vec<Sh> = probes.iter().map(constant).collect();
     let maps: Vec<DistanceMap> = match input.sees {
-        true => probes.iter().filter_map(|p| DistanceMap::new(2, p.moments.to_vec()).ok()).collect(),
+        true => probes.iter().filter_map(|p| DistanceMap::new(1, &p.nodes).ok()).collect(),
         false => vec![],
     };
     let queries: Vec<DVec3> =

@@ -36,7 +36,7 @@ fn light(c: &mut Criterion) {
     for probes in [432, 10_000] {
         let blind = linear_field(probes);
         // Every probe sees as far as the box is wide.
-        let open = DistanceMap::new(16, vec![[2.0, 4.0]; 256]).expect("distances are finite");
+        let open = DistanceMap::new(16, &[[0.5, 0.0]; 289]).expect("nearness is finite");
         let seeing = blind.clone().with_distances(vec![open; probes]).expect("one map for each probe");
         for (name, field) in [("objects", &blind), ("objects and distances", &seeing)] {
             let inner = place::random(DVec3::splat(0.2), DVec3::splat(0.8), OBJECTS, 2);

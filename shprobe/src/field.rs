@@ -12,7 +12,8 @@ use glam::{DVec3, Vec3};
 ///
 /// Space is divided into Delaunay tetrahedra; a position takes from the four probes around it by barycentric weights.
 /// Where the probes' distances are known, it takes from the nearest that see it instead, the nearer the more: within 1.3
-/// times the distance of the sixth of them, where a probe that does not see it counts as a hundred times as far.
+/// times the distance of the sixth of them, where a probe that does not see it counts as ten times as far and has next to
+/// no weight beside those that do.
 ///
 /// A surface takes from probes in front of it only, which fade out towards its plane, and where there is none from the
 /// nearest. Shares are continuous in the position and the normal, for any number of probes.
@@ -109,7 +110,7 @@ impl Field {
             glossy: GlossyLight::new(radiance),
             lights: radiance.iter().map(Irradiance::new).collect(),
             distances: None,
-            tree: Tree::new(positions.iter().copied().zip(0..), spacing),
+            tree: Tree::new(positions.iter().copied().zip(0..), spacing).with_lists(),
             bias: None,
         })
     }
@@ -122,7 +123,7 @@ impl Field {
         self.partition = partition;
         self.positions = positions;
         self.spacing = spacing(&self.positions, &self.partition);
-        self.tree = Tree::new(self.positions.iter().copied().zip(0..), self.spacing);
+        self.tree = Tree::new(self.positions.iter().copied().zip(0..), self.spacing).with_lists();
         Ok(())
     }
 

@@ -1,11 +1,14 @@
 //! Which probes light a position: those that see it, and of a surface those on its lit side.
 //!
-//! 1. Every probe has a factor from [`UNSEEN`] to 1: what it sees of the position, times how far it is in front of the
-//!    surface ([`Spot::factor`]).
-//! 2. Its effective distance is its distance over this factor. A probe behind a wall counts as a hundred times as far.
+//! 1. Every probe sees so much of the position, 0 to 1: by its map, times how far it is in front of the surface
+//!    ([`Spot::seen`]).
+//! 2. Its effective distance is its distance over that, or over [`UNSEEN`] if it sees nothing.
 //! 3. Nearest first, those within [`RIM`] times the effective distance of the [`COUNT`]-th light the position, and at
 //!    most [`MOST`], with weights that fall to 0 at that rim: no probe is dropped before it has no weight. What is nearly
 //!    linear in the position is kept so ([`weights`]).
+//! 4. Weights are as much as is seen, without a lower bound but [`LEAST`]: visibility counts relative to that of those
+//!    that see the position best. In a corner, where maps are too coarse for any to see it well, those of the room are
+//!    still far ahead of what is behind its walls.
 //!
 //! All of these are continuous in the position and the normal, for any number of probes: the k-th smallest of
 //! continuous functions is continuous, and what goes out of reach has no weight by then. Where no probe is left
@@ -49,9 +52,12 @@ impl Shares {
     }
 }
 
-/// Factor of a probe that does not see the position, or is behind the surface. It is above 0, so that a position that no
-/// probe sees is lit by the nearest; the light that such probes give to positions that others see is below 1e-3.
-const UNSEEN: f64 = 0.01;
+/// What the distance of a probe that sees nothing of a position is divided by. It bounds how far is searched for probes
+/// that see it.
+const UNSEEN: f64 = 0.1;
+
+/// What is added to the part that a probe sees: positions of which no probe sees anything are lit, and continuously.
+const LEAST: f64 = 1e-5;
 
 /// Cosine, between the normal and the way to a probe, from which on the probe counts fully. Below it falls smoothly, to
 /// nothing at the plane of the surface. By experiment (`studies shprobe rooms`, dark face of the wall): 0.05 to
@@ -79,7 +85,7 @@ const PEAK_RANK: usize = 4;
 const PEAK: f64 = 0.11;
 
 /// What [`Tree::nearest`] is asked for.
-pub(crate) const EXTENT: Extent = Extent { count: COUNT, rim: RIM, most: MOST };
+pub(crate) const EXTENT: Extent = Extent { count: COUNT, rim: RIM, most: MOST, unseen: UNSEEN };
 
 /// Positions are clamped to this cube: the distances to what is farther would overflow.
 const FARTHEST: f64 = 1e152;
@@ -119,27 +125,26 @@ impl Spot {
         if t.is_nan() { 0.0 } else { t * t * (3.0 - 2.0 * t) }
     }
 
-    /// The factor of a probe at `probe` that sees as far as `map` says.
-    pub(crate) fn factor(&self, probe: DVec3, map: Option<&DistanceMap>) -> f64 {
+    /// How much a probe at `probe` sees of the spot, 0 to 1, if it sees as far as `map` says.
+    pub(crate) fn seen(&self, probe: DVec3, map: Option<&DistanceMap>) -> f64 {
         let offset = self.position - probe;
         let distance = offset.length();
         let side = self.side(offset, distance);
-        let seen = match map {
+        match map {
             Some(map) if side > 0.0 => {
                 side * map.visibility(offset + self.normal * self.bias.min(LIFT * distance))
             }
             _ => side,
-        };
-        UNSEEN + (1.0 - UNSEEN) * seen
+        }
     }
 }
 
 /// Weights of probes by rising effective distance, of which those at the rim or beyond it have none; not normalised.
 ///
-/// 1. factor · (1 − q²)² / (q² + c), where q is the distance over that of the rim. The numerator falls to 0 smoothly; the
+/// 1. (seen + [`LEAST`]) · (1 − q²)² / (q² + c), where q is the distance over that of the rim. The numerator falls to 0 smoothly; the
 ///    peak at the probe, that of an inverse squared distance, is as wide as the probes are apart.
 /// 2. These average light that changes across the position, and at the rim of all probes lag behind. So they are
-///    multiplied by 1 + factor · b·x, with x from the position to the probe and b such that linear functions are nearly
+///    multiplied by 1 + seen · b·x, with x from the position to the probe and b such that linear functions are nearly
 ///    reproduced ([`slope`]), and 0 where that is negative.
 ///
 /// Without any weight, where more than [`MOST`] are at the very same distance, all count alike.
@@ -153,12 +158,12 @@ pub(crate) fn weights(found: &[Found]) -> Vec<(u32, f64)> {
     let width = PEAK * over_rim(peak).powi(2) + f64::MIN_POSITIVE.sqrt();
     let plain = found.iter().map(|f| {
         let q2 = over_rim(f.distance).powi(2);
-        f.factor * (1.0 - q2).max(0.0).powi(2) / (q2 + width)
+        (f.seen + LEAST) * (1.0 - q2).max(0.0).powi(2) / (q2 + width)
     });
     let plain: Vec<f64> = plain.collect();
     let offset = |f: &Found| if rim > 0.0 { f.offset / rim } else { DVec3::ZERO };
-    let slope = slope(found.iter().zip(&plain).map(|(f, w)| (offset(f), w * f.factor)));
-    let corrected = |(f, w): (&Found, f64)| (f.probe, w * (1.0 + f.factor * slope.dot(offset(f))).max(0.0));
+    let slope = slope(found.iter().zip(&plain).map(|(f, w)| (offset(f), w * f.seen)));
+    let corrected = |(f, w): (&Found, f64)| (f.probe, w * (1.0 + f.seen * slope.dot(offset(f))).max(0.0));
     found.iter().zip(plain).map(corrected).collect()
 }
 
@@ -182,7 +187,7 @@ fn slope(probes: impl Iterator<Item = (DVec3, f64)>) -> DVec3 {
 
 /// The shares of a spot by what probes see, and for surfaces on which side they are. `map` is what a probe sees.
 pub(crate) fn by_sight<'m>(spot: &Spot, tree: &Tree, map: impl Fn(u32) -> Option<&'m DistanceMap>) -> Shares {
-    let found = tree.nearest(spot.position, EXTENT, |probe, at| spot.factor(at, map(probe)));
+    let found = tree.nearest(spot.position, EXTENT, |probe, at| spot.seen(at, map(probe)));
     Shares(weights(&found)).normalised()
 }
 

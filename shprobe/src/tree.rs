@@ -1,5 +1,6 @@
 //! The probes nearest to a position, in a metric that makes some of them farther than they are.
 
+use crate::parallel;
 use glam::DVec3;
 
 /// Probes in a k-d tree: sorted along alternating axes, the middle one first.
@@ -15,15 +16,17 @@ pub(crate) struct Tree {
     /// The box of all, with a margin.
     low: DVec3,
     high: DVec3,
+    /// What is near each part of the box; none without [`Tree::with_lists`].
+    lists: Lists,
 }
 
 /// A probe that was found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
-    /// Its effective distance: the distance over its factor.
+    /// Its effective distance: [`Extent::effective`].
     pub(crate) distance: f64,
-    /// What the distance was divided by.
-    pub(crate) factor: f64,
+    /// How much it sees of the position, 0 to 1.
+    pub(crate) seen: f64,
     /// From the position to the probe.
     pub(crate) offset: DVec3,
     pub(crate) probe: u32,
@@ -35,9 +38,16 @@ pub(crate) struct Extent {
     pub(crate) count: usize,
     pub(crate) rim: f64,
     pub(crate) most: usize,
+    /// What the distance of a probe that sees nothing of the position is divided by: above 0, at most 1.
+    pub(crate) unseen: f64,
 }
 
 impl Extent {
+    /// The distance of a probe that is farther the less it sees of the position.
+    pub(crate) fn effective(&self, distance: f64, seen: f64) -> f64 {
+        distance / (self.unseen + (1.0 - self.unseen) * seen)
+    }
+
     /// The effective distance up to which probes are found: `rim` times that of the `count`-th, but not more than that of
     /// the one after `most`. Infinite if there are fewer than `count` in this list, by rising distance.
     pub(crate) fn limit(&self, found: &[Found]) -> f64 {
@@ -61,21 +71,130 @@ impl Tree {
         let mut axes = vec![0; nodes.len()];
         divide(&mut nodes, &mut axes);
         let (low, high) = box_of(&nodes);
-        Self { nodes, axes, low: low - margin, high: high + margin }
+        Self { nodes, axes, low: low - margin, high: high + margin, lists: Lists::default() }
     }
 
-    /// Probes by rising effective distance, those of equal distance by their number. `factor` is above 0 and at most 1:
-    /// no probe is nearer than it is, so that a part of the tree that is too far as it is need not be asked. An empty
-    /// tree has none.
-    pub(crate) fn nearest(&self, p: DVec3, extent: Extent, factor: impl Fn(u32, DVec3) -> f64) -> Vec<Found> {
+    /// Probes by rising effective distance, those of equal distance by their number. `seen` is 0 to 1: no probe is nearer
+    /// than it is, so that a part of the tree that is too far as it is need not be asked. An empty tree has none.
+    pub(crate) fn nearest(&self, p: DVec3, extent: Extent, seen: impl Fn(u32, DVec3) -> f64) -> Vec<Found> {
         if self.nodes.is_empty() {
             return vec![];
         }
         let p = p.clamp(self.low, self.high);
-        let found = Vec::with_capacity(extent.most + 2);
-        let mut search = Search { p, extent, factor, found, limit: f64::INFINITY };
-        self.visit(&mut search, 0, self.nodes.len(), DVec3::ZERO);
-        search.found
+        let mut search = Search::new(p, extent, seen);
+        if !self.nearest_of_list(&mut search) {
+            search = Search::new(p, extent, search.seen);
+            self.visit(&mut search, 0, self.nodes.len(), DVec3::ZERO);
+        }
+        search.finish()
+    }
+
+    /// Makes lists of what is near, for many searches: most find all in one list, the nearest first.
+    pub(crate) fn with_lists(mut self) -> Self {
+        let mut parts = vec![];
+        self.parts(0, self.nodes.len(), (self.low, self.high), &mut parts);
+        let lists = parallel::map(parts.len(), |i| {
+            let (_, low, high) = parts[i];
+            let mut near = Near { low, high, list: Vec::with_capacity(LIST + 2) };
+            self.list(&mut near, 0, self.nodes.len(), (self.low, self.high));
+            near.list
+        });
+        let mut made = Lists { of_range: vec![0; self.nodes.len() + 1], ..Lists::default() };
+        for (list, (range, ..)) in lists.into_iter().zip(parts) {
+            made.of_range[range] = made.parts.len() as u32;
+            let start = made.all.len();
+            let beyond = list.get(LIST).map_or(f32::INFINITY, |l| l.least);
+            made.all.extend(list.into_iter().take(LIST));
+            made.parts.push(Part { start, end: made.all.len(), beyond });
+        }
+        self.lists = made;
+        self
+    }
+
+    /// The parts of the box that are not divided any further: where their range of nodes starts, and their corners.
+    fn parts(&self, low: usize, high: usize, space: (DVec3, DVec3), parts: &mut Vec<(usize, DVec3, DVec3)>) {
+        if high - low <= LEAF {
+            parts.push((low, space.0, space.1));
+            return;
+        }
+        let (middle, below, above) = self.halves(low, high, space);
+        self.parts(low, middle, below, parts);
+        self.parts(middle + 1, high, above, parts);
+    }
+
+    /// The node that divides a range, and the space below and above it.
+    fn halves(&self, low: usize, high: usize, space: (DVec3, DVec3)) -> (usize, Space, Space) {
+        let middle = low + (high - low) / 2;
+        let axis = usize::from(self.axes[middle]);
+        let (mut below, mut above) = (space, space);
+        below.1[axis] = self.nodes[middle].0[axis];
+        above.0[axis] = self.nodes[middle].0[axis];
+        (middle, below, above)
+    }
+
+    /// Lists what is nearest to a part of the box.
+    fn list(&self, near: &mut Near, low: usize, high: usize, space: Space) {
+        if low >= high || near.distance(space) > near.limit() {
+            return;
+        }
+        let (middle, below, above) = self.halves(low, high, space);
+        near.consider(self.nodes[middle].0, middle as u32);
+        let mut halves = [(low, middle, below), (middle + 1, high, above)];
+        if near.distance(above) < near.distance(below) {
+            halves.reverse();
+        }
+        halves.into_iter().for_each(|(low, high, space)| self.list(near, low, high, space));
+    }
+
+    /// Searches the list of the part that the position is in. Whether that was enough.
+    fn nearest_of_list<F: Fn(u32, DVec3) -> f64>(&self, search: &mut Search<F>) -> bool {
+        if self.lists.parts.is_empty() {
+            return false;
+        }
+        let (mut low, mut high) = (0, self.nodes.len());
+        while high - low > LEAF {
+            let middle = low + (high - low) / 2;
+            let axis = usize::from(self.axes[middle]);
+            if search.p[axis] < self.nodes[middle].0[axis] {
+                high = middle;
+            } else {
+                low = middle + 1;
+            }
+        }
+        let part = self.lists.parts[self.lists.of_range[low] as usize];
+        let list = &self.lists.all[part.start..part.end];
+        // What is within the rim as if all were seen is asked in any case; what is left, up to the rim that results.
+        let mut sure = Smallest::new(search.extent.count);
+        let mut within2 = f64::INFINITY;
+        let mut distances2 = [0.0; LIST];
+        let mut close = 0;
+        for listed in list {
+            if f64::from(listed.least).powi(2) > within2 {
+                break;
+            }
+            let distance2 = (self.nodes[listed.node as usize].0 - search.p).length_squared();
+            distances2[close] = distance2;
+            close += 1;
+            if distance2 < sure.last() {
+                sure.add(distance2);
+                within2 = search.extent.rim * search.extent.rim * sure.last();
+            }
+        }
+        let (near, far) = list.split_at(close);
+        for is_sure in [true, false] {
+            for (listed, d) in near.iter().zip(distances2).filter(|(_, d)| (*d <= within2) == is_sure) {
+                if d <= search.limit * search.limit {
+                    search.consider(&self.nodes[listed.node as usize]);
+                }
+            }
+        }
+        for listed in far {
+            if f64::from(listed.least) > search.limit {
+                return true;
+            }
+            search.consider(&self.nodes[listed.node as usize]);
+        }
+        f64::from(part.beyond) > search.limit
     }
 
     /// `beyond` leads from `p` to the box of a range, as far as the planes above it tell.
@@ -90,8 +209,8 @@ impl Tree {
             return;
         }
         let middle = low + (high - low) / 2;
-        let (position, probe) = self.nodes[middle];
-        search.consider(position, probe);
+        let position = self.nodes[middle].0;
+        search.consider(&self.nodes[middle]);
         let axis = usize::from(self.axes[middle]);
         let offset = search.p[axis] - position[axis];
         let mut other = beyond;
@@ -106,36 +225,142 @@ impl Tree {
     }
 }
 
+type Space = (DVec3, DVec3);
+
+/// Nodes in a part of the box that is not divided any further.
+const LEAF: usize = 1;
+
+/// Most probes in a list. Where more are within reach, all are searched.
+const LIST: usize = 128;
+
+/// For the rounding of distances between boxes and positions to single precision: what is listed as so far is not nearer.
+const ROUNDING: f64 = 1.0 - 1e-6;
+
+/// For each part of the box the nearest probes.
+#[derive(Clone, Debug, Default)]
+struct Lists {
+    /// The part whose range of nodes starts at a node.
+    of_range: Vec<u32>,
+    parts: Vec<Part>,
+    all: Vec<Listed>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    start: usize,
+    end: usize,
+    /// How far at least what is not listed is.
+    beyond: f32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Listed {
+    node: u32,
+    /// How far it is at least from any position in the part.
+    least: f32,
+}
+
+/// The probes nearest to a box, by rising distance.
+struct Near {
+    low: DVec3,
+    high: DVec3,
+    list: Vec<Listed>,
+}
+
+impl Near {
+    fn distance(&self, space: Space) -> f32 {
+        (((space.0 - self.high).max(self.low - space.1).max(DVec3::ZERO).length()) * ROUNDING) as f32
+    }
+
+    fn limit(&self) -> f32 {
+        self.list.get(LIST).map_or(f32::INFINITY, |l| l.least)
+    }
+
+    fn consider(&mut self, position: DVec3, node: u32) {
+        let least = self.distance((position, position));
+        if least <= self.limit() {
+            let at = self.list.partition_point(|l| (l.least, l.node) < (least, node));
+            self.list.insert(at, Listed { node, least });
+            self.list.truncate(LIST + 1);
+        }
+    }
+}
+
+/// The smallest of some numbers, by size.
+struct Smallest {
+    values: [f64; MOST_COUNT],
+    count: usize,
+}
+
+/// Most that [`Extent::count`] may be.
+const MOST_COUNT: usize = 72;
+
+impl Smallest {
+    fn new(count: usize) -> Self {
+        Self { values: [f64::INFINITY; MOST_COUNT], count: count.min(MOST_COUNT) }
+    }
+
+    fn add(&mut self, value: f64) {
+        let mut at = self.count;
+        while at > 0 && value < self.values[at - 1] {
+            if at < self.count {
+                self.values[at] = self.values[at - 1];
+            }
+            at -= 1;
+        }
+        if at < self.count {
+            self.values[at] = value;
+        }
+    }
+
+    /// The largest of them; infinite if there are too few.
+    fn last(&self) -> f64 {
+        self.values[self.count - 1]
+    }
+}
+
 struct Search<F> {
     p: DVec3,
     extent: Extent,
-    factor: F,
-    /// By rising distance.
+    seen: F,
+    /// In no order.
     found: Vec<Found>,
+    /// The smallest effective distances.
+    nearest: Smallest,
     /// Nothing farther than this is wanted.
     limit: f64,
 }
 
 impl<F: Fn(u32, DVec3) -> f64> Search<F> {
-    fn consider(&mut self, position: DVec3, probe: u32) {
+    fn new(p: DVec3, extent: Extent, seen: F) -> Self {
+        let found = Vec::with_capacity(extent.most + 2);
+        Self { p, extent, seen, found, nearest: Smallest::new(extent.count), limit: f64::INFINITY }
+    }
+
+    fn consider(&mut self, &(position, probe): &(DVec3, u32)) {
         let offset = position - self.p;
         let plain = offset.length();
         if plain > self.limit {
             return;
         }
-        let factor = (self.factor)(probe, position);
-        let distance = plain / factor;
+        let seen = (self.seen)(probe, position);
+        let distance = self.extent.effective(plain, seen);
         if distance > self.limit {
             return;
         }
-        let before = |f: &Found| f.distance < distance || f.distance == distance && f.probe < probe;
-        let at = self.found.partition_point(before);
-        self.found.insert(at, Found { distance, factor, offset, probe });
-        self.limit = self.extent.limit(&self.found);
-        while self.found.last().is_some_and(|f| f.distance > self.limit) {
-            self.found.pop();
-        }
+        self.nearest.add(distance);
+        self.limit = self.extent.rim * self.nearest.last();
+        self.found.push(Found { distance, seen, offset, probe });
+    }
+
+    /// What is within the limit, by rising distance.
+    fn finish(mut self) -> Vec<Found> {
+        self.found.retain(|f| f.distance <= self.limit);
+        self.found.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.probe.cmp(&b.probe)));
+        let limit = self.extent.limit(&self.found);
         self.found.truncate(self.extent.most + 1);
+        self.found.retain(|f| f.distance <= limit);
+        self.found
     }
 }
 
@@ -168,18 +393,23 @@ mod tests {
     #[test]
     fn what_is_found_is_what_a_search_of_all_finds() {
         let positions = place::random(DVec3::ZERO, DVec3::ONE, 300, 3);
-        let tree = Tree::new(positions.iter().copied().zip(0..), 1.0);
-        let extent = Extent { count: 6, rim: 1.3, most: 20 };
+        let bare = Tree::new(positions.iter().copied().zip(0..), 1.0);
+        let listed = bare.clone().with_lists();
+        let extent = Extent { count: 6, rim: 1.3, most: 20, unseen: 0.1 };
         // Every third probe is ten times as far.
-        let factor = |probe: u32| if probe.is_multiple_of(3) { 0.1 } else { 1.0 };
+        let seen = |probe: u32| if probe.is_multiple_of(3) { 0.0 } else { 1.0 };
+        let factor = |probe: u32| 0.1 + 0.9 * seen(probe);
         for p in place::random(DVec3::splat(-0.5), DVec3::splat(1.5), 200, 4) {
             let mut all: Vec<(f64, u32)> =
                 (0..300).map(|i| ((positions[i as usize] - p).length() / factor(i), i)).collect();
             all.sort_by(|a, b| a.0.total_cmp(&b.0));
             let rim = (1.3 * all[5].0).min(all[20].0);
             let wanted: Vec<u32> = all.iter().filter(|a| a.0 <= rim).map(|a| a.1).collect();
-            let found: Vec<u32> = tree.nearest(p, extent, |i, _| factor(i)).iter().map(|f| f.probe).collect();
-            assert_eq!(found, wanted, "at {p}");
+            for tree in [&bare, &listed] {
+                let found = tree.nearest(p, extent, |i, _| seen(i));
+                let found: Vec<u32> = found.iter().map(|f| f.probe).collect();
+                assert_eq!(found, wanted, "at {p}");
+            }
         }
     }
 }

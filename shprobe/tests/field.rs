@@ -57,7 +57,7 @@ fn bad_input_is_refused_with_what_is_wrong() {
     );
     let mut objects = [LitObject::at(DVec3::ZERO), LitObject::at(nan)];
     assert_eq!(field.light_objects(&mut objects).err(), Some(ProbeError::QueryNotFinite { index: 1 }));
-    assert_eq!(DistanceMap::new(2, vec![[1.0, 1.0]; 3]).err(), Some(ProbeError::BadDistances { index: 3 }));
+    assert_eq!(DistanceMap::new(1, &[[1.0, 1.0]; 3]).err(), Some(ProbeError::BadDistances { index: 3 }));
     let negative = DistanceMap::from_cube(4, 1, &[1.0, 1.0, -1.0, 1.0, 1.0, 1.0], 9.0);
     assert_eq!(negative.err(), Some(ProbeError::BadDistances { index: 2 }));
 }
@@ -78,7 +78,8 @@ fn what_is_in_the_room_is_seen_and_what_is_behind_its_walls_is_not() {
         let a = f64::from(i);
         let d = dvec3((a * 0.7).sin(), (a * 1.3).cos(), (a * 2.1).sin());
         let to_wall = d / d.abs().max_element();
-        assert!(map.visibility(to_wall * 0.8) > 0.95, "{d}: {}", map.visibility(to_wall * 0.8));
+        // Near edges of the room what is seen is a little less certain.
+        assert!(map.visibility(to_wall * 0.8) > 0.9, "{d}: {}", map.visibility(to_wall * 0.8));
         assert!(map.visibility(to_wall * 1.6) < 0.05, "{d}: {}", map.visibility(to_wall * 1.6));
     }
     assert_eq!(map.visibility(DVec3::ZERO), 1.0);
@@ -344,7 +345,7 @@ fn maps_that_cannot_be_are_refused() {
     let limit = DistanceMap::MAX_SIZE;
     for size in [0, limit + 1, usize::MAX] {
         let wrong = Some(ProbeError::MapSize { size, limit });
-        assert_eq!(DistanceMap::new(size, vec![]).err(), wrong);
+        assert_eq!(DistanceMap::new(size, &[]).err(), wrong);
         assert_eq!(DistanceMap::from_cube(size, 1, &[1.0; 6], 9.0).err(), wrong);
         assert_eq!(DistanceMap::from_cube(4, size, &[1.0; 6], 9.0).err(), wrong);
     }
@@ -353,7 +354,7 @@ fn maps_that_cannot_be_are_refused() {
         assert!(matches!(refused, Some(ProbeError::BadOption { name: "far", .. })), "{far}");
     }
     let farthest = DistanceMap::from_cube(2, 1, &[f32::INFINITY; 6], DistanceMap::FARTHEST).unwrap();
-    assert!(farthest.moments().iter().flatten().all(|m| m.is_finite()));
+    assert!(farthest.nodes().iter().flatten().all(|n| n.is_finite()));
 }
 
 /// With weights and options that were NaN one probe was chosen, with an error of 0.
@@ -442,7 +443,7 @@ fn probes_behind_a_surface_do_not_light_it() {
     let positions = [side(-0.6), side(0.6)].concat();
     let values: Vec<f64> = positions.iter().map(|p| if p.x < 0.0 { 100.0 } else { 1.0 }).collect();
     let blind = Field::new(&positions, &constant(&values)).unwrap();
-    let far = DistanceMap::new(4, vec![[9.0, 81.0]; 16]).unwrap();
+    let far = DistanceMap::open(9.0).unwrap();
     let seeing = blind.clone().with_distances(vec![far; positions.len()]).unwrap();
     for p in place::random(dvec3(0.0, -0.9, -0.9), dvec3(0.0, 0.9, 0.9), 50, 2) {
         for field in [&blind, &seeing] {
@@ -574,10 +575,32 @@ fn openings_are_found_in_the_doorway_and_nowhere_else() {
         let of = positions.iter().zip(&scores).filter(|(p, _)| about(**p) == is_near);
         of.map(|(_, s)| *s).fold(0.0, f64::max)
     };
-    assert!(most(true) > 0.02 && most(false) < 0.1 * most(true), "{} and {}", most(true), most(false));
+    assert!(most(true) > 0.01 && most(false) < 0.01 * most(true), "{} and {}", most(true), most(false));
     let more = place::near_openings(&positions, &maps, 100, 1).unwrap();
     assert!(more.len() == 100 && more.iter().filter(|p| about(**p)).count() > 80);
     assert!(place::near_openings(&positions, &maps[1..], 9, 1).is_err());
-    let open = vec![DistanceMap::new(2, vec![[9.0, 81.0]; 4]).unwrap(); positions.len()];
+    let open = vec![DistanceMap::open(9.0).unwrap(); positions.len()];
     assert!(place::near_openings(&positions, &open, 100, 1).unwrap().is_empty());
+}
+
+/// Distances along a wall change by orders of magnitude within a texel: what was just behind the wall was seen.
+#[test]
+fn a_probe_close_to_a_wall_does_not_see_through_it_along_the_wall() {
+    let height = 0.05;
+    let unit = |i: usize| (2 * i + 1) as f64 / 32.0 - 1.0;
+    let mut cube = vec![];
+    for (face, texel) in (0..6).flat_map(|face| (0..32 * 32).map(move |texel| (face, texel))) {
+        let point = pointillist_shprobe::sh::CubePoint { face, s: unit(texel % 32), t: unit(texel / 32) };
+        let down = -pointillist_shprobe::sh::cube_direction(point).normalize().y;
+        cube.push(if down > 0.0 { (height / down) as f32 } else { f32::INFINITY });
+    }
+    let map = DistanceMap::from_cube(16, 32, &cube, 100.0).unwrap();
+    for i in 0..100 {
+        let (sin, cos) = (f64::from(i) * 0.1).sin_cos();
+        // Under the wall by twice the probe's height, along it by up to eight times that.
+        let reach = 0.1 + 0.003 * f64::from(i);
+        let [above, below] = [-0.5 * height, -3.0 * height].map(|y| dvec3(reach * cos, y, reach * sin));
+        assert!(map.visibility(above) > 10.0 * map.visibility(below), "{below}: {}", map.visibility(below));
+        assert!(map.visibility(below) < 0.1, "{below}: {}", map.visibility(below));
+    }
 }

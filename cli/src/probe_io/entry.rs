@@ -34,15 +34,15 @@ pub struct ProbeEntry {
     pub fingerprint: Option<String>,
 }
 
-/// Distances in the directions of an octahedral square.
+/// How near what it sees is in the directions of an octahedral square.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Distances {
-    /// Texels on a side.
+    /// Cells on a side; there is one node more.
     pub size: usize,
-    /// Mean of each texel, row by row.
-    pub mean: Vec<f32>,
-    /// Standard deviation of each texel.
+    /// One over |x| + |y| + |z| of the offset of the surface, the at each node, row by row.
+    pub nearness: Vec<f32>,
+    /// How far it departs about each node from what is interpolated between them.
     pub deviation: Vec<f32>,
 }
 
@@ -73,9 +73,8 @@ impl ProbeEntry {
 impl Distances {
     /// As it is written.
     pub fn of(map: &DistanceMap) -> Self {
-        let mean = map.moments().iter().map(|m| short(m[0])).collect();
-        let deviation = map.moments().iter().map(|m| short((m[1] - m[0] * m[0]).max(0.0).sqrt())).collect();
-        Self { size: map.size(), mean, deviation }
+        let (nearness, deviation) = map.nodes().iter().map(|n| (short(n[0]), short(n[1]))).unzip();
+        Self { size: map.size(), nearness, deviation }
     }
 
     /// As it is used.
@@ -83,11 +82,12 @@ impl Distances {
     /// # Errors
     /// What is wrong with it.
     pub fn map(&self) -> Result<DistanceMap, String> {
-        if self.mean.len() != self.deviation.len() {
-            return Err(format!("has {} means and {} deviations", self.mean.len(), self.deviation.len()));
+        let (near, off) = (&self.nearness, &self.deviation);
+        if near.len() != off.len() {
+            return Err(format!("has {} of `nearness` and {} of `deviation`", near.len(), off.len()));
         }
-        let moments = self.mean.iter().zip(&self.deviation).map(|(m, d)| [*m, m * m + d * d]).collect();
-        DistanceMap::new(self.size, moments).map_err(|error| error.to_string())
+        let nodes: Vec<[f32; 2]> = near.iter().zip(off).map(|(n, d)| [*n, *d]).collect();
+        DistanceMap::new(self.size, &nodes).map_err(|error| error.to_string())
     }
 }
 

@@ -8,7 +8,7 @@ use crate::{DistanceMap, ProbeError, parallel};
 use glam::{DVec3, dvec3};
 
 /// Neighbours whose sight of each other is compared, and the place itself.
-const NEIGHBOURS: Extent = Extent { count: 41, rim: 1.0, most: 40 };
+const NEIGHBOURS: Extent = Extent { count: 41, rim: 1.0, most: 40, unseen: 1.0 };
 
 /// How much of an opening each of the `positions` lies in, 0 to 1: the mean, over pairs of its neighbours, of how much it
 /// sees both of them while they do not see each other. 0 in a convex room, most in a doorway.
@@ -59,11 +59,11 @@ fn scored(positions: &[DVec3], distances: &[DistanceMap]) -> Result<Vec<(f64, f6
     }
     let margin = spacing(positions, &Delaunay::new(positions)?.partition());
     let tree = Tree::new(positions.iter().copied().zip(0..), margin);
-    let sees = |a: u32, b: u32| {
-        let seen = distances[a as usize].visibility(positions[b as usize] - positions[a as usize]);
-        // Half seen is what coarse maps say of positions along a wall: it counts as neither.
-        2.0 * seen - 1.0
-    };
+    // Whether one sees another, from −1 to 1: half seen is what coarse maps say of positions along a wall, and counts as
+    // neither. So does, for those that are said to see each other, what is not certain.
+    let look = |a: u32, b: u32| distances[a as usize].seen(positions[b as usize] - positions[a as usize]);
+    let sees = |a: u32, b: u32| 2.0 * look(a, b).into_iter().product::<f64>() - 1.0;
+    let apart = |a: u32, b: u32| 1.0 - 2.0 * look(a, b)[0].max(look(b, a)[0]);
     let score = |i: usize| {
         let near = tree.nearest(positions[i], NEIGHBOURS, |_, _| 1.0);
         let around: Vec<(u32, f64)> =
@@ -71,8 +71,7 @@ fn scored(positions: &[DVec3], distances: &[DistanceMap]) -> Result<Vec<(f64, f6
         let pairs = around.iter().enumerate().flat_map(|(k, a)| around[..k].iter().map(move |b| (a, b)));
         let (mut sum, mut count) = (0.0, 0.0);
         for (&(a, sees_a), &(b, sees_b)) in pairs {
-            let apart = -sees(a, b).max(sees(b, a));
-            sum += sees_a.max(0.0) * sees_b.max(0.0) * apart.max(0.0);
+            sum += sees_a.max(0.0) * sees_b.max(0.0) * apart(a, b).max(0.0);
             count += 1.0;
         }
         let reach = near.last().map_or(0.0, |f| f.distance);

@@ -14,7 +14,7 @@ use crate::{ProbeError, parallel};
 use std::collections::BTreeMap;
 
 /// Length of lists: until half of the probes are gone, enough are left of it.
-const LIST: Extent = Extent { count: 72, rim: 1.0, most: 72 };
+const LIST: Extent = Extent { count: 72, rim: 1.0, most: 72, ..EXTENT };
 
 /// Part of the probes that a round may take out.
 const SHARE: usize = 20;
@@ -53,7 +53,7 @@ impl<'a> Rows<'a> {
         let (tree, spacing) = self.bench.tree(&self.chosen())?;
         self.lists = parallel::map_heavy(self.bench.count(), |i| {
             let spot = self.bench.spot(i, spacing);
-            tree.nearest(spot.position, LIST, |probe, _| self.bench.factor(&spot, probe))
+            tree.nearest(spot.position, LIST, |probe, _| self.bench.seen(&spot, probe))
         });
         self.listed = self.count;
         Ok(())
@@ -161,8 +161,8 @@ impl<'a> Rows<'a> {
             if plain > rims[i] {
                 return 0.0;
             }
-            let factor = self.bench.factor(&spot, probe);
-            let found = Found { distance: plain / factor, factor, offset, probe };
+            let seen = self.bench.seen(&spot, probe);
+            let found = Found { distance: LIST.effective(plain, seen), seen, offset, probe };
             if found.distance > rims[i] {
                 return 0.0;
             }

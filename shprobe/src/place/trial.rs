@@ -287,10 +287,10 @@ impl<'a> Bench<'a> {
         Spot::new(self.candidates.positions[i], self.candidates.normal(i), BIAS * spacing, spacing)
     }
 
-    /// The factor of a candidate as a probe at a spot.
-    pub(super) fn factor(&self, spot: &Spot, probe: u32) -> f64 {
+    /// How much a candidate sees of a spot as a probe.
+    pub(super) fn seen(&self, spot: &Spot, probe: u32) -> f64 {
         let map = self.candidates.distances.map(|maps| &maps[probe as usize]);
-        spot.factor(self.candidates.positions[probe as usize], map)
+        spot.seen(self.candidates.positions[probe as usize], map)
     }
 
     /// The error of a candidate with these shares of `chosen`.

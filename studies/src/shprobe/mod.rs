@@ -11,6 +11,7 @@ mod peer;
 mod pictures;
 mod projection;
 mod rays;
+mod seams;
 mod site;
 mod streets;
 mod study;

@@ -64,7 +64,7 @@ pub(crate) fn table() -> Result<[String; 2], ProbeError> {
     let positions = place::random(DVec3::ZERO, DVec3::ONE, PROBES, 17);
     let radiance: Vec<Sh> = (0..PROBES).map(some_light).collect::<Result<_, _>>()?;
     let plain = Field::new(&positions, &radiance)?;
-    let map = DistanceMap::new(16, vec![[0.3, 0.1]; 256])?;
+    let map = DistanceMap::new(16, &[[3.0, 0.1]; 289])?;
     let seeing = plain.clone().with_distances(vec![map; PROBES])?;
     let evaluation = evaluation_ns()?;
     let mut text = "| what | found |\n| --- | ---: |\n".to_owned();

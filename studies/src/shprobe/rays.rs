@@ -47,7 +47,13 @@ pub(crate) fn look_by_rays(
 }
 
 /// Radiance from a direction, and how far what it comes from is.
-fn arriving(scene: &Scene, tree: &Tree, sent_on: Option<&Lightmap>, from: DVec3, way: DVec3) -> (DVec3, f64) {
+pub(crate) fn arriving(
+    scene: &Scene,
+    tree: &Tree,
+    sent_on: Option<&Lightmap>,
+    from: DVec3,
+    way: DVec3,
+) -> (DVec3, f64) {
     let Some((triangle, distance)) = tree.nearest(from, way, 0.0) else {
         return (scene.image.background.as_dvec3(), f64::INFINITY);
     };

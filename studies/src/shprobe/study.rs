@@ -16,6 +16,7 @@ use crate::shprobe::objects;
 use crate::shprobe::paper;
 use crate::shprobe::pictures;
 use crate::shprobe::projection;
+use crate::shprobe::seams;
 use crate::shprobe::site::Site;
 use crate::shprobe::wall;
 
@@ -24,6 +25,9 @@ type Fault = Box<dyn std::error::Error + Send + Sync>;
 /// Numbers of probes: in the two rooms, and in Sponza.
 const ROOM_COUNTS: [usize; 6] = [24, 48, 86, 96, 192, 432];
 const HALL_COUNTS: [usize; 4] = [40, 86, 192, 432];
+
+/// Numbers of probes whose light is looked at in corners.
+const SEAM_COUNTS: [usize; 2] = [96, 192];
 
 /// Few enough: a fifth of the grid, and what the dark room may need.
 const FEW: usize = 86;
@@ -71,11 +75,15 @@ pub(crate) fn run_with(out_dir: &Path, arguments: &[&str]) -> Outcome {
             print!("{text}");
             true
         }),
+        ["seams"] => seams::table(&SEAM_COUNTS).map(|text| {
+            print!("{text}");
+            true
+        }),
         ["bounces"] => bounces::measure(false).map(|found| {
             print!("{}", found.text);
             true
         }),
-        _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe bounces, or shprobe wall [with] [COUNT…] [BALANCE…], or shprobe wall pictures DIR, or shprobe pictures DIR".into()),
+        _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe bounces, or shprobe seams, or shprobe wall [with] [COUNT…] [BALANCE…], or shprobe wall pictures DIR, or shprobe pictures DIR".into()),
     }
 }
 
@@ -284,6 +292,8 @@ fn walls(report: &mut Report, wish: &Wish) -> Result<(), Fault> {
     let dark = least(1, DARK_FEW, &|r| r.dark_room);
     report.goal("wall: dark room, 96 probes", Limit::AtMost(DARK_LIMIT), dark);
     report.section("Both faces of a wall", &text);
+    let counts = if wish.quick { &SEAM_COUNTS[..1] } else { &SEAM_COUNTS };
+    report.section("Up to the corners", &seams::table(counts)?);
     Ok(())
 }
 

@@ -88,6 +88,10 @@ impl<'a> Rooms<'a> {
         Ok(rooms)
     }
 
+    pub(crate) const fn ground(&self) -> &Ground<'a> {
+        &self.ground
+    }
+
     /// What is seen from candidates, and from places to fit to.
     fn look(&mut self) -> Result<(), Fault> {
         let site = self.ground.site;
