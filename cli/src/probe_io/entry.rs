@@ -40,7 +40,7 @@ pub struct ProbeEntry {
 pub struct Distances {
     /// Cells on a side; there is one node more.
     pub size: usize,
-    /// One over |x| + |y| + |z| of the offset of the surface, the at each node, row by row.
+    /// One over |x| + |y| + |z| of the offset to the surface at each node, row by row.
     pub nearness: Vec<f32>,
     /// How far it departs about each node from what is interpolated between them.
     pub deviation: Vec<f32>,
