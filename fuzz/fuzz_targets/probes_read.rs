@@ -8,7 +8,7 @@ use pointillist_cli::probe_io::{ProbeFile, parse_probes, write_probes};
 fn is_finite(file: &ProbeFile) -> bool {
     file.probes.iter().all(|p| {
         let sh = p.sh.iter().flatten().flatten();
-        let maps = p.distances.iter().flat_map(|d| d.mean.iter().chain(&d.deviation));
+        let maps = p.distances.iter().flat_map(|d| d.nearness.iter().chain(&d.deviation));
         p.position.iter().chain(sh).chain(p.sky.iter().flatten()).all(|v| v.is_finite())
             && maps.into_iter().all(|v| v.is_finite())
     })
