@@ -24,6 +24,9 @@ const FOUND_OUTSIDE: f32 = 0.6;
 /// Corners farther inside need not be told apart, in pixels.
 const DEEP: f32 = 3.0;
 
+/// Pixels to each side within which a surface must end for its outline to be looked for: what lies deeper is covered in any case.
+const NEAR: usize = 1;
+
 /// Rows per task.
 const BAND_ROWS: usize = 16;
 
@@ -116,13 +119,13 @@ impl Search<'_> {
     /// The outlines of a row of pixels.
     fn row(&self, row: usize, out: &mut [Outline]) {
         let b = self.buffer;
-        let first = b.at(0, row) - RADIUS * b.pitch - RADIUS;
+        let first = b.at(0, row) - NEAR * b.pitch - NEAR;
         // Nearly all pixels are far from where a surface ends: first the columns are looked at, then each pixel's.
-        let ends_in = |column: &usize| (0..SIDE).any(|y| self.ends[first + y * b.pitch + column]);
-        let mut next = (0..b.width + 2 * RADIUS).filter(ends_in).peekable();
+        let ends_in = |column: &usize| (0..=2 * NEAR).any(|y| self.ends[first + y * b.pitch + column]);
+        let mut next = (0..b.width + 2 * NEAR).filter(ends_in).peekable();
         for (column, out) in out.iter_mut().enumerate() {
             while next.next_if(|c| *c < column).is_some() {}
-            if next.peek().is_some_and(|c| *c < column + SIDE) && b.count[b.at(column, row)] > 0.0 {
+            if next.peek().is_some_and(|c| *c <= column + 2 * NEAR) && b.count[b.at(column, row)] > 0.0 {
                 *out = self.outline(column, row);
             }
         }
@@ -167,30 +170,28 @@ impl Search<'_> {
         let step = self.scale.bent_step(q, STEP);
         let first = at - RADIUS * b.pitch - RADIUS;
         let mut window = Window::default();
-        for (y, row) in window.count.iter_mut().enumerate() {
-            let start = first + y * b.pitch;
-            let (counts, depths) = (&b.count[start..start + SIDE], &b.q[start..start + SIDE]);
-            for (x, out) in row.iter_mut().enumerate() {
-                if counts[x] == 0.0 {
-                    continue;
-                }
-                let apart = depths[x] - q;
+        for (y, out) in window.count.iter_mut().enumerate() {
+            let row = first + y * b.pitch..first + y * b.pitch + SIDE;
+            let (counts, depths, ends) = (&b.count[row.clone()], &b.q[row.clone()], &self.ends[row]);
+            let (mut points, mut holding, mut wide) = (0.0, 0.0, false);
+            // Without branches, so that neighbours are looked at side by side.
+            for x in 0..SIDE {
+                let (count, apart, weight) = (counts[x], depths[x] - q, self.weights[y][x]);
                 let most = step * y.abs_diff(RADIUS).max(x.abs_diff(RADIUS)) as f32;
-                if apart.abs() > most {
-                    // Under a nearer surface this one goes on.
-                    *out = if apart < 0.0 { f32::MAX } else { 0.0 };
-                    continue;
-                }
-                window.is_wide = window.is_wide || !self.ends[start + x];
+                let is_there = count > 0.0;
+                let holds = is_there & (apart.abs() <= most);
                 // A filled gap counts as less than a point.
-                if counts[x] < 1.0 {
-                    *out = f32::MAX;
-                } else {
-                    *out = counts[x];
-                    window.points += self.weights[y][x] * counts[x];
-                    window.holding += self.weights[y][x];
-                }
+                let is_measured = holds & (count >= 1.0);
+                // Under a nearer surface this one goes on.
+                let goes_on = (is_there & (apart < -most)) | (holds & !is_measured);
+                out[x] = if is_measured { count } else { 0.0 } + if goes_on { f32::MAX } else { 0.0 };
+                points += if is_measured { weight * count } else { 0.0 };
+                holding += if is_measured { weight } else { 0.0 };
+                wide |= holds & !ends[x];
             }
+            window.points += points;
+            window.holding += holding;
+            window.is_wide |= wide;
         }
         window
     }
