@@ -216,7 +216,7 @@ impl Options {
         self
     }
 
-    /// Sets how far faces reach beyond the outermost means, buffer pixels; 0 to 1.
+    /// Sets how far surfaces reach, buffer pixels; 0 to 1. See [`Options::outline`].
     #[must_use]
     pub const fn with_outline(mut self, outline: f32) -> Self {
         self.outline = outline;

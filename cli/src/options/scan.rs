@@ -85,7 +85,7 @@ pub struct SurfaceOptions {
     /// How points of one pixel are averaged
     #[arg(long, value_name = "RULE", default_value = "even")]
     pub weights: WeightsValue,
-    /// How far faces reach beyond the outermost points, in buffer pixels; 0 as printed
+    /// How far surfaces reach, in buffer pixels: 0.3 ends bodies where they end, more makes them larger; 0 as printed
     #[arg(long, value_name = "B", default_value_t = ibpr::Options::OUTLINE, value_parser = values::share)]
     pub outline: f32,
     /// Fill gaps of less than 2^L buffer pixels

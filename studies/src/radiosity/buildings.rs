@@ -103,7 +103,7 @@ pub(crate) fn solve(text: &mut String) -> Outcome {
         text,
         "| building | surfaces | patches | links | vertices | processor seconds | MiB | error % | without the worst twentieth % | at the points themselves % | noise of the paths % | points |"
     )?;
-    writeln!(text, "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")?;
+    writeln!(text, "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")?;
     let mut around = vec![];
     for (name, mesh, lights) in BUILDINGS {
         eprintln!("  {name}");
