@@ -8,7 +8,7 @@ use crate::radiosity_surfaces::{SceneSurfaces, scene_surfaces};
 use crate::scene::{Scene, SceneError};
 use glam::DVec3;
 use pointillist_radiosity as radiosity;
-use pointillist_radiosity::{Baked, RadiosityError, RayOptions, SceneOptions, SolveOptions};
+use pointillist_radiosity::{Baked, RadiosityError, RayOptions, Rgb, SceneOptions, SolveOptions};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How light between surfaces is solved for.
@@ -138,12 +138,7 @@ fn by_pairs(
 ) -> Result<Baked, IndirectError> {
     let [lit, linked, solved] = OF_PAIRS;
     let told = Told { monitor, units: AtomicU64::new(0) };
-    let mut patches = stage(monitor, "divide", || divided(surfaces, options))?;
-    go_on(monitor)?;
-    let lamps = Lamps::new(scene);
-    let done = |share| told.reach([0.0, lit], share);
-    let direct = stage(monitor, "direct", || with_lamps(&lamps, |list| patches.direct_with(list, &done)))?;
-    go_on(monitor)?;
+    let (patches, direct) = directly_lit(scene, || divided(surfaces, options), &told, lit)?;
     let done = |share| told.reach([lit, linked], share);
     let transport = stage(monitor, "factors", || patches.transport_with(&direct, &done))?;
     go_on(monitor)?;
@@ -165,12 +160,8 @@ fn by_rays(
     let told = Told { monitor, units: AtomicU64::new(0) };
     let patch = extent(surfaces) / options.patches_across;
     let settings = SceneOptions::DEFAULT.with_squarer(false).with_patch(patch).with_smallest_patch(patch);
-    let mut patches = stage(monitor, "divide", || radiosity::Scene::new(&surfaces.surfaces, &settings))?;
-    go_on(monitor)?;
-    let lamps = Lamps::new(scene);
-    let done = |share| told.reach([0.0, lit], share);
-    let direct = stage(monitor, "direct", || with_lamps(&lamps, |list| patches.direct_with(list, &done)))?;
-    go_on(monitor)?;
+    let divide = || radiosity::Scene::new(&surfaces.surfaces, &settings);
+    let (patches, direct) = directly_lit(scene, divide, &told, lit)?;
     let done = |share| told.reach([lit, linked], share);
     let rays = RayOptions::DEFAULT.with_finest(patch * FINEST);
     let transport = stage(monitor, "factors", || patches.transport_by_rays(&direct, &rays, &done))?;
@@ -181,6 +172,23 @@ fn by_rays(
     let done = |share| told.reach([solved, 1.0], share);
     monitor.count("patches", transport.counts().patches as u64);
     Ok(stage(monitor, "gather", || solution.bake_with(&done)))
+}
+
+/// The patches that `divide` makes, and what the lamps send straight to them: the first `lit` of all work.
+fn directly_lit(
+    scene: &Scene,
+    divide: impl FnOnce() -> Result<radiosity::Scene, RadiosityError>,
+    told: &Told<'_>,
+    lit: f64,
+) -> Result<(radiosity::Scene, Vec<Rgb>), IndirectError> {
+    let monitor = told.monitor;
+    let mut patches = stage(monitor, "divide", divide)?;
+    go_on(monitor)?;
+    let lamps = Lamps::new(scene);
+    let done = |share| told.reach([0.0, lit], share);
+    let direct = stage(monitor, "direct", || with_lamps(&lamps, |list| patches.direct_with(list, &done)))?;
+    go_on(monitor)?;
+    Ok((patches, direct))
 }
 
 /// The surfaces in patches: linked one by one if they are few, by groups if they are many.

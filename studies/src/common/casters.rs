@@ -62,8 +62,22 @@ pub(crate) fn spheres(size: u32) -> Scene {
     s.scene
 }
 
-/// A fence of thin pales: casters thinner than a pixel's shadow.
+/// The fence under a lamp behind it.
 pub(crate) fn fence(size: u32) -> Scene {
+    let mut s = pales(size);
+    s.lamp(dvec3(-2.0, 3.0, -4.0), 5.0);
+    s.scene
+}
+
+/// The fence in the sun.
+pub(crate) fn fence_in_the_sun(size: u32) -> Scene {
+    let mut s = pales(size);
+    s.sun(dvec3(0.35, -0.5, 0.8));
+    s.scene
+}
+
+/// A fence of thin pales: casters thinner than a pixel's shadow.
+fn pales(size: u32) -> Sketch {
     let mut s = Sketch::new(dvec3(0.6, 2.4, 5.0), dvec3(0.0, 0.3, 0.0), 36.0, size);
     let white = ground(&mut s, 6.0);
     for i in 0..60 {
@@ -71,7 +85,34 @@ pub(crate) fn fence(size: u32) -> Scene {
         s.cuboid(dvec3(x, 0.0, -1.0), dvec3(x + 0.012, 1.0, -0.99), white);
     }
     s.cuboid(dvec3(-2.5, 0.8, -1.01), dvec3(2.5, 0.82, -0.98), white);
-    s.lamp(dvec3(-2.0, 3.0, -4.0), 5.0);
+    s
+}
+
+/// A round cage about a sphere under a spot light whose beam fades within the picture.
+pub(crate) fn cage(size: u32) -> Scene {
+    let mut s = Sketch::new(dvec3(0.5, 2.6, 5.0), dvec3(0.0, 0.4, 0.0), 36.0, size);
+    let white = ground(&mut s, 6.0);
+    s.sphere(dvec3(0.0, 0.45, 0.0), 0.35, 4, white);
+    let (bars, radius, half) = (32, 0.9, 0.008);
+    for i in 0..bars {
+        let (sin, cos) = (TAU * f64::from(i) / f64::from(bars)).sin_cos();
+        let foot = dvec3(radius * cos, 0.0, radius * sin);
+        s.cuboid(foot - dvec3(half, 0.0, half), foot + dvec3(half, 1.1, half), white);
+    }
+    for y in [0.35, 0.7, 1.05] {
+        s.cuboid(dvec3(-radius, y, -half), dvec3(radius, y + 0.016, half), white);
+        // Above the other: where faces coincide, what is in shadow is not defined.
+        let above = y + 0.03;
+        s.cuboid(dvec3(-half, above, -radius), dvec3(half, above + 0.016, radius), white);
+    }
+    s.light(Light::Spot {
+        position: dvec3(1.5, 4.0, 1.5),
+        direction: dvec3(-1.5, -3.6, -1.5),
+        intensity: Vec3::splat(64.0),
+        beam_rad: 0.25,
+        cutoff_rad: 0.45,
+        falloff: Falloff::InverseSquare,
+    });
     s.scene
 }
 

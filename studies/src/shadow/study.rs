@@ -81,6 +81,8 @@ fn cases() -> Vec<Case> {
     };
     cases.push(by_rays("spheres", casters::spheres(SIZE), true));
     cases.push(by_rays("fence", casters::fence(SIZE), true));
+    cases.push(by_rays("fence in the sun", casters::fence_in_the_sun(SIZE), true));
+    cases.push(by_rays("cage, spot light", casters::cage(SIZE), true));
     cases.push(by_rays("terrain, 5° light", casters::terrain(SIZE), true));
     cases.push(by_rays("translucent panes", casters::panes(SIZE), false));
     cases
