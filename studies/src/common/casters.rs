@@ -99,11 +99,12 @@ pub(crate) fn cage(size: u32) -> Scene {
         let foot = dvec3(radius * cos, 0.0, radius * sin);
         s.cuboid(foot - dvec3(half, 0.0, half), foot + dvec3(half, 1.1, half), white);
     }
+    // Thinner than the bars that they end in, and one above the other: where faces coincide, what is in shadow is not defined.
+    let thin = 0.006;
     for y in [0.35, 0.7, 1.05] {
-        s.cuboid(dvec3(-radius, y, -half), dvec3(radius, y + 0.016, half), white);
-        // Above the other: where faces coincide, what is in shadow is not defined.
+        s.cuboid(dvec3(-radius, y, -thin), dvec3(radius, y + 0.012, thin), white);
         let above = y + 0.03;
-        s.cuboid(dvec3(-half, above, -radius), dvec3(half, above + 0.016, radius), white);
+        s.cuboid(dvec3(-thin, above, -radius), dvec3(thin, above + 0.012, radius), white);
     }
     s.light(Light::Spot {
         position: dvec3(1.5, 4.0, 1.5),
