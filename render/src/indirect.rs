@@ -174,7 +174,7 @@ fn by_rays(
     Ok(stage(monitor, "gather", || solution.bake_with(&done)))
 }
 
-/// The patches that `divide` makes, and what the lamps send straight to them: the first `lit` of all work.
+/// The patches that `divide` makes and the direct light on them. Progress goes from 0 to `lit`.
 fn directly_lit(
     scene: &Scene,
     divide: impl FnOnce() -> Result<radiosity::Scene, RadiosityError>,
