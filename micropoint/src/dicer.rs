@@ -19,8 +19,6 @@ const BLOCK: usize = 4;
 /// The part of a face in one cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part {
-    /// The next part of the same cell.
-    next: u32,
     /// Index into [`Dicer::faces`].
     pub(crate) face: u32,
     first_vertex: u32,
@@ -175,11 +173,31 @@ pub(crate) struct Dicer {
     /// Smallest `closed` of the tile.
     tile_closed: f64,
     parts: Vec<Part>,
+    /// The next part of the same cell, for parts that are in cells. Apart from them: a walk along a list then stays in little memory.
+    next: Vec<u32>,
     vertices: Vec<DVec2>,
     pub(crate) faces: Vec<Face>,
     memory: VisitMemory,
     order: Vec<u32>,
+    keys: Vec<SortKey>,
     pub(crate) counts: TileCounts,
+}
+
+/// What decides the order of parts.
+#[derive(Clone, Copy, Debug)]
+struct SortKey {
+    nearness: Interval,
+    centroid: DVec2,
+    part: u32,
+}
+
+impl SortKey {
+    /// Nearest first; then by position. Equal only for parts that coincide.
+    fn compare(&self, other: &Self) -> Ordering {
+        let key = |k: &Self| (-k.nearness.most, -k.nearness.least, k.centroid.x, k.centroid.y);
+        let (a, b) = (key(self), key(other));
+        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.total_cmp(&b.2)).then(a.3.total_cmp(&b.3))
+    }
 }
 
 /// What all tiles of a picture share.
@@ -253,6 +271,7 @@ impl Dicer {
         self.blocks.resize(self.block_columns * rows.div_ceil(BLOCK), f64::NEG_INFINITY);
         self.tile_closed = f64::NEG_INFINITY;
         self.parts.clear();
+        self.next.clear();
         self.vertices.clear();
         self.faces.clear();
         self.counts = TileCounts::default();
@@ -356,7 +375,6 @@ impl Dicer {
         }
         let opacity = opacity.unwrap_or_else(|| opacity_in_cell(job, face, corner, &CELL));
         let part = Part {
-            next: NONE,
             face: index,
             first_vertex: 0,
             vertex_count: 0,
@@ -398,7 +416,6 @@ impl Dicer {
         }
         let opacity = opacity.unwrap_or_else(|| opacity_in_cell(job, face, corner, local));
         let part = Part {
-            next: NONE,
             face: index,
             first_vertex: self.vertices.len() as u32,
             vertex_count: local.len() as u32,
@@ -430,11 +447,11 @@ impl Dicer {
     }
 
     #[inline]
-    fn link(&mut self, cell: usize, mut part: Part) {
+    fn link(&mut self, cell: usize, part: Part) {
         if part.opacity <= 0.0 {
             return;
         }
-        part.next = self.cells[cell].head;
+        self.next.push(self.cells[cell].head);
         self.cells[cell].head = self.parts.len() as u32;
         self.cells[cell].count += 1;
         self.parts.push(part);
@@ -518,15 +535,17 @@ impl Dicer {
     /// The parts of a cell, nearest first, in an order that does not depend on the order of triangles.
     pub(crate) fn sorted_parts(&mut self, cell: usize) -> Vec<u32> {
         let mut order = std::mem::take(&mut self.order);
+        let mut keys = std::mem::take(&mut self.keys);
         order.clear();
+        keys.clear();
         let mut next = self.cells[cell].head;
         while next != NONE {
-            order.push(next);
-            next = self.parts[next as usize].next;
+            keys.push(self.sort_key(next));
+            next = self.next[next as usize];
         }
-        if order.len() > 1 {
-            order.sort_unstable_by(|&a, &b| self.compare(a, b));
-        }
+        keys.sort_unstable_by(|a, b| self.compare_keys(a, b));
+        order.extend(keys.iter().map(|key| key.part));
+        self.keys = keys;
         order
     }
 
@@ -535,17 +554,21 @@ impl Dicer {
         self.order = order;
     }
 
+    fn sort_key(&self, part: u32) -> SortKey {
+        let Part { nearness, centroid, .. } = self.parts[part as usize];
+        SortKey { nearness, centroid, part }
+    }
+
     /// Nearest first; then by position and surface; the triangle's number decides only between
     /// parts that are equal in all else.
+    fn compare_keys(&self, a: &SortKey, b: &SortKey) -> Ordering {
+        let face = |k: &SortKey| &self.faces[self.parts[k.part as usize].face as usize];
+        a.compare(b).then_with(|| face(a).precedence(face(b)))
+    }
+
+    /// The order of [`Dicer::sorted_parts`].
     pub(crate) fn compare(&self, a: u32, b: u32) -> Ordering {
-        let (a, b) = (&self.parts[a as usize], &self.parts[b as usize]);
-        let key = |p: &Part| (-p.nearness.most, -p.nearness.least, p.centroid.x, p.centroid.y);
-        let (ka, kb) = (key(a), key(b));
-        ka.0.total_cmp(&kb.0)
-            .then(ka.1.total_cmp(&kb.1))
-            .then(ka.2.total_cmp(&kb.2))
-            .then(ka.3.total_cmp(&kb.3))
-            .then_with(|| self.faces[a.face as usize].precedence(&self.faces[b.face as usize]))
+        self.compare_keys(&self.sort_key(a), &self.sort_key(b))
     }
 
     pub(crate) fn part(&self, index: u32) -> &Part {
@@ -565,7 +588,6 @@ impl Dicer {
         self.vertices.extend_from_slice(outline);
         let (vertex_count, bounds) = (outline.len() as u32, Extent::of(outline));
         self.parts.push(Part {
-            next: NONE,
             first_vertex,
             vertex_count,
             area,
@@ -576,6 +598,21 @@ impl Dicer {
             ..part
         });
         self.parts.len() as u32 - 1
+    }
+
+    /// Copies parts to where they follow one another, and gives their new numbers. Parts of one cell lie as far apart in memory as the faces
+    /// that they come from, and many of them are looked at many times.
+    pub(crate) fn bring_together(&mut self, parts: &mut [u32]) {
+        for number in parts {
+            let mut part = self.parts[*number as usize];
+            if part.vertex_count > 0 {
+                let first = part.first_vertex as usize;
+                part.first_vertex = self.vertices.len() as u32;
+                self.vertices.extend_from_within(first..first + part.vertex_count as usize);
+            }
+            *number = self.parts.len() as u32;
+            self.parts.push(part);
+        }
     }
 
     /// How much is stored of parts, for [`Dicer::forget_since`].
@@ -592,7 +629,8 @@ impl Dicer {
     /// Whether two parts of a cell are the same piece of two copies of one triangle.
     pub(crate) fn is_copy(&self, a: u32, b: u32) -> bool {
         let (a, b) = (self.part(a), self.part(b));
-        self.faces[a.face as usize].corners == self.faces[b.face as usize].corners
+        a.centroid == b.centroid
+            && self.faces[a.face as usize].corners == self.faces[b.face as usize].corners
             && self.outline(a) == self.outline(b)
     }
 

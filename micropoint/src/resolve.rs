@@ -71,7 +71,7 @@ pub(crate) fn resolve_exactly(
     corner: DVec2,
     mut emit: impl FnMut(&Dicer, Visible<'_>),
 ) {
-    let order = dicer.sorted_parts(cell);
+    let mut order = dicer.sorted_parts(cell);
     if let Some(count) = dicer.tiling(cell) {
         for &p in &order[..count] {
             emit(dicer, Visible::whole(dicer, p));
@@ -81,12 +81,17 @@ pub(crate) fn resolve_exactly(
     } else if order.is_empty() {
         dicer.counts.cells_empty += 1;
     } else {
+        let stored = dicer.stored();
+        if order.len() >= neighbours::WORTH_IT {
+            dicer.bring_together(&mut order);
+        }
         let masked = |&p: &u32| Parts { dicer, job, corner }.is_masked(p);
         let compared = if job.squares_per_side > 1 && order.iter().any(masked) {
             resolve_divided(dicer, scratch, job, corner, &order, &mut emit)
         } else {
             resolve_square(dicer, scratch, job, (corner, 1.0), &order, &mut emit)
         };
+        dicer.forget_since(stored);
         dicer.counts.cells_single += u64::from(!compared && order.len() == 1);
         dicer.counts.cells_compared += u64::from(compared);
         dicer.counts.cells_apart += u64::from(!compared && order.len() > 1);
@@ -103,7 +108,6 @@ fn resolve_divided(
     order: &[u32],
     emit: &mut impl FnMut(&Dicer, Visible<'_>),
 ) -> bool {
-    let stored = dicer.stored();
     let mut squares = std::mem::take(&mut scratch.squares);
     squares.divide(dicer, job, corner, order);
     let area = 1.0 / f64::from(job.squares_per_side * job.squares_per_side);
@@ -112,7 +116,6 @@ fn resolve_divided(
         compared |= resolve_square(dicer, scratch, job, (corner, area), order, emit);
     }
     scratch.squares = squares;
-    dicer.forget_since(stored);
     compared
 }
 

@@ -38,7 +38,11 @@ impl Shader<'_> {
             });
             pixels.color.push(color);
         }
-        let depth = |i: usize| (points[i].place.position - self.eye).dot(self.forward) as f32;
+        let depth = |i: usize| {
+            let m = &tile.points()[i];
+            let nearness = tile.faces()[m.face as usize].nearness_at(m.grid);
+            tile.position(m.grid, nearness).dot(self.forward) as f32
+        };
         pixels.depth.clear();
         pixels.depth.extend(heaviest(tile).into_iter().map(|i| i.map_or(f32::INFINITY, depth)));
     }

@@ -73,6 +73,7 @@ mod direct;
 mod draw;
 mod emitters;
 mod error;
+mod face_look;
 pub mod fingerprint;
 mod fit_places;
 mod frame;

@@ -136,7 +136,9 @@ impl Shader<'_> {
                 a.fraction = lit_parts.collect(&of, shadow, self.surfaces).min(1.0);
                 let mut lit_part = points[a.point as usize];
                 if varies {
-                    let (surface, _) = self.surface(face, &lit_part.place, |each| lit_parts.for_each(each));
+                    let look = self.face_look(face);
+                    let (surface, _) =
+                        self.surface(face, &look, &lit_part.place, |each| lit_parts.for_each(each));
                     (lit_part.normal, lit_part.material) = (surface.normal, surface.material);
                 }
                 a.radiance = match a.is_close {

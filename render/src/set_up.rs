@@ -1,35 +1,34 @@
 //! Everything about a micropoint that does not depend on lights: place, normals, material, ambient light.
 
-use crate::scene;
-use crate::shader::{Glow, Place, Point, ShadedSurface, Shader};
-use glam::Vec3;
+use crate::face_look::FaceLook;
+use crate::shader::{Place, Point, ShadedSurface, Shader};
+use glam::{DVec2, Vec3};
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::{Face, Fragment, LensKind, Micropoint, SurfacePoint, Tile};
-use pointillist_shade::{Interpolation, Material, face_normal, interpolate_color, interpolate_normal};
+use pointillist_shade::{Interpolation, Material, interpolate_color, interpolate_normal};
+
+/// Barycentric coordinates of a place on a face on which nothing varies by corner.
+const MIDDLE: Vec3 = Vec3::splat(1.0 / 3.0);
 
 impl Shader<'_> {
+    /// A micropoint before light is added. Where it is, is left out if nothing asks: `with_places` says that layers do.
     pub(crate) fn set_up(
         &self,
         tile: &Tile,
         m: &Micropoint,
+        look: &FaceLook,
+        with_places: bool,
         polygon: &mut Vec<SurfacePoint>,
         hint: &mut Hint,
     ) -> Point {
+        if look.is_constant && !with_places {
+            return Point::constant(look.material);
+        }
         let face = &tile.faces()[m.face as usize];
-        let at = face.point(tile.lens(), m.grid);
-        let relative = tile.position(m.grid, at.nearness);
-        let to_eye = match tile.lens().kind {
-            LensKind::Perspective => -relative.normalize_or_zero(),
-            LensKind::Orthographic => -self.forward,
-        };
-        let corners = self.scene.corners(face.id);
-        let normal = face_normal(corners[0], corners[1], corners[2]);
-        let face_normal = if face.front { normal } else { -normal }.as_vec3();
-        let (barycentric, to_eye) = (at.barycentric.as_vec3(), to_eye.as_vec3());
-        let place = Place { position: self.eye + relative, barycentric, to_eye, face_normal };
+        let place = self.place(tile, m.grid, face, look);
         let outlines =
             |each: &mut dyn FnMut(&[SurfacePoint], f32)| self.for_outlines(tile, m, face, polygon, each);
-        let (surface, occlusion) = self.surface(face, &place, outlines);
+        let (surface, occlusion) = self.surface(face, look, &place, outlines);
         let indirect = if self.surfaces.details(face.id).is_some() {
             self.surrounding_light(&self.described(face).details, &surface, occlusion, hint)
         } else if surface.material.diffuse == Vec3::ZERO {
@@ -41,42 +40,48 @@ impl Shader<'_> {
         Point { place, normal: surface.normal, material: surface.material, direct: Vec3::ZERO, indirect }
     }
 
+    fn place(&self, tile: &Tile, grid: DVec2, face: &Face, look: &FaceLook) -> Place {
+        let (relative, barycentric) = if look.varies_by_corner {
+            let at = face.point(tile.lens(), grid);
+            (tile.position(grid, at.nearness), at.barycentric.as_vec3())
+        } else {
+            (tile.position(grid, face.nearness_at(grid)), MIDDLE)
+        };
+        let to_eye = match tile.lens().kind {
+            LensKind::Perspective => -relative.normalize_or_zero(),
+            LensKind::Orthographic => -self.forward,
+        };
+        let (position, face_normal) = (self.eye + relative, look.normal);
+        Place { position, barycentric, to_eye: to_eye.as_vec3(), face_normal }
+    }
+
     /// A place of a face with its maps averaged over `outlines`, each with its weight, and the share of ambient light that its maps leave.
     pub(crate) fn surface(
         &self,
         face: &Face,
+        look: &FaceLook,
         place: &Place,
         mut outlines: impl FnMut(&mut dyn FnMut(&[SurfacePoint], f32)),
     ) -> (ShadedSurface, f32) {
         let Place { position, barycentric, to_eye, face_normal } = *place;
-        let described = self.described(face);
-        let mut material = self.textured(face, described.surface, &mut outlines);
+        let mut material = self.textured(face, look.material, &mut outlines);
         if self.economy.is_none() {
             material = self.widened_by_curvature(face, material, &mut outlines);
         }
         if !self.scene.mesh.colors.is_empty() {
             material.diffuse *= self.vertex_color(face.id, barycentric);
         }
-        let glows = match self.glow {
-            Glow::Nothing => false,
-            Glow::OtherThanLights => !described.details.emits,
-            Glow::Everything => true,
+        let normal = match look.varies_by_corner {
+            true => self.shading_normal(face, barycentric, face_normal, to_eye),
+            false => face_normal,
         };
-        if !glows {
-            material.emission = Vec3::ZERO;
-        }
-        let normal = self.shading_normal(face, barycentric, face_normal, to_eye);
         let (triangle, front) = (face.id, face.front);
         let mut s = ShadedSurface { triangle, front, position, to_eye, face_normal, normal, material };
         let occlusion = match self.surfaces.details(face.id) {
-            Some(maps) => self.apply_maps(&described.details, maps, &mut s, outlines),
+            Some(maps) => self.apply_maps(&self.described(face).details, maps, &mut s, outlines),
             None => 1.0,
         };
         (s, occlusion)
-    }
-
-    fn described(&self, face: &Face) -> &scene::Material {
-        &self.scene.materials[self.scene.mesh.material_of[face.id as usize] as usize]
     }
 
     fn shading_normal(&self, face: &Face, barycentric: Vec3, face_normal: Vec3, to_eye: Vec3) -> Vec3 {

@@ -67,10 +67,17 @@ pub(crate) struct Shader<'a> {
 pub(crate) struct Place {
     /// World position.
     pub(crate) position: DVec3,
+    /// Only known where something is interpolated between corners.
     pub(crate) barycentric: Vec3,
     pub(crate) to_eye: Vec3,
     /// Unit face normal, on the eye's side.
     pub(crate) face_normal: Vec3,
+}
+
+impl Place {
+    /// Of what looks the same everywhere.
+    const NONE: Self =
+        Self { position: DVec3::ZERO, barycentric: Vec3::ZERO, to_eye: Vec3::ZERO, face_normal: Vec3::ZERO };
 }
 
 /// A micropoint while it is shaded.
@@ -83,6 +90,13 @@ pub(crate) struct Point {
     pub(crate) direct: Vec3,
     /// Reflected ambient light.
     pub(crate) indirect: Vec3,
+}
+
+impl Point {
+    /// A point whose place nobody asks for, of a surface that reflects nothing.
+    pub(crate) const fn constant(material: Material) -> Self {
+        Self { place: Place::NONE, normal: Vec3::ZERO, material, direct: Vec3::ZERO, indirect: Vec3::ZERO }
+    }
 }
 
 /// A point of a surface before light is added.

@@ -3,6 +3,7 @@
 use crate::background::Background;
 use crate::canvas::Pixels;
 use crate::direct::{DirectScratch, corners};
+use crate::face_look::FaceLooks;
 use crate::frame::LayerKind;
 use crate::monitor::Monitor;
 use crate::shader::{Point, Shader};
@@ -17,6 +18,7 @@ use std::collections::BTreeMap;
 #[derive(Default)]
 pub(crate) struct ShaderScratch {
     points: Vec<Point>,
+    looks: FaceLooks,
     direct: DirectScratch,
     polygon: Vec<SurfacePoint>,
     pixels: Pixels,
@@ -41,9 +43,13 @@ impl Shader<'_> {
         scratch: &'s mut ShaderScratch,
         monitor: &dyn Monitor,
     ) -> &'s Pixels {
-        let ShaderScratch { points, direct, polygon, pixels, hint } = scratch;
+        let ShaderScratch { points, looks, direct, polygon, pixels, hint } = scratch;
         points.clear();
-        points.extend(tile.points().iter().map(|m| self.set_up(tile, m, polygon, hint)));
+        looks.start(tile.faces().len());
+        points.extend(tile.points().iter().map(|m| {
+            let look = looks.of(m.face, || self.face_look(&tile.faces()[m.face as usize]));
+            self.set_up(tile, m, look, !layers.is_empty(), polygon, hint)
+        }));
         let mut lit = BTreeMap::new();
         for layer in layers {
             if let LayerKind::Lit(light) = layer {
