@@ -543,7 +543,9 @@ impl Dicer {
             keys.push(self.sort_key(next));
             next = self.next[next as usize];
         }
-        keys.sort_unstable_by(|a, b| self.compare_keys(a, b));
+        // Faces come roughly from near to far, and the list runs from the last to the first.
+        keys.reverse();
+        keys.sort_by(|a, b| self.compare_keys(a, b));
         order.extend(keys.iter().map(|key| key.part));
         self.keys = keys;
         order
