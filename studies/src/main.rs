@@ -20,7 +20,7 @@ use common::report::Outcome;
 /// Name, what it measures, and the study itself.
 type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
 
-const STUDIES: [Study; 10] = [
+const STUDIES: [Study; 11] = [
     ("dice", "areas of a triangle in the cells of a grid", run_dice),
     ("micropoint", "pictures against point sampling; foliage; shadows across texels", micropoint::run),
     ("shadow", "shadows against a shadow map, area lights against samples", shadow::run),
@@ -32,6 +32,7 @@ const STUDIES: [Study; 10] = [
         "light probes: coefficients, tetrahedra, placement, against direct integration",
         shprobe::run,
     ),
+    ("together", "whole pictures by radiosity and by probes, against paths", shprobe::together::run),
     ("radiosity", "form factors, hemicubes and solutions: time against error", radiosity::run),
     ("stress", "input at the limits of numbers; fails if a row does", stress::run),
     ("speed", "whole pictures: seconds, threads, memory", speed::run),
@@ -42,12 +43,19 @@ fn run_dice(out_dir: &Path) -> Outcome {
     Ok(true)
 }
 
+/// Draws the pictures, too; the table is printed.
+fn together_with_pictures(folder: &str) -> Outcome {
+    std::fs::create_dir_all(folder)?;
+    print!("{}", shprobe::together::measure(Some(Path::new(folder)))?);
+    Ok(true)
+}
+
 fn usage() -> String {
     let mut text = "usage: studies NAME\n\nWrites studies/results/NAME.*; NAME is one of\n".to_owned();
     for (name, what, _) in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`micropoint quick` prints a trial of a minute; `surfel quick` and `shprobe quick` take as long and write elsewhere. `shprobe --pictures DIR` draws, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`.\n"
+    text + "  all         all of these\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`micropoint quick` prints a trial of a minute; `surfel quick` and `shprobe quick` take as long and write elsewhere. `shprobe --pictures DIR` and `together DIR` draw, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`.\n"
 }
 
 fn main() -> ExitCode {
@@ -70,6 +78,7 @@ fn main() -> ExitCode {
         ["micropoint", "checker"] => return code(micropoint::checker::run(&out_dir)),
         ["shadow", "area"] => return code(shadow::area::run(&out_dir)),
         ["radiosity", _, ..] => return code(radiosity::run_parts(&out_dir, &arguments[1..])),
+        ["together", folder] => return code(together_with_pictures(folder)),
         ["shprobe", _, ..] => return code(shprobe::run_with(&out_dir, &arguments[1..])),
         [name] if name == "all" || STUDIES.iter().any(|s| s.0 == name) => name,
         _ => {

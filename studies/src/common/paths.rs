@@ -1,8 +1,11 @@
 //! Light after any number of diffuse reflections, by paths of rays: a reference that shares no code with the renderer.
 
-use glam::{DVec3, dvec3};
+use glam::{DVec3, dvec2, dvec3};
 use pointillist_render::Scene;
+use rayon::prelude::*;
 
+use crate::common::picture::Picture;
+use crate::common::point_sampling::Pinhole;
 use crate::common::ray_reference::Tree;
 use crate::common::scenes::{SurfaceSample, normal_towards, radiance};
 
@@ -47,6 +50,22 @@ pub(crate) fn irradiance(
         }
     }
     sums.into_iter().map(|sum| sum * (4.0 * std::f64::consts::PI / f64::from(count))).collect()
+}
+
+/// A picture of a scene without maps by so many paths a pixel, each through a place of its own.
+pub(crate) fn picture(scene: &Scene, tree: &Tree, per_pixel: u32, seed: u64) -> Picture {
+    let (width, camera) = (scene.image.width as usize, Pinhole::new(scene));
+    let pixel = |i: usize| {
+        let mut random = Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ (i as u64) << 20);
+        let mut sum = DVec3::ZERO;
+        for _ in 0..per_pixel {
+            let place = dvec2((i % width) as f64 + random.next(), (i / width) as f64 + random.next());
+            let way = camera.direction(place).normalize();
+            sum += arriving(scene, tree, camera.eye, way, &mut random);
+        }
+        sum / f64::from(per_pixel)
+    };
+    Picture { width, pixels: (0..width * scene.image.height as usize).into_par_iter().map(pixel).collect() }
 }
 
 /// Radiance from a direction.

@@ -24,7 +24,8 @@ type Fault = Box<dyn std::error::Error + Send + Sync>;
 const ACROSS: f64 = 32.0;
 const FINER: f64 = 8.0;
 
-const SUN: &str =
+/// The light of the sun, in all buildings.
+pub(crate) const SUN: &str =
     "[[light]]\ntype = \"directional\"\ndirection = [0.25, -1.0, -0.28]\nirradiance = [3.2, 2.9, 2.4]\n";
 const BUILDINGS: [(&str, &str, &str); 3] = [
     (
@@ -46,19 +47,19 @@ const BUILDINGS: [(&str, &str, &str); 3] = [
 ];
 
 /// What one building took.
-struct Cost {
-    seconds: f64,
+pub(crate) struct Cost {
+    pub(crate) seconds: f64,
     patches: usize,
     links: usize,
-    baked: Baked,
+    pub(crate) baked: Baked,
     transport: RayTransport,
     gathered: Vec<Rgb>,
 }
 
 /// Patches along the longest side, and how much finer they may become.
-type Sizes = (f64, f64);
+pub(crate) type Sizes = (f64, f64);
 
-fn bake(
+pub(crate) fn bake(
     surfaces: &[Surface],
     lamps: &[Lamp<'_>],
     (across, finer): Sizes,

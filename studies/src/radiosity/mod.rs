@@ -1,7 +1,7 @@
 //! `radiosity`: time against error of form factors and of solutions. Writes `radiosity.md`.
 
 mod boxes;
-mod buildings;
+pub(crate) mod buildings;
 mod memory;
 mod moved;
 mod paths;

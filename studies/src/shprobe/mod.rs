@@ -3,6 +3,7 @@
 mod bounces;
 mod canvas;
 mod delaunay;
+mod known;
 mod layouts;
 mod maps;
 mod objects;
@@ -15,6 +16,7 @@ mod seams;
 mod site;
 mod streets;
 mod study;
+pub(crate) mod together;
 mod trilinear;
 pub(crate) mod truth;
 mod walk;

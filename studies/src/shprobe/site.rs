@@ -164,7 +164,7 @@ impl Site {
 }
 
 /// A scene of the reference data; `None`, with a word about it, if it cannot be read.
-fn from_data(mesh: &str, scale: f64, camera: &str, lights: &str) -> Option<Scene> {
+pub(crate) fn from_data(mesh: &str, scale: f64, camera: &str, lights: &str) -> Option<Scene> {
     let path = data::folder()?.join(mesh).canonicalize().ok()?;
     let mut text = format!("[camera]\n{camera}\nup = [0, 1, 0]\nfov = 60\n{lights}");
     let _ = write!(
@@ -255,7 +255,8 @@ impl<'a> Ground<'a> {
         Ok(Self::lit(site, Some(lightmap))?)
     }
 
-    fn lit(site: &'a Site, sent_on: Option<Lightmap>) -> Result<Self, RenderError> {
+    /// With this light that is sent on.
+    pub(crate) fn lit(site: &'a Site, sent_on: Option<Lightmap>) -> Result<Self, RenderError> {
         let prepared = Prepared::new(&site.scene, &())?;
         Ok(Self { site, prepared, tree: Tree::new(&site.scene), sent_on })
     }

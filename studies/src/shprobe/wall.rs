@@ -7,21 +7,18 @@ use glam::{DVec3, Vec3, dvec3};
 use pointillist_delaunay::Hint;
 use pointillist_render::AmbientLight;
 use pointillist_shprobe::Field;
-use pointillist_shprobe::place::{self, AdaptiveOptions, Candidates, FitOptions};
+use pointillist_shprobe::place;
 
 use crate::common::draw;
 use crate::common::rooms::{ROOMS, THIN_WALL};
-use crate::common::scenes::corners;
 use crate::shprobe::canvas::{save, sheet};
+use crate::shprobe::known::{Counts, HEIGHT, Known, Places, on_all};
 use crate::shprobe::layouts::light;
 use crate::shprobe::site::{Baked, Ground, Site, lit_by};
 use crate::shprobe::trilinear::Grid;
 use crate::shprobe::truth::Truth;
 
 type Fault = Box<dyn std::error::Error + Send + Sync>;
-
-/// Height above a surface of places that are on it: what is seen is what lights it.
-const HEIGHT: f64 = 1e-4;
 
 /// Numbers of adaptive probes.
 pub(crate) const COUNTS: [usize; 3] = [86, 96, 192];
@@ -30,14 +27,8 @@ pub(crate) const COUNTS: [usize; 3] = [86, 96, 192];
 const ON_FACE: usize = 160;
 const ON_ALL: usize = 200;
 
-/// Places that probes are fitted to: on surfaces, and in free space beside the candidates.
-const FIT_SURFACES: usize = 700;
-const FIT_FREE: usize = 500;
-
-/// Further candidates about the doorway.
-const OPENINGS: usize = 300;
-
-type Places = Vec<(DVec3, DVec3)>;
+/// What probes are chosen among and fitted to, beside a grid: further candidates about the doorway, places in free space and on surfaces.
+const FIT: Counts = Counts { openings: 300, free: 500, surfaces: 700 };
 
 /// One row of the table: relative errors.
 #[derive(Clone, Debug)]
@@ -59,10 +50,7 @@ pub(crate) struct Rooms<'a> {
     free: Truth,
     /// Dark face, lit face, all surfaces: places and what is true there.
     on: [(Places, Vec<DVec3>); 3],
-    /// What may become a probe, and after it what is only fitted to.
-    known: Baked,
-    normals: Vec<DVec3>,
-    candidates: usize,
+    known: Known,
 }
 
 impl<'a> Rooms<'a> {
@@ -83,61 +71,23 @@ impl<'a> Rooms<'a> {
             on.push((places, truth));
         }
         let on = on.try_into().map_err(|_| "there are three sets of places")?;
-        let mut rooms = Self { ground, free, on, known: Baked::default(), normals: vec![], candidates: 0 };
-        rooms.look()?;
-        Ok(rooms)
+        let known = Known::look(&ground, &FIT)?;
+        Ok(Self { ground, free, on, known })
     }
 
     pub(crate) const fn ground(&self) -> &Ground<'a> {
         &self.ground
     }
 
-    /// What is seen from candidates, and from places to fit to.
-    fn look(&mut self) -> Result<(), Fault> {
-        let site = self.ground.site;
-        let is_free = |p: &DVec3| self.ground.is_free(*p);
-        let grid = place::grid(site.low, site.high, site.candidates);
-        let mut known = self.ground.look(&grid.into_iter().filter(is_free).collect::<Vec<_>>())?;
-        let doors = place::near_openings(&known.positions, &known.distances, OPENINGS, 23)?;
-        known.extend(self.ground.look(&doors.into_iter().filter(is_free).collect::<Vec<_>>())?);
-        self.candidates = known.positions.len();
-        known.extend(self.ground.look(&self.ground.random(FIT_FREE, 24))?);
-        self.normals = vec![DVec3::ZERO; known.positions.len()];
-        let on = on_all(&self.ground, FIT_SURFACES, 25);
-        known.extend(self.ground.look(&on.iter().map(|p| p.0).collect::<Vec<_>>())?);
-        self.normals.extend(on.iter().map(|p| p.1));
-        self.known = known;
-        Ok(())
-    }
-
-    fn candidates_of<'b>(&self, known: &'b Baked, normals: &'b [DVec3], distances: bool) -> Candidates<'b> {
-        let mut candidates = Candidates::new(&known.positions, &known.radiance).with_normals(normals);
-        candidates.distances = distances.then_some(known.distances.as_slice());
-        candidates
-    }
-
     /// So many chosen probes, as they saw and fitted.
     pub(crate) fn adaptive(&self, count: usize, balance: f64, distances: bool) -> Result<[Baked; 2], Fault> {
-        let candidates = self.candidates_of(&self.known, &self.normals, distances);
-        let options = AdaptiveOptions::DEFAULT.with_max_count(count).with_balance(balance);
-        let chosen = place::adaptive(candidates, &options)?.chosen;
-        let seen = self.known.pick(chosen.iter().map(|&i| i as usize));
-        let fit = FitOptions::DEFAULT.with_balance(balance);
-        let fitted = Baked { radiance: place::fit(candidates, &chosen, &fit)?, ..seen.clone() };
-        Ok([seen, fitted])
+        self.known.adaptive(count, balance, distances)
     }
 
     /// The grid of 432, as it saw and fitted.
     pub(crate) fn grid(&self, distances: bool) -> Result<[Baked; 2], Fault> {
         let seen = self.ground.look(&Grid::new(&self.ground, [12, 6, 6]).positions)?;
-        let mut known = seen.clone();
-        known.extend(self.known.pick(0..self.known.positions.len()));
-        let mut normals = vec![DVec3::ZERO; seen.positions.len()];
-        normals.extend(&self.normals);
-        let chosen: Vec<u32> = (0..seen.positions.len() as u32).collect();
-        let candidates = self.candidates_of(&known, &normals, distances);
-        let radiance = place::fit(candidates, &chosen, &FitOptions::DEFAULT)?;
-        Ok([seen.clone(), Baked { radiance, ..seen }])
+        self.known.fitted_to_all(seen, distances)
     }
 
     /// How wrong light between these probes is.
@@ -163,32 +113,6 @@ fn off(field: &Field, places: &Places, truth: &[DVec3]) -> f64 {
     }
     let count = places.len() as f64;
     (square / count).sqrt() / (sum / count).length()
-}
-
-/// Places just above all surfaces, by area, where there is room.
-fn on_all(ground: &Ground<'_>, count: usize, seed: u64) -> Places {
-    let scene = &ground.site.scene;
-    let mut sum = 0.0;
-    let areas: Vec<f64> = (0..scene.mesh.triangles.len())
-        .map(|t| {
-            let [a, b, c] = corners(scene, t);
-            sum += 0.5 * (b - a).cross(c - a).length();
-            sum
-        })
-        .collect();
-    let place = |r: DVec3| {
-        let [a, b, c] = corners(scene, areas.partition_point(|a| *a <= r.x * sum).min(areas.len() - 1));
-        let (u, v) = if r.y + r.z > 1.0 { (1.0 - r.y, 1.0 - r.z) } else { (r.y, r.z) };
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        (a + (b - a) * u + (c - a) * v + normal * HEIGHT, normal)
-    };
-    let is_inside = |(p, _): &(DVec3, DVec3)| {
-        p.cmpgt(ground.site.low).all()
-            && p.cmplt(ground.site.high).all()
-            && ground.prepared.geometry().solids_around(*p).is_empty()
-    };
-    let drawn = place::random(DVec3::ZERO, DVec3::ONE, 2 * count, seed);
-    drawn.into_iter().map(place).filter(is_inside).take(count).collect()
 }
 
 const HEAD: &str = "| probes | distances | count | free % | dark room % | dark face % | lit face % | all surfaces % |\n\

@@ -1,0 +1,194 @@
+//! Whole pictures in light that is sent from surface to surface: by radiosity, and by probes that know what they see, against paths.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Instant;
+
+use cpu_time::ProcessTime;
+use glam::{DVec3, dvec3};
+use pointillist_render::{AmbientLight, Lamps, Lightmap, Material, Scene, scene_surfaces, with_lamps};
+use pointillist_shade as shade;
+use pointillist_shprobe::place;
+
+use crate::common::data::SKIPPED;
+use crate::common::draw;
+use crate::common::paths;
+use crate::common::picture::Picture;
+use crate::common::ray_reference::Tree;
+use crate::common::report::{Outcome, machine, write};
+use crate::radiosity::buildings::{SUN, Sizes, bake};
+use crate::shprobe::canvas::{save, sheet};
+use crate::shprobe::known::{Counts, Known};
+use crate::shprobe::site::{Ground, Site, from_data, lit_by};
+
+type Fault = Box<dyn std::error::Error + Send + Sync>;
+
+/// Pixels of pictures.
+const SIZE: [u32; 2] = [800, 500];
+
+/// Paths of a pixel, in either half of the reference.
+const PATHS: u32 = 16;
+
+/// Numbers of probes.
+const PROBES: [usize; 2] = [86, 192];
+
+/// What probes are chosen among and fitted to.
+const FIT: Counts = Counts { openings: 200, free: 300, surfaces: 1200 };
+
+/// Patches along the longest side, and how much finer they may become.
+const PATCHES: Sizes = (32.0, 16.0);
+
+/// Mean of the picture's light that is shown as this: a grey of 18 %.
+const SHOWN: f64 = 0.18;
+
+/// Two stops.
+const BRIGHTENED: f64 = 4.0;
+
+/// A picture's error: root mean square over the mean, without the noise of the reference.
+struct Error {
+    relative: f64,
+    /// How much brighter than the reference as a whole.
+    bias: f64,
+}
+
+/// Two pictures by paths, drawn apart: an error that is the product of differences from either has no noise of theirs in it.
+struct Reference {
+    halves: [Picture; 2],
+    mean: f64,
+    seconds: f64,
+}
+
+impl Reference {
+    fn new(scene: &Scene) -> Self {
+        let start = ProcessTime::now();
+        let tree = Tree::new(scene);
+        let halves = [1, 2].map(|seed| paths::picture(scene, &tree, PATHS, seed));
+        let count = 6 * halves[0].pixels.len();
+        let mean = halves.iter().map(Picture::total).sum::<f64>() / count as f64;
+        Self { halves, mean, seconds: start.elapsed().as_secs_f64() }
+    }
+
+    fn error(&self, picture: &Picture) -> Error {
+        let [a, b] = &self.halves;
+        let of = |((p, a), b): ((&DVec3, &DVec3), &DVec3)| (*p - *a).dot(*p - *b);
+        let square: f64 = picture.pixels.iter().zip(&a.pixels).zip(&b.pixels).map(of).sum();
+        let count = 3 * a.pixels.len();
+        let rmse = (square / count as f64).max(0.0).sqrt();
+        Error { relative: rmse / self.mean, bias: picture.total() / (count as f64 * self.mean) - 1.0 }
+    }
+
+    /// Its own noise, as an error.
+    fn noise(&self) -> f64 {
+        let [a, b] = &self.halves;
+        0.5 * a.rmse(b) / self.mean
+    }
+}
+
+/// The buildings, and two rooms seen from the dark one.
+fn sites() -> Vec<Site> {
+    let mut rooms = Site::thin_wall();
+    (rooms.scene.camera.eye, rooms.scene.camera.target) = (dvec3(7.7, 2.0, 3.7), dvec3(4.1, 1.0, 1.0));
+    rooms.name = "two rooms, from the dark one";
+    let sponza = Site::sponza().and_then(|site| {
+        let camera = "eye = [-11, 2.2, -0.8]\ntarget = [5, 4, 1]";
+        let lamp = "[[light]]\ntype = \"point\"\nposition = [-9, 3, 0.5]\nintensity = [16, 13, 9]\n";
+        let scene = from_data("scenes/sponza-dabrovic/sponza.obj", 1.0, camera, &format!("{SUN}{lamp}"))?;
+        Some(Site { name: "Sponza", scene, candidates: [20, 8, 10], ..site })
+    });
+    let sibenik = Site::sibenik().map(|site| Site { name: "Šibenik", candidates: [20, 8, 10], ..site });
+    let mut sites = vec![rooms];
+    sites.extend(sponza);
+    sites.extend(sibenik);
+    for site in &mut sites {
+        [site.scene.image.width, site.scene.image.height] = SIZE;
+        site.probe_px = 24;
+        without_maps(&mut site.scene);
+    }
+    sites
+}
+
+/// Leaves diffuse colours alone: the paths know nothing else.
+fn without_maps(scene: &mut Scene) {
+    for material in &mut scene.materials {
+        let surface = shade::Material::lambert(material.surface.diffuse);
+        *material = Material::new(&*material.name, surface.with_emission(material.surface.emission));
+    }
+    scene.render.shading = shade::Interpolation::Flat;
+}
+
+/// Measures all, and draws them to `folder`, if one is given.
+pub(crate) fn measure(folder: Option<&Path>) -> Result<String, Fault> {
+    let mut text = format!(
+        "## Whole pictures, by radiosity and by probes\n\n{} × {} pixels, direct light by `render` in all of them. *Radiosity*: patches of a {}nd of the longest side, \
+         divided down to an {}th of that for drawing. Probes know what they see, are chosen among a grid, places about openings, and fitted to free places and surfaces; what they see is lit by that solution. \
+         The reference is two pictures of {PATHS} paths a pixel each, drawn apart: the mean of the product of the differences from either, over the mean of the picture. Materials are diffuse and without maps.\n\n\
+         | scene | light by | error % | brighter % | processor seconds |\n| --- | --- | ---: | ---: | ---: |\n",
+        SIZE[0], SIZE[1], PATCHES.0, PATCHES.1
+    );
+    for site in sites() {
+        eprintln!("together: {}", site.name);
+        building(&site, folder, &mut text)?;
+    }
+    if Site::sponza().is_none() {
+        text += &format!("\n{SKIPPED}\n");
+    }
+    Ok(text)
+}
+
+/// Measures and writes `together.md`.
+pub(crate) fn run(out_dir: &Path) -> Outcome {
+    let text = format!("# Light between surfaces, in whole pictures\n\n{}\n{}", machine(), measure(None)?);
+    write(out_dir, "together.md", &text)?;
+    Ok(true)
+}
+
+fn building(site: &Site, folder: Option<&Path>, text: &mut String) -> Result<(), Fault> {
+    let reference = Reference::new(&site.scene);
+    let mut row = |name: &str, error: &Error, seconds: f64| -> Result<(), Fault> {
+        let Error { relative, bias } = *error;
+        let line = format!(
+            "| {} | {name} | {:.1} | {:+.1} | {seconds:.0} |",
+            site.name,
+            100.0 * relative,
+            100.0 * bias
+        );
+        eprintln!("    {line}");
+        Ok(writeln!(text, "{line}")?)
+    };
+    let noise = Error { relative: reference.noise(), bias: 0.0 };
+    row("(noise of the paths)", &noise, reference.seconds)?;
+    let mut shown = vec![reference.halves[0].mean(&reference.halves[1])];
+
+    let plain = draw::with_pipeline(&site.scene)?;
+    row("nothing else than lamps", &reference.error(&plain), 0.0)?;
+
+    let found = scene_surfaces(&site.scene)?;
+    let cost = with_lamps(&Lamps::new(&site.scene), |lamps| bake(&found.surfaces, lamps, PATCHES))?;
+    let map = Lightmap::of_baked(&cost.baked, &found.faces, site.scene.mesh.triangles.len())?;
+    let mut lit = site.scene.clone();
+    lit.ambient = AmbientLight::Radiosity { light: Box::new(map.clone()), fingerprint: 0 };
+    let picture = draw::with_pipeline(&lit)?;
+    row("radiosity", &reference.error(&picture), cost.seconds)?;
+    shown.push(picture);
+
+    let ground = Ground::lit(site, Some(map))?;
+    let start = Instant::now();
+    let known = Known::look(&ground, &FIT)?;
+    eprintln!("    candidates in {:.0} s", start.elapsed().as_secs_f64());
+    for count in PROBES {
+        let start = ProcessTime::now();
+        let [_, fitted] = known.adaptive(count, place::BALANCE, true)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let picture = draw::with_pipeline(&lit_by(&site.scene, &fitted, true)?)?;
+        row(&format!("{count} probes"), &reference.error(&picture), seconds)?;
+        shown.push(picture);
+    }
+    if let Some(folder) = folder {
+        let name = site.name.split(',').next().unwrap_or(site.name).replace(' ', "-");
+        let gain = SHOWN / reference.mean;
+        for (word, gain) in [("", gain), ("-bright", BRIGHTENED * gain)] {
+            save(&sheet(&shown, 2), gain, &folder.join(format!("together-{name}{word}.png")))?;
+        }
+    }
+    Ok(())
+}
