@@ -54,6 +54,10 @@ fn read_part(path: &Path) -> Result<Part, CliError> {
     let stamp = file.stamp.take();
     let stamp =
         stamp.ok_or_else(|| CliError::Parts(format!("{name} was not written by `pointillist render`")))?;
+    if stamp.unfinished {
+        let message = "holds the finished tiles of a run that was interrupted; run that `render` again to finish the part";
+        return Err(CliError::Parts(format!("{name} {message}")));
+    }
     Ok(Part { name, file, stamp })
 }
 

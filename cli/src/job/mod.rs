@@ -1,5 +1,6 @@
 //! What one run of `render` is asked to do, and how it tells what it does.
 
+pub mod interrupt;
 mod progress;
 mod stats;
 mod watch;
@@ -9,6 +10,7 @@ pub use stats::{Stats, ThreadClock};
 pub use watch::Watch;
 
 use crate::image_io::{LayerKind, PixelRect};
+
 /// What of a scene to draw, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderJob {

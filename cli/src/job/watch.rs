@@ -1,6 +1,6 @@
 //! The renderer's monitor: what is done goes to the progress bar and to `--stats`.
 
-use super::{Progress, Stats};
+use super::{Progress, Stats, interrupt};
 use pointillist_render::Monitor;
 
 /// Statistics alone, for work that is done before its size is known.
@@ -44,6 +44,10 @@ impl Monitor for Watch<'_> {
 
     fn advance(&self, units: u64) {
         self.progress.advance(units);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        interrupt::is_requested()
     }
 
     fn stage(&self, name: &'static str, work: &mut dyn FnMut()) {

@@ -1,5 +1,6 @@
 //! `render`.
 
+mod kept;
 mod layers;
 mod output;
 mod plan;
@@ -11,9 +12,11 @@ use super::report::check_output;
 use crate::error::CliError;
 use crate::image_io::{ExrFile, Frame, PixelRect, PngOptions};
 use crate::input::is_standard;
+use crate::job::interrupt::Keeper;
 use crate::job::{RenderJob, Watch};
 use crate::options::RenderOptions;
-use crate::scene::{self, Scene};
+use crate::scene;
+use kept::Kept;
 use plan::{check_memory, check_size, job, precision, stamp};
 use pointillist_render::{DrawOptions, Prepared, RenderError};
 use std::path::{Path, PathBuf};
@@ -37,14 +40,22 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     let job = job(scene, options)?;
     check_memory(options, job.window, &job.layers)?;
     let stamp = stamp(&loaded, &job, options);
+    let mut kept = Kept::of(&output, &stamp);
     if format == OutputFormat::Exr
         && !options.picture.overwrite
         && is_there(&output, &stamp, job.window, &report)
     {
         report.note(&format!("{} is already there; --overwrite draws it again", output.display()));
+        kept.remove_unused(&report);
         return report.finish();
     }
-    let frame = draw(scene, &job, &report).map_err(|error| CliError::Failed(error.to_string()))?;
+    let progress = report.progress();
+    let watch = Watch { task: "render", progress: &progress, stats: &report.stats };
+    let prepared = Prepared::new(scene, &watch).map_err(failed)?;
+    // From here on there are tiles to keep, until the picture is written.
+    let keeper = Keeper::new();
+    let frame = draw(&prepared, &job, &mut kept, &watch, &report)?;
+    progress.finish();
     report.stats.count("pixels", job.window.pixels());
     report.stats.stage("write", || match format {
         OutputFormat::Exr => write_exr(&output, ExrFile::from_frame(&frame, stamp, precision(options))),
@@ -53,20 +64,36 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
             write_png(&output, &frame, &PngOptions { exposure_ev: options.picture.exposure, background })
         }
     })?;
+    kept.remove(&report);
+    drop(keeper);
     tell(&report, options, &output, job.window);
     report.finish()
 }
 
-fn draw(scene: &Scene, job: &RenderJob, report: &Report<'_>) -> Result<Frame, RenderError> {
-    let progress = report.progress();
-    let watch = Watch { task: "render", progress: &progress, stats: &report.stats };
-    let prepared = Prepared::new(scene, &watch)?;
-    let start = Instant::now();
+/// Draws what an interrupted run has not, or keeps what is finished if this one is interrupted.
+fn draw(
+    prepared: &Prepared<'_>,
+    job: &RenderJob,
+    kept: &mut Kept,
+    watch: &Watch<'_>,
+    report: &Report<'_>,
+) -> Result<Frame, CliError> {
     let options = DrawOptions::DEFAULT.with_window(job.window).with_layers(job.layers.clone());
-    let frame = prepared.draw(&options, &watch);
+    let mut picture = prepared.begin(&options).map_err(failed)?;
+    report.stats.stage("load", || kept.restore(&mut picture, report));
+    let start = Instant::now();
+    let drawn = prepared.continue_view(&mut picture, watch);
     report.stats.add_wall("tiles", start.elapsed());
-    progress.finish();
-    frame
+    match drawn {
+        // A request that came with the last tile has nothing left to end.
+        Err(RenderError::Cancelled) if !picture.is_complete() => Err(kept.keep(&picture)),
+        Ok(()) | Err(RenderError::Cancelled) => Ok(picture.into_frame()),
+        Err(error) => Err(failed(error)),
+    }
+}
+
+fn failed(error: RenderError) -> CliError {
+    CliError::Failed(error.to_string())
 }
 
 fn output_path(options: &RenderOptions) -> PathBuf {

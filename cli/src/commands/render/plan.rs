@@ -64,6 +64,7 @@ pub(super) fn stamp(loaded: &LoadedScene, job: &RenderJob, options: &RenderOptio
         fingerprint: hash.finish(),
         region: job.region,
         tile: options.camera.tile.map(|tile| tile.to_string()),
+        unfinished: false,
         background: scene.image.background.to_array(),
     }
 }
