@@ -72,7 +72,11 @@ fn interrupt(folder: &Folder, line: &[&str], percent: u32, signals: &[&str]) -> 
         .map_while(Result::ok)
         .filter_map(|line| line.strip_prefix("openjd_progress: ")?.parse::<u32>().ok());
     assert!(at.any(|now| now >= percent), "{line:?} ended before {percent} %");
-    signals.iter().for_each(|signal| send(&child, signal));
+    for signal in signals {
+        send(&child, signal);
+        // Two signals of a kind that come at once are one.
+        std::thread::sleep(Duration::from_millis(300));
+    }
     // Read on, so that the pipe does not fill up or break.
     at.for_each(drop);
     end_of(child)
@@ -243,6 +247,34 @@ fn a_second_ctrl_c_ends_at_once() {
     assert!(begin.elapsed() < Duration::from_secs(30), "{:?}", begin.elapsed());
     assert_eq!(stopped.message, "interrupted\n");
     assert_eq!(folder.names(), ["scene.toml", "slow.toml", "triangle.obj"]);
+}
+
+#[test]
+fn a_film_goes_on_with_the_frame_that_was_interrupted() {
+    for (end, advice) in [("exr", "the same command goes on from there"), ("png", "go on with --frames 1-2")]
+    {
+        let folder = slow_folder();
+        let path = "[camera.path]\ntimes = [0, 2]\neye = [[0, 0.5, 4], [1, 0.5, 4]]\n[image]";
+        folder.write("slow.toml", SLOW.replace("[image]", path));
+        let name = format!("a.{{frame}}.{end}");
+        let line = render(&name, &["--size", "160x120", "--frames", "0-2"]);
+        let stopped = interrupt(&folder, &line, 50, &["-INT"]);
+        assert_eq!(stopped.code, Some(130), "{}", stopped.message);
+        let kept = format!("tiles are kept in a.1.{end}.part.exr; 1 of 3 frames are finished; {advice}");
+        assert!(stopped.message.contains(&kept), "{}", stopped.message);
+        assert!(!folder.path(&format!("a.1.{end}")).exists() && folder.path(&format!("a.0.{end}")).exists());
+        folder.prints(&[&line[..], &["--stats", "stats.json"]].concat());
+        let stats: Value = serde_json::from_slice(&fs::read(folder.path("stats.json")).unwrap()).unwrap();
+        assert!(stats["skipped"]["tiles_drawn_before"].as_u64().unwrap() > 0, "{stats}");
+        let name = format!("whole.{{frame}}.{end}");
+        folder.prints(&render(&name, &["--size", "160x120", "--frames", "0-2"]));
+        for frame in 0..3 {
+            let [a, b] =
+                ["a", "whole"].map(|name| fs::read(folder.path(&format!("{name}.{frame}.{end}"))).unwrap());
+            assert!(a == b, "frame {frame}");
+        }
+        assert!(folder.names().iter().all(|name| !name.contains("part")), "{:?}", folder.names());
+    }
 }
 
 #[test]

@@ -17,9 +17,9 @@ use std::sync::Arc;
 pub struct Prepared<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) surfaces: Arc<Surfaces>,
-    pub(crate) geometry: Geometry,
+    pub(crate) geometry: Arc<Geometry>,
     /// What casts shadows in the place of `geometry`, if anything is clear.
-    pub(crate) clear_casters: Vec<Casters>,
+    pub(crate) clear_casters: Arc<Vec<Casters>>,
     pub(crate) clear_boxes: Arc<ClearBoxes>,
     /// Polygons of materials that light others.
     pub(crate) emitters: Arc<Vec<EmittingPolygon>>,
@@ -44,13 +44,13 @@ impl<'a> Prepared<'a> {
         Ok(Self {
             scene,
             surfaces: Arc::new(surfaces),
-            geometry,
+            geometry: Arc::new(geometry),
             clear_boxes: Arc::new(if clear_casters.len() > 1 {
                 ClearBoxes::new(scene)
             } else {
                 ClearBoxes::default()
             }),
-            clear_casters,
+            clear_casters: Arc::new(clear_casters),
             emitters: Arc::new(emitters),
             environment: Arc::new(environment),
             reflections: Arc::new(Reflections::new(scene, monitor)?),
@@ -62,9 +62,33 @@ impl<'a> Prepared<'a> {
         Ok(Self {
             scene: self.scene,
             surfaces: self.surfaces.clone(),
-            clear_casters: clear_casters(self.scene, &geometry)?,
+            clear_casters: Arc::new(clear_casters(self.scene, &geometry)?),
             clear_boxes: self.clear_boxes.clone(),
-            geometry,
+            geometry: Arc::new(geometry),
+            emitters: self.emitters.clone(),
+            environment: self.environment.clone(),
+            reflections: self.reflections.clone(),
+        })
+    }
+
+    /// The same triangles, materials and textures in another scene: one that differs in its camera, its picture and its lights only. Costs
+    /// nothing. What mirrors had captured ([`Surroundings::Capture`](crate::Surroundings::Capture)) stays as it was lit before.
+    ///
+    /// # Errors
+    /// [`RenderError::Scene`] if the scene cannot be drawn.
+    ///
+    /// # Panics
+    /// If the scene has another number of triangles, materials or textures.
+    pub fn with_scene<'b>(&self, scene: &'b Scene) -> Result<Prepared<'b>, RenderError> {
+        scene.check()?;
+        let sizes = |s: &Scene| [s.mesh.triangles.len(), s.materials.len(), s.textures.len()];
+        assert_eq!(sizes(scene), sizes(self.scene), "a scene of the same triangles, materials and textures");
+        Ok(Prepared {
+            scene,
+            surfaces: self.surfaces.clone(),
+            geometry: self.geometry.clone(),
+            clear_casters: self.clear_casters.clone(),
+            clear_boxes: self.clear_boxes.clone(),
             emitters: self.emitters.clone(),
             environment: self.environment.clone(),
             reflections: self.reflections.clone(),
@@ -73,9 +97,9 @@ impl<'a> Prepared<'a> {
 
     /// What casts shadows, the channels of light for which it does, and when it is asked.
     pub(crate) fn casters(&self) -> impl Iterator<Item = (Vec3, &Geometry, Occasion)> {
-        let clear = &self.clear_casters;
+        let clear = &*self.clear_casters;
         let (serves_all, occasion) = match &clear[..] {
-            [] => (&self.geometry, Occasion::Always),
+            [] => (&*self.geometry, Occasion::Always),
             [alike] => (&alike.geometry, Occasion::Always),
             [first, ..] => (&first.geometry, Occasion::Untinted),
         };

@@ -7,7 +7,7 @@ mod watch;
 
 pub use progress::{Progress, ProgressMode};
 pub use stats::{Stats, ThreadClock};
-pub use watch::Watch;
+pub use watch::{Piece, Watch};
 
 use crate::image_io::{LayerKind, PixelRect};
 

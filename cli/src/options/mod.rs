@@ -24,7 +24,7 @@ pub use render::{CameraOptions, LayerRequest, PictureOptions, RenderOptions};
 pub use sample::{SampleMethod, SampleOptions};
 pub use scan::{ScanOptions, ShadingOptions, SurfaceOptions};
 pub use surfel::{DiscOptions, FocusOptions, ProcedureValue, SurfelOptions, SurfelShading};
-pub use values::{ResponseCurve, Tile, Vector};
+pub use values::{FrameRange, ResponseCurve, Tile, Vector};
 
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use clap_complete::Shell;
@@ -74,7 +74,9 @@ pub enum Command {
         pointillist render examples/house.toml -o house.exr --layers all\n  \
         pointillist render examples/rabbit.obj --eye 0.2,0.2,0.4 --target 0,0.08,0 --fov 30 -o rabbit.png\n  \
         pointillist render examples/house.toml --set render.shading=flat --size 1920x1080 -o flat.png\n  \
-        pointillist render examples/house.toml --tile 0/4 -o part0.exr")]
+        pointillist render examples/house.toml --tile 0/4 -o part0.exr\n  \
+        pointillist render examples/carousel.toml --frames 0-2 -o carousel.{frame:04}.png\n  \
+        pointillist render examples/rabbit.obj --turntable 3 -o rabbit.{frame}.png")]
     Render(RenderOptions),
     /// Draw range scans as they come: noisy, overlapping, without normals
     ///

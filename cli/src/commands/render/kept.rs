@@ -2,7 +2,6 @@
 
 use super::output::write_exr;
 use crate::commands::Report;
-use crate::error::CliError;
 use crate::image_io::{Channel, ExrFile, Frame, Layer, Precision, Stamp};
 use crate::memory;
 use exr::prelude::FlatSamples;
@@ -61,20 +60,17 @@ impl Kept {
         ));
     }
 
-    /// Keeps what is finished. The error says what was kept, or why nothing was.
-    pub(super) fn keep(&self, picture: &PartialFrame) -> CliError {
+    /// Keeps what is finished, and says what that is, or why it is nothing.
+    pub(super) fn keep(&self, picture: &PartialFrame) -> String {
         let (done, all) = (picture.tiles_drawn(), picture.tile_count());
-        CliError::Interrupted(if done == 0 {
-            "no tile was finished, so nothing is kept".to_owned()
-        } else {
-            match write_exr(&self.path, self.file(picture)) {
-                Ok(()) => format!(
-                    "{done} of {all} tiles are kept in {}; the same command goes on from there",
-                    self.path.display()
-                ),
-                Err(error) => format!("{done} of {all} tiles are lost: {error}"),
-            }
-        })
+        if done == 0 {
+            return "no tile was finished, so nothing is kept".to_owned();
+        }
+        let path = self.path.display();
+        match write_exr(&self.path, self.file(picture)) {
+            Ok(()) => format!("{done} of {all} tiles are kept in {path}"),
+            Err(error) => format!("{done} of {all} tiles are lost: {error}"),
+        }
     }
 
     /// Removes the file, once the picture is there and written.

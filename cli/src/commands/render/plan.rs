@@ -6,7 +6,7 @@ use crate::image_io::{LayerKind, PixelRect, Precision, Stamp};
 use crate::job::RenderJob;
 use crate::memory;
 use crate::options::RenderOptions;
-use crate::scene::{LoadedScene, Scene};
+use crate::scene::Scene;
 use std::hash::Hasher as _;
 use twox_hash::XxHash3_64;
 
@@ -48,10 +48,9 @@ pub(super) fn check_size(options: &RenderOptions) -> Result<(), CliError> {
     check_memory(options, window, &[])
 }
 
-/// Where the picture comes from, as its header says.
-pub(super) fn stamp(loaded: &LoadedScene, job: &RenderJob, options: &RenderOptions) -> Stamp {
+/// Where a picture comes from, as its header says; `fingerprint` is that of the scene.
+pub(super) fn stamp(scene: &Scene, fingerprint: u64, job: &RenderJob, options: &RenderOptions) -> Stamp {
     let mut hash = XxHash3_64::default();
-    let LoadedScene { scene, fingerprint, .. } = loaded;
     hash.write(&fingerprint.to_le_bytes());
     let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
     for channel in job.layers.iter().flat_map(|layer| layer.channels(&names)) {
