@@ -244,7 +244,7 @@ fn every_example_of_the_help_of_baked_light_runs() {
 
 #[test]
 fn every_example_of_the_help_of_files_runs() {
-    run_help_of(&["dice", "compare", "info", "check", "merge", "completions", "man"]);
+    run_help_of(&["dice", "compare", "info", "check", "job", "merge", "completions", "man"]);
 }
 
 #[test]
@@ -260,6 +260,7 @@ fn no_command_with_examples_is_left_out() {
         "compare",
         "info",
         "check",
+        "job",
         "merge",
         "completions",
         "man",

@@ -1,6 +1,7 @@
 //! The options of every command, as clap reads them.
 
 mod common;
+mod job;
 mod points;
 mod probe;
 mod radiosity;
@@ -11,6 +12,7 @@ mod surfel;
 mod values;
 
 pub use common::{Common, Progressive, TextOutput};
+pub use job::JobOptions;
 pub use points::{PointLayerRequest, layer_list};
 pub use probe::{
     BakeOptions, CaptureOptions, Indirect, Inside, PlaceOptions, ProbeCommand, ProjectOptions, QueryOptions,
@@ -52,6 +54,15 @@ impl Cli {
         let matches = with_negative_numbers(Self::command()).get_matches();
         Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
     }
+}
+
+/// Reads a command line, its first word included; the error is the first line of the message.
+///
+/// # Errors
+///
+/// A line that [`Cli::read`] would end the program for.
+pub fn parse(words: &[String]) -> Result<Command, String> {
+    job::parse(words)
 }
 
 /// Makes the message about `--fov -3` one about the value of `--fov`, not about an unknown option `-3`.
@@ -161,6 +172,17 @@ pub enum Command {
         pointillist check examples/house.toml\n  \
         pointillist check examples/house.toml --set camera.fov=30")]
     Check(CheckOptions),
+    /// Write a job for a render farm: an Open Job Description template
+    ///
+    /// The job has a task for each tile of each frame, and one for each frame that joins its tiles. Its parameters Scene, Output, Tiles, Frames and
+    /// Program may be changed when it is submitted. With --probes it bakes probes in parts instead.
+    #[command(after_help = "Examples:\n  \
+        pointillist job examples/house.toml --tiles 8 -o house.yaml\n  \
+        pointillist job examples/carousel.toml --tiles 2 --frames 0-47 -o carousel.json -- --size 1280x720 --layers all\n\n\
+        Probes in the same way:\n  \
+        pointillist probe place examples/house.toml --grid 6x3x4 -o probes.json\n  \
+        pointillist job examples/house.toml --probes probes.json --tiles 4 -o bake.yaml")]
+    Job(JobOptions),
     /// Join the parts that `render --tile` or `probe bake --part` wrote
     #[command(after_help = "Examples:\n  \
         pointillist render examples/house.toml --tile 0/2 -o part0.exr\n  \
@@ -261,11 +283,18 @@ pub struct CheckOptions {
 }
 
 /// `merge`.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct MergeOptions {
-    /// EXR files that `render --tile` wrote, or files that `probe bake --part` wrote, in any order.
+    /// EXR files that `render --tile` wrote, or files that `probe bake --part` wrote, in any order; or their pattern, with {tile} for
+    /// the numbers from 1 to --tiles.
     #[arg(required = true, value_name = "PART")]
     pub parts: Vec<PathBuf>,
+    /// How many files each PART with {tile} in its name stands for, counted from 1.
+    #[arg(long, value_name = "N", value_parser = values::whole::<u32>(1..=100_000))]
+    pub tiles: Option<u32>,
+    /// The number that stands in the place of {frame} in all names.
+    #[arg(long, value_name = "N", value_parser = values::whole::<u32>(0..=9_999_999))]
+    pub frame: Option<u32>,
     /// The whole: .exr or .png for a picture, .json, .probes or `-` (standard output) for probes.
     #[arg(short, long, value_name = "PATH")]
     pub output: PathBuf,

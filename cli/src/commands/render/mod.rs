@@ -8,6 +8,7 @@ mod plan;
 mod shots;
 
 pub(super) use output::{OutputFormat, is_there, write_exr, write_png};
+pub(super) use shots::numbered;
 
 use super::Report;
 use crate::error::CliError;
