@@ -82,6 +82,8 @@ fn an_object_on_a_path_is_where_a_still_one_would_be() {
         let error = difference(&folder, &format!("m.{frame}.exr"), "still.exr");
         assert!(error < 1e-6, "frame {frame}: {error}");
     }
+    folder.prints(&["render", "m.toml", "--float", "--frames", "5-5", "-o", "alone.exr"]);
+    assert!(same(&folder, "m.5.exr", "alone.exr"), "the frames before leave nothing behind");
     // Turned about its own origin, then placed; the scale stays.
     folder.write(
         "r.toml",

@@ -122,7 +122,7 @@ pub use look::{LookOptions, Seen, buried, fingerprints, look_again, look_all};
 pub use monitor::{Monitor, Watch};
 pub use partial::PartialFrame;
 pub use pointillist_shadow::check_outline;
-pub use prepared::Prepared;
+pub use prepared::{Prepared, PreparedMaps};
 pub use radiosity_surfaces::{SceneSurfaces, scene_surfaces};
 pub use scene::{
     AmbientLight, Bump, BumpHeight, Camera, Channel, Details, ImageSettings, LightSource, Map, Material,

@@ -27,15 +27,61 @@ pub struct Prepared<'a> {
     pub(crate) reflections: Arc<Reflections>,
 }
 
+/// What is prepared of a scene's textures: for the same scene with its triangles in other places ([`Prepared::with_maps`]). Holds no reference
+/// to the scene, which may be changed meanwhile.
+#[derive(Clone)]
+pub struct PreparedMaps {
+    surfaces: Arc<Surfaces>,
+    environment: Arc<Option<TexelSums<3>>>,
+    reflections: Arc<Reflections>,
+    sizes: [usize; 3],
+}
+
+/// Triangles, materials and textures.
+fn sizes(scene: &Scene) -> [usize; 3] {
+    [scene.mesh.triangles.len(), scene.materials.len(), scene.textures.len()]
+}
+
+impl PreparedMaps {
+    pub(crate) fn check(&self, scene: &Scene) {
+        assert_eq!(sizes(scene), self.sizes, "a scene of the same triangles, materials and textures");
+    }
+}
+
 impl<'a> Prepared<'a> {
+    /// What is prepared of the textures.
+    #[must_use]
+    pub fn maps(&self) -> PreparedMaps {
+        PreparedMaps {
+            surfaces: self.surfaces.clone(),
+            environment: self.environment.clone(),
+            reflections: self.reflections.clone(),
+            sizes: sizes(self.scene),
+        }
+    }
+
     /// Prepares all but the surroundings that are captured for mirrors: those are drawn with what is prepared here.
-    pub(crate) fn without_captures(scene: &'a Scene, monitor: &dyn Monitor) -> Result<Self, RenderError> {
+    pub(crate) fn without_captures(
+        scene: &'a Scene,
+        maps: Option<&PreparedMaps>,
+        monitor: &dyn Monitor,
+    ) -> Result<Self, RenderError> {
         scene.check()?;
-        let surfaces = stage(monitor, "textures", || Surfaces::new(scene))?;
+        let surfaces = stage(monitor, "textures", || match maps {
+            Some(maps) => Ok(maps.surfaces.moved(scene)),
+            None => Surfaces::new(scene),
+        })?;
         go_on(monitor)?;
         let geometry = stage(monitor, "build", || surfaces.geometry(scene))?;
         go_on(monitor)?;
-        let environment = stage(monitor, "textures", || sum_up_environment(scene))?;
+        let environment = match maps {
+            Some(maps) => maps.environment.clone(),
+            None => Arc::new(stage(monitor, "textures", || sum_up_environment(scene))?),
+        };
+        let reflections = match maps {
+            Some(maps) => maps.reflections.without_captures(),
+            None => Reflections::new(scene, monitor)?,
+        };
         let clear_casters = clear_casters(scene, &geometry)?;
         let emitters = emitting_polygons(scene, |t| radiance_of_triangle(scene, &surfaces, t));
         monitor.count("triangles", geometry.triangle_count() as u64);
@@ -52,8 +98,8 @@ impl<'a> Prepared<'a> {
             }),
             clear_casters: Arc::new(clear_casters),
             emitters: Arc::new(emitters),
-            environment: Arc::new(environment),
-            reflections: Arc::new(Reflections::new(scene, monitor)?),
+            environment,
+            reflections: Arc::new(reflections),
         })
     }
 
@@ -81,7 +127,6 @@ impl<'a> Prepared<'a> {
     /// If the scene has another number of triangles, materials or textures.
     pub fn with_scene<'b>(&self, scene: &'b Scene) -> Result<Prepared<'b>, RenderError> {
         scene.check()?;
-        let sizes = |s: &Scene| [s.mesh.triangles.len(), s.materials.len(), s.textures.len()];
         assert_eq!(sizes(scene), sizes(self.scene), "a scene of the same triangles, materials and textures");
         Ok(Prepared {
             scene,

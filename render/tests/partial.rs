@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3, dvec3};
 use pointillist_render::shade::{self, Light};
 use pointillist_render::{
     Camera, DrawOptions, LayerKind, LightSource, Material, Part, PartialFrame, PixelRect, Prepared,
-    RenderError, Scene, Watch,
+    RenderError, Scene, Texels, Texture, Watch,
 };
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -83,6 +83,40 @@ fn what_was_drawn_is_taken_over_by_another_run() {
         assert!(third.restore(&frame, &drawn));
         assert_eq!(third.tiles_drawn() + 1, first.tiles_drawn());
     }
+}
+
+#[test]
+fn what_is_kept_of_a_scene_that_moved_shows_what_a_new_preparation_shows() {
+    let mut scene = scene();
+    let card = Texture::new(
+        "card",
+        [2, 2],
+        Texels::Srgb8(vec![[255, 0, 0, 255], [0; 4], [9; 4], [0, 99, 0, 200]].into()),
+    );
+    let card = scene.add_texture(card);
+    let mut leaf = Material::new("leaf", shade::Material::lambert(Vec3::ONE));
+    (leaf.diffuse_map, leaf.opacity_map) = (Some(card), Some(card));
+    let leaf = scene.add_material(leaf);
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0)].map(|(x, y)| dvec3(x, y, 0.8));
+    let uvs = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)].map(|(x, y)| glam::dvec2(x, y));
+    let part = Part::new("leaf", &corners, &[[0, 1, 2]]).with_uvs(&uvs).with_material(leaf);
+    // Twice in the same place, one of which moves away.
+    scene.mesh.add(&part).unwrap();
+    scene.mesh.add(&part).unwrap();
+    let maps = Prepared::new(&scene, &()).unwrap().maps();
+    for position in scene.mesh.positions.iter_mut().rev().take(3) {
+        *position += dvec3(-0.4, 0.2, 0.3);
+    }
+    let draw = |prepared: Prepared<'_>| prepared.draw(&options()[0], &()).unwrap();
+    let moved = draw(Prepared::with_maps(&scene, &maps, &()).unwrap());
+    assert_eq!(moved, draw(Prepared::new(&scene, &()).unwrap()));
+    // And another camera and another light, without any preparation.
+    let before = Prepared::new(&scene, &()).unwrap();
+    let mut other = scene.clone();
+    other.camera.eye.x += 0.3;
+    other.lights[0].light =
+        Light::Directional { direction: dvec3(0.2, -1.0, -1.0), irradiance: Vec3::splat(2.0) };
+    assert_eq!(draw(before.with_scene(&other).unwrap()), draw(Prepared::new(&other, &()).unwrap()));
 }
 
 #[test]

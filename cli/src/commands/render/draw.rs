@@ -1,7 +1,7 @@
 //! Draws the frames of a run one after the other, and keeps what does not move.
 //!
-//! Frames with all objects in the same places share one [`Prepared`]: only the camera is another. It is prepared when the first of them is
-//! drawn, so that frames that are there already cost nothing but a look into their files.
+//! Frames with all objects in the same places share one [`Prepared`]: only the camera is another. Where objects move, textures stay summed up.
+//! A take is prepared when the first of its frames is drawn, so that frames that are there already cost nothing but a look into their files.
 
 use super::kept::Kept;
 use super::output::{OutputFormat, is_there, write_exr, write_png};
@@ -14,7 +14,9 @@ use crate::job::interrupt::{self, Keeper};
 use crate::job::{Piece, Progress, RenderJob, Watch};
 use crate::options::RenderOptions;
 use crate::scene::{LoadedScene, Motion, Scene, key_light};
-use pointillist_render::{Camera, DrawOptions, Monitor, Prepared, RenderError, View, fingerprint};
+use pointillist_render::{
+    Camera, DrawOptions, Monitor, Prepared, PreparedMaps, RenderError, View, fingerprint,
+};
 use std::time::Instant;
 
 /// What an interrupted run says at the end.
@@ -40,6 +42,24 @@ struct Take<'s> {
     /// The hash of all but the camera.
     light: u64,
     prepared: Option<Prepared<'s>>,
+    /// Of an earlier take: objects have moved since, textures have not.
+    maps: Option<PreparedMaps>,
+}
+
+impl Take<'_> {
+    /// Prepares the scene, unless it is.
+    fn prepare(&mut self, monitor: &dyn Monitor, report: &Report<'_>) -> Result<(), CliError> {
+        if self.prepared.is_some() {
+            return Ok(());
+        }
+        let prepared = match &self.maps {
+            Some(maps) => Prepared::with_maps(self.scene, maps, monitor),
+            None => Prepared::new(self.scene, monitor),
+        };
+        self.prepared = Some(prepared.map_err(failed)?);
+        report.stats.count("preparations", 1);
+        Ok(())
+    }
 }
 
 impl Film<'_> {
@@ -50,20 +70,21 @@ impl Film<'_> {
         if self.is_sequence() {
             progress.begin("render", self.shots.len() as u64 * Piece::UNITS);
         }
-        let mut done = 0;
+        let (mut done, mut maps) = (0, None);
         while let Some(first) = self.shots.get(done) {
             self.motion.pose(&mut scene, first.frame)?;
             let light =
                 if self.motion.same_objects(first.frame, 0) { light } else { fingerprint::of_light(&scene) };
             let together = |shot: &&Shot| self.motion.same_objects(first.frame, shot.frame);
             let count = self.shots[done..].iter().take_while(together).count();
-            let mut take = Take { scene: &scene, is_lit_from_camera, light, prepared: None };
+            let mut take = Take { scene: &scene, is_lit_from_camera, light, prepared: None, maps };
             for _ in 0..count {
                 let camera = self.motion.camera(&start, self.shots[done].frame)?;
                 self.draw_shot(done, camera, &mut take, &progress)?;
                 done += 1;
                 self.say_how_far(done);
             }
+            maps = take.prepared.as_ref().map(Prepared::maps).or(take.maps);
         }
         progress.finish();
         Ok(())
@@ -106,10 +127,7 @@ impl Film<'_> {
         let watch = Watch { task: "render", progress, stats: &report.stats };
         let piece = Piece::new(watch, index as u64, self.shots.len() as u64);
         let monitor: &dyn Monitor = if self.is_sequence() { &piece } else { &watch };
-        if take.prepared.is_none() {
-            take.prepared = Some(Prepared::new(take.scene, monitor).map_err(failed)?);
-            report.stats.count("preparations", 1);
-        }
+        take.prepare(monitor, report)?;
         let shared = take.prepared.as_ref().expect("prepared above");
         let own = turned.as_ref().map(|turned| shared.with_scene(turned)).transpose().map_err(failed)?;
         let prepared = own.as_ref().unwrap_or(shared);
