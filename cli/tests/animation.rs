@@ -204,6 +204,8 @@ fn paths_that_cannot_be_followed_are_named() {
         "times = [0, 8]\neye = [[0,0.5,4],[0,0.5,-4]]",
         &["`camera.path` at frame 4", "eye and target are the same point"],
     );
+    // And before anybody draws it.
+    folder.fails(&["check", "bad.toml"], 3, &["`camera.path` at frame 4"]);
     let object = |path: &str, pieces: &[&str]| {
         folder.write("bad.toml", moving(path));
         folder.fails(&["render", "bad.toml", "--frames", "0-9", "-o", "a.{frame}.png"], 3, pieces);

@@ -26,7 +26,7 @@ pub use render::{CameraOptions, LayerRequest, PictureOptions, RenderOptions};
 pub use sample::{SampleMethod, SampleOptions};
 pub use scan::{ScanOptions, ShadingOptions, SurfaceOptions};
 pub use surfel::{DiscOptions, FocusOptions, ProcedureValue, SurfelOptions, SurfelShading};
-pub use values::{FrameRange, ResponseCurve, Tile, Vector};
+pub use values::{FrameRange, LAST_FRAME, ResponseCurve, Tile, Vector};
 
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use clap_complete::Shell;
@@ -188,6 +188,10 @@ pub enum Command {
         pointillist render examples/house.toml --tile 0/2 -o part0.exr\n  \
         pointillist render examples/house.toml --tile 1/2 -o part1.exr\n  \
         pointillist merge part0.exr part1.exr -o house.exr\n\n\
+        Many parts by the pattern of their names, counted from 1:\n  \
+        pointillist render examples/house.toml --tile 1of2 -o tile1.exr\n  \
+        pointillist render examples/house.toml --tile 2of2 -o tile2.exr\n  \
+        pointillist merge tile{tile}.exr --tiles 2 -o house.exr\n\n\
         Probes in the same way:\n  \
         pointillist probe place examples/house.toml --grid 6x3x4 -o probes.json\n  \
         pointillist probe bake examples/house.toml probes.json --bounces 0 --part 0/2 -o part0.json\n  \
@@ -293,7 +297,7 @@ pub struct MergeOptions {
     #[arg(long, value_name = "N", value_parser = values::whole::<u32>(1..=100_000))]
     pub tiles: Option<u32>,
     /// The number that stands in the place of {frame} in all names.
-    #[arg(long, value_name = "N", value_parser = values::whole::<u32>(0..=9_999_999))]
+    #[arg(long, value_name = "N", value_parser = values::whole::<u32>(0..=LAST_FRAME))]
     pub frame: Option<u32>,
     /// The whole: .exr or .png for a picture, .json, .probes or `-` (standard output) for probes.
     #[arg(short, long, value_name = "PATH")]

@@ -93,7 +93,7 @@ impl Tile {
 }
 
 /// The last frame that there can be: more digits than a file name is padded to, and far more than a film has.
-const LAST_FRAME: u32 = 9_999_999;
+pub const LAST_FRAME: u32 = 9_999_999;
 
 /// Frames from `first` to `last`, both included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -105,6 +105,16 @@ impl Motion {
         matches!(self.camera, CameraMotion::Still) && self.objects.is_empty()
     }
 
+    /// The last frame in which the camera is not where it stays; 0 if it never moves.
+    #[must_use]
+    pub fn last_frame(&self) -> u32 {
+        match &self.camera {
+            CameraMotion::Still => 0,
+            CameraMotion::Path(path, _) => path.last_frame(),
+            CameraMotion::Turntable(views) => views - 1,
+        }
+    }
+
     /// The camera of a frame, of a scene whose camera at frame 0 is this.
     ///
     /// # Errors

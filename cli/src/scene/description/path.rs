@@ -1,6 +1,7 @@
 //! `[camera.path]` and `path` of an object: values at times, and what is between them.
 
 use crate::input_error::InputError;
+use crate::options::LAST_FRAME;
 use crate::scene::text::{Span, Table};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -121,6 +122,12 @@ impl CameraPath {
         }
         table.finish()?;
         Ok(Some(Self { span: camera.span_of("path"), times, eye, target }))
+    }
+
+    /// The first frame from which on the camera stands still, and not beyond the frames that can be asked for.
+    pub fn last_frame(&self) -> u32 {
+        let last = self.times.times.last().map_or(0.0, |last| last.ceil());
+        last.clamp(0.0, f64::from(LAST_FRAME)) as u32
     }
 
     /// Eye and target at a frame, where the path has them.
