@@ -5,6 +5,9 @@ use crate::json_lines::JsonLinesError;
 use std::io;
 use std::process::ExitCode;
 
+/// What a shell reports for a program that Ctrl-C ended.
+pub(crate) const INTERRUPTED: u8 = 130;
+
 /// What ends a command before it is done.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -24,6 +27,9 @@ pub enum CliError {
     /// `compare` found more difference than allowed. Exit code 5.
     #[error("{0}")]
     Beyond(String),
+    /// Ctrl-C or SIGTERM, and what was kept. Exit code 130.
+    #[error("interrupted: {0}")]
+    Interrupted(String),
     /// Whoever read our output has had enough. Exit code 0.
     #[error("the reader of the output went away")]
     BrokenPipe,
@@ -44,6 +50,7 @@ impl CliError {
             Self::Parts(_) => 4,
             Self::Beyond(_) => 5,
             Self::Lines(_) => 1,
+            Self::Interrupted(_) => INTERRUPTED,
         })
     }
 

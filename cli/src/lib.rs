@@ -18,6 +18,7 @@ pub mod json_lines;
 mod json_words;
 pub mod memory;
 pub mod mesh_io;
+mod name_pattern;
 pub mod options;
 pub mod points;
 pub mod probe_io;

@@ -1,31 +1,28 @@
 //! The `pointillist` command.
 
-use pointillist_cli::{CliError, image_io, options::Cli};
+use pointillist_cli::job::interrupt;
+use pointillist_cli::{CliError, options::Cli};
 use std::io::Write as _;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-
-/// What a shell reports for a program that Ctrl-C ended.
-const INTERRUPTED: i32 = 130;
 
 /// "Failed while running".
 const FAILED: i32 = 1;
 
 fn main() -> ExitCode {
     let cli = Cli::read();
-    // Without a handler Ctrl-C still ends the program; only a temporary file would stay.
-    let _ = ctrlc::set_handler(|| {
-        image_io::remove_temporaries();
-        std::process::exit(INTERRUPTED);
-    });
+    interrupt::watch();
     leave_instead_of_aborting();
     match pointillist_cli::run(&cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            if !matches!(error, CliError::BrokenPipe) {
-                let _ = writeln!(std::io::stderr(), "error: {error}");
-            }
+            // Nobody to tell is no reason to leave with another code.
+            let _ = match &error {
+                CliError::BrokenPipe => Ok(()),
+                CliError::Interrupted(_) => writeln!(std::io::stderr(), "{error}"),
+                _ => writeln!(std::io::stderr(), "error: {error}"),
+            };
             error.exit_code()
         }
     }

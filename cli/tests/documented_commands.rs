@@ -124,7 +124,15 @@ fn outputs(command: &str) -> Vec<String> {
         .into_iter()
         .filter_map(named)
         .filter(|name| name != "-" && !name.starts_with('~'))
+        .map(|name| first_frame(&words, name))
         .collect()
+}
+
+/// The file of the first frame, where the name is one of many.
+fn first_frame(words: &[&str], name: String) -> String {
+    let range = words.iter().position(|w| *w == "--frames").map_or("0", |at| words[at + 1]);
+    let frame: u32 = range.split('-').next().unwrap_or("0").parse().expect("a frame");
+    name.replace("{frame:04}", &format!("{frame:04}")).replace("{frame}", &frame.to_string())
 }
 
 /// Runs commands one after the other in a folder of their own; `place` says where they stand.
@@ -236,7 +244,7 @@ fn every_example_of_the_help_of_baked_light_runs() {
 
 #[test]
 fn every_example_of_the_help_of_files_runs() {
-    run_help_of(&["dice", "compare", "info", "check", "merge", "completions", "man"]);
+    run_help_of(&["dice", "compare", "info", "check", "job", "merge", "completions", "man"]);
 }
 
 #[test]
@@ -252,6 +260,7 @@ fn no_command_with_examples_is_left_out() {
         "compare",
         "info",
         "check",
+        "job",
         "merge",
         "completions",
         "man",

@@ -142,6 +142,7 @@ fn stamps_survive_their_text() {
         version: "1.2.3".to_owned(),
         fingerprint: 0xfeed,
         region: PixelRect { x0: 1, y0: 2, x1: 3, y1: 4 },
+        unfinished: false,
         tile: Some("1/4".to_owned()),
         background: [0.1, 0.2, 1e-7],
     };

@@ -165,6 +165,20 @@ impl<'a> Renderer<'a> {
             return Err(MicropointError::BadTileSize(size).into());
         }
         let tiles: Vec<PixelRect> = rect.intersection(&self.picture()).tiles(size).collect();
+        self.for_each_rect(&tiles, start, visit)
+    }
+
+    /// As [`Renderer::for_each_tile`], for rectangles that the caller chooses: those of a picture that are not there yet. What is large
+    /// takes memory for all of its cells, on each thread.
+    ///
+    /// # Errors
+    /// An error of `visit`.
+    pub fn for_each_rect<S, E: Send>(
+        &self,
+        rects: &[PixelRect],
+        start: impl Fn() -> S + Send + Sync,
+        visit: impl Fn(&mut S, &Tile) -> Result<(), E> + Send + Sync,
+    ) -> Result<(), E> {
         // Threads take up work more often than there are threads; memory that has grown is not given away each time.
         let memory = Pool::<Tile>::default();
         let render = |state: &mut S, rect: &PixelRect| {
@@ -176,12 +190,12 @@ impl<'a> Renderer<'a> {
         #[cfg(feature = "rayon")]
         {
             use rayon::prelude::*;
-            tiles.par_iter().try_for_each_init(start, render)
+            rects.par_iter().try_for_each_init(start, render)
         }
         #[cfg(not(feature = "rayon"))]
         {
             let mut state = start();
-            tiles.iter().try_for_each(|rect| render(&mut state, rect))
+            rects.iter().try_for_each(|rect| render(&mut state, rect))
         }
     }
 

@@ -4,11 +4,11 @@
 //! that can use its light; then each is shaded once. Memory is that of a tile per thread, plus the frame.
 
 use crate::background::Background;
-use crate::canvas::Canvas;
 use crate::error::RenderError;
 use crate::frame::{Frame, LayerKind};
 use crate::lights::{SceneLights, scene_lights};
 use crate::monitor::{Monitor, go_on};
+use crate::partial::PartialFrame;
 use crate::prepared::Prepared;
 use crate::shader::{Glow, Shader, Style};
 use crate::shading::ShaderScratch;
@@ -17,9 +17,6 @@ use pointillist_parallel::Pool;
 use pointillist_shadow::{AreaCounts, ShadowCounts};
 use pointillist_view::{PixelRect, View};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// Pixels on a side of a tile: about a thousand cells, whose state stays in the second-level cache.
-const TILE_SIZE: u32 = 16;
 
 /// What of a picture is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -77,6 +74,61 @@ impl Prepared<'_> {
         self.draw_styled(view, &style, options, monitor)
     }
 
+    /// A picture of the scene's camera of which nothing is drawn yet: for [`Prepared::continue_view`].
+    ///
+    /// # Errors
+    /// [`RenderError`] if the camera, the size of the picture or a layer is refused.
+    pub fn begin(&self, options: &DrawOptions) -> Result<PartialFrame, RenderError> {
+        self.begin_view(self.scene.view()?, options)
+    }
+
+    /// A picture of another camera of which nothing is drawn yet: for [`Prepared::continue_view`], so that what is drawn survives when the
+    /// monitor cancels.
+    ///
+    /// # Errors
+    /// [`RenderError::Layer`].
+    pub fn begin_view(&self, view: View, options: &DrawOptions) -> Result<PartialFrame, RenderError> {
+        self.check_layers(&options.layers)?;
+        Ok(PartialFrame::new(self.scene, view, options))
+    }
+
+    /// Draws the tiles that a picture lacks. Once all are there, [`PartialFrame::into_frame`] is what [`Prepared::draw_view`] gives, to the
+    /// last bit, however often the work was ended in between.
+    ///
+    /// ```
+    /// # use pointillist_render::glam::{DVec3, Vec3};
+    /// # use pointillist_render::{Camera, DrawOptions, Material, Part, Prepared, RenderError, Scene, Watch, shade};
+    /// # use std::sync::atomic::{AtomicBool, Ordering};
+    /// # let mut scene = Scene::new(Camera::perspective(DVec3::Z, DVec3::ZERO, 1.0), [64, 64]);
+    /// # scene.add_material(Material::new("white", shade::Material::lambert(Vec3::ONE)));
+    /// # scene.mesh.add(&Part::new("triangle", &[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]]))?;
+    /// let prepared = Prepared::new(&scene, &())?;
+    /// let mut picture = prepared.begin(&DrawOptions::DEFAULT)?;
+    ///
+    /// // A caller who loses patience after the first tile, and comes back later.
+    /// let stop = AtomicBool::new(false);
+    /// let after_one = |done, _| stop.store(done > 0, Ordering::Relaxed);
+    /// let watch = Watch::new().with_progress(&after_one).with_cancel(&stop);
+    /// assert!(matches!(prepared.continue_view(&mut picture, &watch), Err(RenderError::Cancelled)));
+    /// assert!(picture.tiles_drawn() > 0);
+    ///
+    /// prepared.continue_view(&mut picture, &())?;
+    /// assert_eq!(picture.into_frame(), prepared.draw(&DrawOptions::DEFAULT, &())?);
+    /// # Ok::<(), RenderError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Prepared::draw`]. What was drawn until then stays in the picture.
+    pub fn continue_view(
+        &self,
+        picture: &mut PartialFrame,
+        monitor: &dyn Monitor,
+    ) -> Result<(), RenderError> {
+        let (ambient, depths) = (self.ambient(), DepthRange::ALL);
+        let style = Style { ambient, glow: Glow::Everything, lights: true, economy: None, depths };
+        self.draw_missing(&style, picture, monitor)
+    }
+
     /// Draws a view as `style` says.
     pub(crate) fn draw_styled(
         &self,
@@ -85,10 +137,26 @@ impl Prepared<'_> {
         options: &DrawOptions,
         monitor: &dyn Monitor,
     ) -> Result<Frame, RenderError> {
-        let layers = &options.layers;
-        self.check_layers(layers)?;
-        let window = options.window.unwrap_or(view.picture()).intersection(&view.picture());
-        monitor.begin(window.tiles(TILE_SIZE).count() as u64);
+        let mut picture = self.begin_view(view, options)?;
+        self.draw_missing(style, &mut picture, monitor)?;
+        Ok(picture.into_frame())
+    }
+
+    fn draw_missing(
+        &self,
+        style: &Style<'_>,
+        picture: &mut PartialFrame,
+        monitor: &dyn Monitor,
+    ) -> Result<(), RenderError> {
+        self.check_layers(picture.layers())?;
+        let view = *picture.view();
+        let missing = picture.missing();
+        let before = picture.tiles_drawn() as u64;
+        monitor.begin(picture.tile_count() as u64);
+        monitor.advance(before);
+        if missing.is_empty() && before > 0 {
+            return Ok(());
+        }
         let mut micropoints = self.scene.render.micropoints().with_depths(style.depths);
         if style.economy.is_some() {
             micropoints = micropoints.with_cells_under_masks(1);
@@ -104,17 +172,17 @@ impl Prepared<'_> {
         monitor.lap("lights");
         let background = Background::new(self.scene, (*self.environment).as_ref(), &view);
         let shader = Shader::new(self, &lights, &view, style);
-        let canvas = Mutex::new(Canvas::new(self.scene, [view.width(), view.height()], window, layers));
+        let layers = picture.layers().to_vec();
+        let canvas = Mutex::new(picture);
         let totals = Mutex::new((TileCounts::default(), ShadowCounts::default(), AreaCounts::default()));
         let memory = Pool::<ShaderScratch>::default();
-        renderer.for_each_tile(
-            window,
-            TILE_SIZE,
+        renderer.for_each_rect(
+            &missing,
             || monitor.start_lap(),
             |(), tile| {
                 monitor.lap("visibility");
                 memory.with(|scratch| {
-                    let pixels = shader.shade(tile, &background, layers, scratch, monitor);
+                    let pixels = shader.shade(tile, &background, &layers, scratch, monitor);
                     lock(&canvas).put(tile.rect(), pixels);
                     let mut totals = lock(&totals);
                     totals.0 += tile.counts();
@@ -127,8 +195,12 @@ impl Prepared<'_> {
             },
         )?;
         let (tile_counts, shadow_counts, area_counts) = *lock(&totals);
+        monitor.count("tiles", missing.len() as u64);
+        if before > 0 {
+            monitor.skip("tiles_drawn_before", before);
+        }
         record(monitor, &tile_counts, &shadow_counts, &area_counts);
-        Ok(canvas.into_inner().unwrap_or_else(PoisonError::into_inner).into_frame())
+        Ok(())
     }
 
     fn check_layers(&self, layers: &[LayerKind]) -> Result<(), RenderError> {

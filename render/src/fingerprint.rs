@@ -1,7 +1,7 @@
 //! Hashes of scenes, the same on every machine: equal scenes have equal numbers and draw equal pictures, so that a picture that is
 //! there already need not be drawn again.
 
-use crate::scene::{AmbientLight, Details, Material, Mesh, Scene, SkyLight, Texels, Texture};
+use crate::scene::{AmbientLight, Camera, Details, Material, Mesh, Scene, SkyLight, Texels, Texture};
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade::{Falloff, Light, Material as ShadeMaterial};
 use pointillist_shadow::Resolution;
@@ -19,9 +19,16 @@ const OPAQUE_AT_ONCE: usize = 1024;
 /// The hash of everything that a picture of the scene depends on.
 #[must_use]
 pub fn of_scene(scene: &Scene) -> u64 {
+    of_view(&scene.camera, [scene.image.width, scene.image.height], of_light(scene))
+}
+
+/// The hash of everything that a picture depends on, from its camera, its width and height, and [`of_light`] of its scene: where only the
+/// camera moves, the rest need not be hashed again.
+#[must_use]
+pub fn of_view(camera: &Camera, size: [u32; 2], light: u64) -> u64 {
     let mut hash = Fingerprint::default();
-    hash.camera_and_image(scene);
-    hash.int(of_light(scene));
+    hash.camera_and_image(camera, size);
+    hash.int(light);
     hash.0.finish()
 }
 
@@ -115,8 +122,7 @@ impl Fingerprint {
         list.iter().flatten().for_each(|n| self.0.write(&n.to_le_bytes()));
     }
 
-    fn camera_and_image(&mut self, scene: &Scene) {
-        let camera = &scene.camera;
+    fn camera_and_image(&mut self, camera: &Camera, size: [u32; 2]) {
         [camera.eye, camera.target, camera.up].into_iter().for_each(|v| self.vector(v));
         match camera.projection {
             Projection::Perspective { fov_y_rad } => {
@@ -128,8 +134,7 @@ impl Fingerprint {
                 self.float(height);
             }
         }
-        self.int(u64::from(scene.image.width));
-        self.int(u64::from(scene.image.height));
+        size.into_iter().for_each(|n| self.int(u64::from(n)));
     }
 
     fn mesh(&mut self, mesh: &Mesh) {

@@ -1,8 +1,8 @@
 //! Sums shaded micropoints up into the pixels of a tile.
 
 use crate::background::Background;
-use crate::canvas::Pixels;
 use crate::frame::LayerKind;
+use crate::partial::Pixels;
 use crate::shader::{Point, Shader};
 use glam::Vec3;
 use pointillist_micropoint::{Micropoint, Tile};

@@ -33,6 +33,7 @@
 //!   probe sees ([`Prepared::capture`], [`look_all`]). [`choose_places`], [`bake_probes`]: where light probes are worth most, and what they hold with light reflected
 //!   between surfaces; [`Solids`]: where none should be.
 //! * [`Frame`]: colour and depth, and the layers that [`DrawOptions`] asks for (normals, albedo, direct light, …).
+//! * [`PartialFrame`]: a picture that is drawn in several goes, or in several processes ([`Prepared::continue_view`]).
 //! * [`Monitor`]: progress, cancelling, times and counts; `()` watches nothing, [`Watch`] takes a function and a flag.
 //! * [`scene_surfaces`], [`Lamps`]: the scene as `pointillist-radiosity` takes it; [`Lightmap`]: baked light as ambient light.
 //! * [`emitter`]: a light as `pointillist-shadow` takes it.
@@ -60,7 +61,6 @@ mod ambient;
 mod background;
 mod bake;
 mod bake_options;
-mod canvas;
 mod capture;
 mod casters;
 mod choose;
@@ -90,6 +90,7 @@ mod lit_parts;
 mod look;
 mod mirrors;
 mod monitor;
+mod partial;
 mod prepared;
 mod radiosity_surfaces;
 mod reflections;
@@ -120,8 +121,9 @@ pub use lightmap::{BakedLight, BakedSide, Lightmap, LightmapError, baked_sides};
 pub use lights::emitter;
 pub use look::{LookOptions, Seen, buried, fingerprints, look_again, look_all};
 pub use monitor::{Monitor, Watch};
+pub use partial::PartialFrame;
 pub use pointillist_shadow::check_outline;
-pub use prepared::Prepared;
+pub use prepared::{Prepared, PreparedMaps};
 pub use radiosity_surfaces::{SceneSurfaces, scene_surfaces};
 pub use scene::{
     AmbientLight, Bump, BumpHeight, Camera, Channel, Details, ImageSettings, LightSource, Map, Material,

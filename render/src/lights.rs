@@ -79,7 +79,7 @@ pub(crate) fn scene_lights<'a>(
     let (scene, surfaces) = (prepared.scene, &*prepared.surfaces);
     let mut lights = SceneLights::default();
     for (light, source) in scene.lights.iter().enumerate() {
-        let unhindered = (!source.shadow).then_some((Vec3::ONE, &prepared.geometry, Occasion::Always));
+        let unhindered = (!source.shadow).then_some((Vec3::ONE, &*prepared.geometry, Occasion::Always));
         let casters = unhindered.into_iter().chain(prepared.casters().filter(|_| source.shadow));
         for cast @ (channels, geometry, occasion) in casters {
             if !sampled && let Some(area) = source.light.exact_area() {

@@ -3,7 +3,7 @@
 use crate::capture::CaptureOptions;
 use crate::error::RenderError;
 use crate::monitor::{Monitor, Part};
-use crate::prepared::Prepared;
+use crate::prepared::{Prepared, PreparedMaps};
 use crate::reflections::{Reflections, mirrors};
 use crate::scene::{Scene, Surroundings};
 use crate::shader::Glow;
@@ -49,7 +49,26 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// [`RenderError`] if the scene, its geometry or a texture is refused, or the monitor cancels.
     pub fn new(scene: &'a Scene, monitor: &dyn Monitor) -> Result<Self, RenderError> {
-        let mut prepared = Self::without_captures(scene, monitor)?;
+        let mut prepared = Self::without_captures(scene, None, monitor)?;
+        prepared.capture_mirrors(&Part(monitor))?;
+        Ok(prepared)
+    }
+
+    /// As [`Prepared::new`], for a scene that differs from the one before in the positions and normals of its mesh, in its camera, its picture and
+    /// its lights only: textures stay summed up. Pictures are those of [`Prepared::new`], to the last bit.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    ///
+    /// # Panics
+    /// If the scene has another number of triangles, materials or textures.
+    pub fn with_maps(
+        scene: &'a Scene,
+        maps: &PreparedMaps,
+        monitor: &dyn Monitor,
+    ) -> Result<Self, RenderError> {
+        maps.check(scene);
+        let mut prepared = Self::without_captures(scene, Some(maps), monitor)?;
         prepared.capture_mirrors(&Part(monitor))?;
         Ok(prepared)
     }

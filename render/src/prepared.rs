@@ -17,9 +17,9 @@ use std::sync::Arc;
 pub struct Prepared<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) surfaces: Arc<Surfaces>,
-    pub(crate) geometry: Geometry,
+    pub(crate) geometry: Arc<Geometry>,
     /// What casts shadows in the place of `geometry`, if anything is clear.
-    pub(crate) clear_casters: Vec<Casters>,
+    pub(crate) clear_casters: Arc<Vec<Casters>>,
     pub(crate) clear_boxes: Arc<ClearBoxes>,
     /// Polygons of materials that light others.
     pub(crate) emitters: Arc<Vec<EmittingPolygon>>,
@@ -27,15 +27,61 @@ pub struct Prepared<'a> {
     pub(crate) reflections: Arc<Reflections>,
 }
 
+/// What is prepared of a scene's textures: for the same scene with its triangles in other places ([`Prepared::with_maps`]). Holds no reference
+/// to the scene, which may be changed meanwhile.
+#[derive(Clone)]
+pub struct PreparedMaps {
+    surfaces: Arc<Surfaces>,
+    environment: Arc<Option<TexelSums<3>>>,
+    reflections: Arc<Reflections>,
+    sizes: [usize; 3],
+}
+
+/// Triangles, materials and textures.
+fn sizes(scene: &Scene) -> [usize; 3] {
+    [scene.mesh.triangles.len(), scene.materials.len(), scene.textures.len()]
+}
+
+impl PreparedMaps {
+    pub(crate) fn check(&self, scene: &Scene) {
+        assert_eq!(sizes(scene), self.sizes, "a scene of the same triangles, materials and textures");
+    }
+}
+
 impl<'a> Prepared<'a> {
+    /// What is prepared of the textures.
+    #[must_use]
+    pub fn maps(&self) -> PreparedMaps {
+        PreparedMaps {
+            surfaces: self.surfaces.clone(),
+            environment: self.environment.clone(),
+            reflections: self.reflections.clone(),
+            sizes: sizes(self.scene),
+        }
+    }
+
     /// Prepares all but the surroundings that are captured for mirrors: those are drawn with what is prepared here.
-    pub(crate) fn without_captures(scene: &'a Scene, monitor: &dyn Monitor) -> Result<Self, RenderError> {
+    pub(crate) fn without_captures(
+        scene: &'a Scene,
+        maps: Option<&PreparedMaps>,
+        monitor: &dyn Monitor,
+    ) -> Result<Self, RenderError> {
         scene.check()?;
-        let surfaces = stage(monitor, "textures", || Surfaces::new(scene))?;
+        let surfaces = stage(monitor, "textures", || match maps {
+            Some(maps) => Ok(maps.surfaces.moved(scene)),
+            None => Surfaces::new(scene),
+        })?;
         go_on(monitor)?;
         let geometry = stage(monitor, "build", || surfaces.geometry(scene))?;
         go_on(monitor)?;
-        let environment = stage(monitor, "textures", || sum_up_environment(scene))?;
+        let environment = match maps {
+            Some(maps) => maps.environment.clone(),
+            None => Arc::new(stage(monitor, "textures", || sum_up_environment(scene))?),
+        };
+        let reflections = match maps {
+            Some(maps) => maps.reflections.without_captures(),
+            None => Reflections::new(scene, monitor)?,
+        };
         let clear_casters = clear_casters(scene, &geometry)?;
         let emitters = emitting_polygons(scene, |t| radiance_of_triangle(scene, &surfaces, t));
         monitor.count("triangles", geometry.triangle_count() as u64);
@@ -44,16 +90,16 @@ impl<'a> Prepared<'a> {
         Ok(Self {
             scene,
             surfaces: Arc::new(surfaces),
-            geometry,
+            geometry: Arc::new(geometry),
             clear_boxes: Arc::new(if clear_casters.len() > 1 {
                 ClearBoxes::new(scene)
             } else {
                 ClearBoxes::default()
             }),
-            clear_casters,
+            clear_casters: Arc::new(clear_casters),
             emitters: Arc::new(emitters),
-            environment: Arc::new(environment),
-            reflections: Arc::new(Reflections::new(scene, monitor)?),
+            environment,
+            reflections: Arc::new(reflections),
         })
     }
 
@@ -62,9 +108,32 @@ impl<'a> Prepared<'a> {
         Ok(Self {
             scene: self.scene,
             surfaces: self.surfaces.clone(),
-            clear_casters: clear_casters(self.scene, &geometry)?,
+            clear_casters: Arc::new(clear_casters(self.scene, &geometry)?),
             clear_boxes: self.clear_boxes.clone(),
-            geometry,
+            geometry: Arc::new(geometry),
+            emitters: self.emitters.clone(),
+            environment: self.environment.clone(),
+            reflections: self.reflections.clone(),
+        })
+    }
+
+    /// The same triangles, materials and textures in another scene: one that differs in its camera, its picture and its lights only. Costs
+    /// nothing. What mirrors had captured ([`Surroundings::Capture`](crate::Surroundings::Capture)) stays as it was lit before.
+    ///
+    /// # Errors
+    /// [`RenderError::Scene`] if the scene cannot be drawn.
+    ///
+    /// # Panics
+    /// If the scene has another number of triangles, materials or textures.
+    pub fn with_scene<'b>(&self, scene: &'b Scene) -> Result<Prepared<'b>, RenderError> {
+        scene.check()?;
+        assert_eq!(sizes(scene), sizes(self.scene), "a scene of the same triangles, materials and textures");
+        Ok(Prepared {
+            scene,
+            surfaces: self.surfaces.clone(),
+            geometry: self.geometry.clone(),
+            clear_casters: self.clear_casters.clone(),
+            clear_boxes: self.clear_boxes.clone(),
             emitters: self.emitters.clone(),
             environment: self.environment.clone(),
             reflections: self.reflections.clone(),
@@ -73,9 +142,9 @@ impl<'a> Prepared<'a> {
 
     /// What casts shadows, the channels of light for which it does, and when it is asked.
     pub(crate) fn casters(&self) -> impl Iterator<Item = (Vec3, &Geometry, Occasion)> {
-        let clear = &self.clear_casters;
+        let clear = &*self.clear_casters;
         let (serves_all, occasion) = match &clear[..] {
-            [] => (&self.geometry, Occasion::Always),
+            [] => (&*self.geometry, Occasion::Always),
             [alike] => (&alike.geometry, Occasion::Always),
             [first, ..] => (&first.geometry, Occasion::Untinted),
         };

@@ -81,6 +81,11 @@ impl Reflections {
         Ok(maps)
     }
 
+    /// Those that are made of textures, without what was captured.
+    pub(crate) fn without_captures(&self) -> Self {
+        Self { captured: HashMap::new(), ..self.clone() }
+    }
+
     /// The scene's own map, if anything needs it.
     pub(crate) fn of_scene(&self) -> Option<&Environment> {
         self.scene.as_ref().map(|map| &map.environment)

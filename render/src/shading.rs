@@ -1,11 +1,11 @@
 //! Shades the micropoints of a tile: each once, and asks for light only where it can matter.
 
 use crate::background::Background;
-use crate::canvas::Pixels;
 use crate::direct::{DirectScratch, corners};
 use crate::face_look::FaceLooks;
 use crate::frame::LayerKind;
 use crate::monitor::Monitor;
+use crate::partial::Pixels;
 use crate::shader::{Point, Shader};
 use crate::shaft::Box3;
 use glam::DVec3;

@@ -78,8 +78,8 @@ impl MaskedColor {
     }
 }
 
-/// Materials ready to be looked up, and where their textures lie on the triangles.
-pub(crate) struct Surfaces {
+/// What does not depend on where the triangles are.
+struct Still {
     textures: Vec<Arc<Textured>>,
     uvs: Uvs,
     surface_of: Vec<u32>,
@@ -87,6 +87,11 @@ pub(crate) struct Surfaces {
     material_of: Vec<u32>,
     /// For each material; `None` for one of colour and opacity alone.
     details: Vec<Option<DetailMaps>>,
+}
+
+/// Materials ready to be looked up, and where their textures lie on the triangles.
+pub(crate) struct Surfaces {
+    still: Arc<Still>,
     /// Masked triangles that coincide with an earlier one.
     copies: Vec<MaskedCopy>,
     /// By the triangles that stand for both sides of a masked card.
@@ -103,13 +108,23 @@ impl Surfaces {
         let any_texture = any_detail || textures.iter().any(|t| !matches!(**t, Textured::Nothing));
         let uvs = if any_texture { Uvs::new(&scene.mesh) } else { Uvs::default() };
         let material_of = scene.mesh.material_of.clone();
+        let still = Still { textures, uvs, surface_of, surfaces, material_of, details };
+        Ok(Self::of_places(scene, Arc::new(still)))
+    }
+
+    /// The same for triangles in other places: textures stay summed up.
+    pub(crate) fn moved(&self, scene: &Scene) -> Self {
+        Self::of_places(scene, self.still.clone())
+    }
+
+    fn of_places(scene: &Scene, still: Arc<Still>) -> Self {
         let masked = |t: usize| {
-            let surface = &surfaces[surface_of[t] as usize];
-            (surface.textured_opacity && surface.two_sided).then_some(surface_of[t])
+            let surface = &still.surfaces[still.surface_of[t] as usize];
+            (surface.textured_opacity && surface.two_sided).then_some(still.surface_of[t])
         };
-        let copies = masked_copies(&scene.mesh, &uvs, masked);
+        let copies = masked_copies(&scene.mesh, &still.uvs, masked);
         let other_sides = other_sides(&scene.mesh, &copies);
-        Ok(Self { textures, uvs, surface_of, surfaces, material_of, details, copies, other_sides })
+        Self { still, copies, other_sides }
     }
 
     /// The triangle in the place of this one that is turned the other way, if it is a card of two sides.
@@ -146,21 +161,21 @@ impl Surfaces {
             let triangle = &mut triangles.to_mut()[t as usize];
             *triangle = [triangle[0]; 3];
         }
-        Geometry::new(&mesh.positions, &triangles, &self.surface_of, &self.surfaces)
+        Geometry::new(&mesh.positions, &triangles, &self.still.surface_of, &self.still.surfaces)
     }
 
     /// The maps of a triangle's material beyond colour and opacity; `None` if it has nothing beyond them.
     pub(crate) fn details(&self, triangle: u32) -> Option<&DetailMaps> {
-        self.details[self.material_of[triangle as usize] as usize].as_ref()
+        self.still.details[self.still.material_of[triangle as usize] as usize].as_ref()
     }
 
     /// Where textures lie on the triangles.
     pub(crate) fn uvs(&self) -> &Uvs {
-        &self.uvs
+        &self.still.uvs
     }
 
     fn textured(&self, triangle: u32) -> &Textured {
-        &self.textures[self.material_of[triangle as usize] as usize]
+        &self.still.textures[self.still.material_of[triangle as usize] as usize]
     }
 
     /// Whether the colour of a triangle varies.
@@ -191,10 +206,10 @@ impl Surfaces {
         match self.textured(triangle) {
             Textured::Nothing | Textured::Opacity(_) => Vec3::ONE,
             Textured::Color(sums) => {
-                Vec3::from_array(self.uvs.mean(triangle, polygon, sums).map(|v| v as f32))
+                Vec3::from_array(self.still.uvs.mean(triangle, polygon, sums).map(|v| v as f32))
             }
             Textured::Masked { color, .. } => {
-                let mean = self.uvs.mean(triangle, polygon, &color.premultiplied).map(|v| v as f32);
+                let mean = self.still.uvs.mean(triangle, polygon, &color.premultiplied).map(|v| v as f32);
                 color.straight(Vec4::from_array(mean))
             }
         }
@@ -203,16 +218,17 @@ impl Surfaces {
 
 impl TexturedOpacity for Surfaces {
     fn mean_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
-        self.mask(triangle).map_or(1.0, |mask| self.uvs.mean_of_mask(triangle, polygon, mask) as f32)
+        self.mask(triangle).map_or(1.0, |mask| self.still.uvs.mean_of_mask(triangle, polygon, mask) as f32)
     }
 
     fn rough_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
-        self.mask(triangle).map_or(1.0, |mask| self.uvs.rough_mean_of_mask(triangle, polygon, mask) as f32)
+        self.mask(triangle)
+            .map_or(1.0, |mask| self.still.uvs.rough_mean_of_mask(triangle, polygon, mask) as f32)
     }
 
     fn even_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> Option<f32> {
         self.mask(triangle).map_or(Some(1.0), |mask| {
-            self.uvs.uniform_mean_of_mask(triangle, polygon, mask).map(|mean| mean as f32)
+            self.still.uvs.uniform_mean_of_mask(triangle, polygon, mask).map(|mean| mean as f32)
         })
     }
 }

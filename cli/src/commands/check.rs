@@ -21,6 +21,8 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
         return Err(first.clone().into());
     }
     let scene = &loaded.scene;
+    (0..=loaded.motion.last_frame())
+        .try_for_each(|frame| loaded.motion.camera(&scene.camera, frame).map(drop))?;
     report.stats.count("triangles", scene.mesh.triangles.len() as u64);
     report.stats.count("lights", scene.lights.len() as u64);
     let text = format!(

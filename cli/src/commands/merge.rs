@@ -7,6 +7,7 @@ use crate::error::CliError;
 use crate::image_io::{Channel, ExrFile, Frame, PngOptions, Stamp};
 use crate::input::{self, is_standard, name_of};
 use crate::input_error::InputError;
+use crate::name_pattern;
 use crate::options::MergeOptions;
 use exr::prelude::FlatSamples;
 use std::path::Path;
@@ -19,6 +20,7 @@ struct Part {
 }
 
 pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
+    let options = &with_numbers(options)?;
     let report = Report::new(&options.common)?.reading(&options.parts)?.writing([&options.output])?;
     let is_text = is_standard(&options.output) && options.parts.iter().all(|part| is_probe_file(part));
     let holds_probes = is_text || is_probe_file(&options.output);
@@ -46,6 +48,35 @@ pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
     report.finish()
 }
 
+/// The options with `--tiles` and `--frame` put into the names.
+fn with_numbers(options: &MergeOptions) -> Result<MergeOptions, CliError> {
+    let numbered = |path: &Path, kind: &str, number: Option<u32>, option: &str| {
+        let name = path.display();
+        let wrong = |message: String| CliError::Usage(format!("{name}: {message}"));
+        match (name_pattern::has(path, kind).map_err(wrong)?, number) {
+            (true, None) => Err(wrong(format!("{{{kind}}} needs {option} N"))),
+            (true, Some(number)) => name_pattern::fill(path, kind, number).map_err(wrong),
+            (false, _) => Ok(path.to_path_buf()),
+        }
+    };
+    let with_frame = |path: &Path| numbered(path, "frame", options.frame, "--frame");
+    let mut parts = vec![];
+    for part in &options.parts {
+        let has_tile = name_pattern::has(part, "tile").unwrap_or(true);
+        let count = if has_tile { options.tiles.unwrap_or(1) } else { 1 };
+        for tile in 1..=count {
+            let tile = options.tiles.map(|_| tile);
+            parts.push(with_frame(&numbered(part, "tile", tile, "--tiles")?)?);
+        }
+    }
+    if options.tiles.is_some() && parts.len() == options.parts.len() && options.tiles != Some(1) {
+        let message =
+            "--tiles counts the files that a name with {tile} stands for, and there is no such name";
+        return Err(CliError::Usage(message.to_owned()));
+    }
+    Ok(MergeOptions { parts, output: with_frame(&options.output)?, ..options.clone() })
+}
+
 fn read_part(path: &Path) -> Result<Part, CliError> {
     let name = name_of(path);
     let fault = |message: String| CliError::Input(InputError::of_file(&name, message));
@@ -54,6 +85,10 @@ fn read_part(path: &Path) -> Result<Part, CliError> {
     let stamp = file.stamp.take();
     let stamp =
         stamp.ok_or_else(|| CliError::Parts(format!("{name} was not written by `pointillist render`")))?;
+    if stamp.unfinished {
+        let message = "holds the finished tiles of a run that was interrupted; run that `render` again to finish the part";
+        return Err(CliError::Parts(format!("{name} {message}")));
+    }
     Ok(Part { name, file, stamp })
 }
 

@@ -5,6 +5,7 @@ mod compare;
 mod dice;
 mod generate;
 mod info;
+mod job;
 mod json_lines;
 mod merge;
 mod points;
@@ -38,6 +39,7 @@ pub fn run(cli: &Cli) -> Result<(), CliError> {
         Command::Compare(options) => compare::run(options),
         Command::Info(options) => info::run(options),
         Command::Check(options) => check::run(options),
+        Command::Job(options) => job::run(options),
         Command::Merge(options) => merge::run(options),
         Command::Completions { shell } => generate::completions(*shell),
         Command::Man { output } => generate::man(output.as_deref()),

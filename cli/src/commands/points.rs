@@ -147,6 +147,7 @@ pub(super) fn stamp(points: u64, drawn: &str, camera: &CameraOptions, region: Pi
         fingerprint: hash.finish(),
         region,
         tile: camera.tile.map(|tile| tile.to_string()),
+        unfinished: false,
         background: [0.0; 3],
     }
 }

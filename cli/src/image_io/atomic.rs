@@ -6,19 +6,24 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::{Builder, NamedTempFile};
 
-/// What is being written at the moment: to be removed on Ctrl-C.
+/// What is being written at the moment: to be removed on Ctrl-C. Locked while a temporary file is made, so that each is either in the
+/// list or not there.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn temporaries() -> MutexGuard<'static, Vec<PathBuf>> {
     TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what is half written, for a program that is about to leave.
-pub fn remove_temporaries() {
-    for path in temporaries().drain(..) {
+/// Removes what is half written and ends the program.
+///
+/// The list stays locked until the program has ended, so that no other thread makes a temporary file after that.
+pub fn leave(code: i32) -> ! {
+    let mut temporaries = temporaries();
+    for path in temporaries.drain(..) {
         // Nothing more can be done about a file that cannot be removed.
         let _ = std::fs::remove_file(path);
     }
+    std::process::exit(code)
 }
 
 /// Whether [`write_atomically`] can begin: tries to make a temporary file where it would.
@@ -33,7 +38,10 @@ pub fn check_writable(path: &Path) -> io::Result<()> {
     match path.metadata() {
         Ok(data) if data.is_dir() => Err(io::Error::other("it is a folder")),
         Ok(data) if !data.is_file() => Ok(()),
-        _ => temporary_for(path).map(drop),
+        _ => {
+            let _locked = temporaries();
+            temporary_for(path).map(drop)
+        }
     }
 }
 
@@ -58,9 +66,13 @@ pub fn write_atomically(
     if path.metadata().is_ok_and(|data| !data.is_file() && !data.is_dir()) {
         return fill(&File::create(path)?);
     }
-    let temporary = temporary_for(path)?;
-    let name = temporary.path().to_path_buf();
-    temporaries().push(name.clone());
+    let (temporary, name) = {
+        let mut list = temporaries();
+        let temporary = temporary_for(path)?;
+        let name = temporary.path().to_path_buf();
+        list.push(name.clone());
+        (temporary, name)
+    };
     let keep_mode = |file: &File| match path.metadata() {
         Ok(old) => file.set_permissions(old.permissions()),
         Err(_) => Ok(()),

@@ -8,7 +8,7 @@ mod picture;
 mod png;
 mod stamp;
 
-pub use atomic::{check_writable, remove_temporaries, write_atomically};
+pub use atomic::{check_writable, leave, write_atomically};
 pub use exr_error::ExrError;
 pub use exr_file::{Channel, ExrFile, Precision};
 pub use picture::{Levels, Picture, decode_image, read_exr_picture, read_levels, read_picture};

@@ -13,6 +13,8 @@ pub struct Stamp {
     pub region: PixelRect,
     /// `--tile` as it was given, if it was.
     pub tile: Option<String>,
+    /// Whether tiles are missing: what an interrupted run keeps.
+    pub unfinished: bool,
     /// What is behind the pixels: needed to take it out again for straight alpha.
     pub background: [f32; 3],
 }
@@ -27,6 +29,9 @@ impl Stamp {
         );
         if let Some(tile) = &self.tile {
             text.push_str(&format!(" tile={tile}"));
+        }
+        if self.unfinished {
+            text.push_str(" unfinished=true");
         }
         text
     }
@@ -47,6 +52,7 @@ impl Stamp {
             fingerprint: u64::from_str_radix(value("fingerprint")?, 16).ok()?,
             region: PixelRect { x0, y0, x1, y1 },
             tile: value("tile").map(str::to_owned),
+            unfinished: value("unfinished").is_some(),
             background: background.try_into().ok()?,
         })
     }

@@ -1,14 +1,16 @@
 //! What one run of `render` is asked to do, and how it tells what it does.
 
+pub mod interrupt;
 mod progress;
 mod stats;
 mod watch;
 
 pub use progress::{Progress, ProgressMode};
 pub use stats::{Stats, ThreadClock};
-pub use watch::Watch;
+pub use watch::{Piece, Watch};
 
 use crate::image_io::{LayerKind, PixelRect};
+
 /// What of a scene to draw, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderJob {

@@ -1,6 +1,7 @@
 //! The options of every command, as clap reads them.
 
 mod common;
+mod job;
 mod points;
 mod probe;
 mod radiosity;
@@ -11,6 +12,7 @@ mod surfel;
 mod values;
 
 pub use common::{Common, Progressive, TextOutput};
+pub use job::JobOptions;
 pub use points::{PointLayerRequest, layer_list};
 pub use probe::{
     BakeOptions, CaptureOptions, Indirect, Inside, PlaceOptions, ProbeCommand, ProjectOptions, QueryOptions,
@@ -24,7 +26,7 @@ pub use render::{CameraOptions, LayerRequest, PictureOptions, RenderOptions};
 pub use sample::{SampleMethod, SampleOptions};
 pub use scan::{ScanOptions, ShadingOptions, SurfaceOptions};
 pub use surfel::{DiscOptions, FocusOptions, ProcedureValue, SurfelOptions, SurfelShading};
-pub use values::{ResponseCurve, Tile, Vector};
+pub use values::{FrameRange, LAST_FRAME, ResponseCurve, Tile, Vector};
 
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use clap_complete::Shell;
@@ -54,6 +56,15 @@ impl Cli {
     }
 }
 
+/// Reads a command line, its first word included; the error is the first line of the message.
+///
+/// # Errors
+///
+/// A line that [`Cli::read`] would end the program for.
+pub fn parse(words: &[String]) -> Result<Command, String> {
+    job::parse(words)
+}
+
 /// Makes the message about `--fov -3` one about the value of `--fov`, not about an unknown option `-3`.
 fn with_negative_numbers(command: clap::Command) -> clap::Command {
     let takes_values = |arg: &clap::Arg| !arg.is_positional() && arg.get_action().takes_values();
@@ -74,7 +85,9 @@ pub enum Command {
         pointillist render examples/house.toml -o house.exr --layers all\n  \
         pointillist render examples/rabbit.obj --eye 0.2,0.2,0.4 --target 0,0.08,0 --fov 30 -o rabbit.png\n  \
         pointillist render examples/house.toml --set render.shading=flat --size 1920x1080 -o flat.png\n  \
-        pointillist render examples/house.toml --tile 0/4 -o part0.exr")]
+        pointillist render examples/house.toml --tile 0/4 -o part0.exr\n  \
+        pointillist render examples/carousel.toml --frames 0-2 -o carousel.{frame:04}.png\n  \
+        pointillist render examples/rabbit.obj --turntable 3 -o rabbit.{frame}.png")]
     Render(RenderOptions),
     /// Draw range scans as they come: noisy, overlapping, without normals
     ///
@@ -159,11 +172,26 @@ pub enum Command {
         pointillist check examples/house.toml\n  \
         pointillist check examples/house.toml --set camera.fov=30")]
     Check(CheckOptions),
+    /// Write a job for a render farm: an Open Job Description template
+    ///
+    /// The job has a task for each tile of each frame, and one for each frame that joins its tiles. Its parameters Scene, Output, Tiles, Frames and
+    /// Program may be changed when it is submitted. With --probes it bakes probes in parts instead.
+    #[command(after_help = "Examples:\n  \
+        pointillist job examples/house.toml --tiles 8 -o house.yaml\n  \
+        pointillist job examples/carousel.toml --tiles 2 --frames 0-47 -o carousel.json -- --size 1280x720 --layers all\n\n\
+        Probes in the same way:\n  \
+        pointillist probe place examples/house.toml --grid 6x3x4 -o probes.json\n  \
+        pointillist job examples/house.toml --probes probes.json --tiles 4 -o bake.yaml")]
+    Job(JobOptions),
     /// Join the parts that `render --tile` or `probe bake --part` wrote
     #[command(after_help = "Examples:\n  \
         pointillist render examples/house.toml --tile 0/2 -o part0.exr\n  \
         pointillist render examples/house.toml --tile 1/2 -o part1.exr\n  \
         pointillist merge part0.exr part1.exr -o house.exr\n\n\
+        Many parts by the pattern of their names, counted from 1:\n  \
+        pointillist render examples/house.toml --tile 1of2 -o tile1.exr\n  \
+        pointillist render examples/house.toml --tile 2of2 -o tile2.exr\n  \
+        pointillist merge tile{tile}.exr --tiles 2 -o house.exr\n\n\
         Probes in the same way:\n  \
         pointillist probe place examples/house.toml --grid 6x3x4 -o probes.json\n  \
         pointillist probe bake examples/house.toml probes.json --bounces 0 --part 0/2 -o part0.json\n  \
@@ -259,11 +287,18 @@ pub struct CheckOptions {
 }
 
 /// `merge`.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct MergeOptions {
-    /// EXR files that `render --tile` wrote, or files that `probe bake --part` wrote, in any order.
+    /// EXR files that `render --tile` wrote, or files that `probe bake --part` wrote, in any order; or their pattern, with {tile} for
+    /// the numbers from 1 to --tiles.
     #[arg(required = true, value_name = "PART")]
     pub parts: Vec<PathBuf>,
+    /// How many files each PART with {tile} in its name stands for, counted from 1.
+    #[arg(long, value_name = "N", value_parser = values::whole::<u32>(1..=100_000))]
+    pub tiles: Option<u32>,
+    /// The number that stands in the place of {frame} in all names.
+    #[arg(long, value_name = "N", value_parser = values::whole::<u32>(0..=LAST_FRAME))]
+    pub frame: Option<u32>,
     /// The whole: .exr or .png for a picture, .json, .probes or `-` (standard output) for probes.
     #[arg(short, long, value_name = "PATH")]
     pub output: PathBuf,

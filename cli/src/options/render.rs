@@ -1,7 +1,7 @@
 //! `render`.
 
 use super::Common;
-use super::values::{self, Tile, Vector};
+use super::values::{self, FrameRange, Tile, Vector};
 use crate::error::CliError;
 use crate::image_io::PixelRect;
 use crate::scene::Overrides;
@@ -24,6 +24,13 @@ pub struct RenderOptions {
     /// The view.
     #[command(flatten)]
     pub camera: CameraOptions,
+    /// Draw these frames of a scene that moves; the output's name has their number in the place of {frame}, or {frame:04} for four digits.
+    /// Without it, frame 0 is drawn
+    #[arg(long, value_name = "A-B")]
+    pub frames: Option<FrameRange>,
+    /// Draw N views around a plain model, frames 0 to N − 1
+    #[arg(long, value_name = "N", value_parser = values::whole::<u32>(1..=100_000))]
+    pub turntable: Option<u32>,
     /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.NAME, id
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub layers: Vec<LayerRequest>,
@@ -71,7 +78,7 @@ pub struct CameraOptions {
     /// Draw only these pixels: from X0,Y0 to before X1,Y1
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = values::window)]
     pub crop: Option<PixelRect>,
-    /// Draw only one of N bands of rows, or several, counted from 0
+    /// Draw only one of N bands of rows, or several, counted from 0 (or IofN, counted from 1)
     #[arg(long, value_name = "I/N")]
     pub tile: Option<Tile>,
 }

@@ -24,7 +24,7 @@ impl FromStr for Vector {
     }
 }
 
-/// A part of a picture's rows: from `first` to `last` of `count` nearly equal bands, from 0.
+/// A part of a whole, a picture's rows or probes: from `first` to `last` of `count` nearly equal bands, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tile {
     /// First band.
@@ -39,9 +39,18 @@ impl FromStr for Tile {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        const WANTED: &str = "I/N or A-B/N, counted from 0, such as 0/4 or 2-3/4";
+        const WANTED: &str =
+            "I/N or A-B/N, counted from 0, such as 0/4 or 2-3/4, or IofN, counted from 1, such as 1of4";
         let wrong = || format!("must be {WANTED}");
         let number = |text: &str| text.parse::<u32>().map_err(|_| wrong());
+        if let Some((band, count)) = text.split_once("of") {
+            // For schedulers that count tasks from 1 and cannot calculate.
+            let (band, count) = (number(band)?, number(count)?);
+            if band == 0 || band > count {
+                return Err(format!("tiles of {count} go from 1 to {count} where they are written IofN"));
+            }
+            return Ok(Self { first: band - 1, last: band - 1, count });
+        }
         let (bands, count) = text.split_once('/').ok_or_else(wrong)?;
         let (first, last) = bands.split_once('-').unwrap_or((bands, bands));
         let tile = Self { first: number(first)?, last: number(last)?, count: number(count)? };
@@ -80,6 +89,50 @@ impl Tile {
         // Fits: at most `rows`, which is a u32.
         let edge = |band: u64| region.y0 + (rows * band / count) as u32;
         Some(PixelRect { y0: edge(u64::from(self.first)), y1: edge(u64::from(self.last) + 1), ..region })
+    }
+}
+
+/// The last frame that there can be: more digits than a file name is padded to, and far more than a film has.
+pub const LAST_FRAME: u32 = 9_999_999;
+
+/// Frames from `first` to `last`, both included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameRange {
+    /// First frame.
+    pub first: u32,
+    /// Last frame.
+    pub last: u32,
+}
+
+impl FrameRange {
+    /// How many frames there are.
+    #[must_use]
+    pub const fn count(self) -> u32 {
+        self.last - self.first + 1
+    }
+}
+
+impl FromStr for FrameRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| {
+            let wrong = || format!("must be A-B or A, frames from 0 to {LAST_FRAME}, such as 1-24");
+            text.parse::<u32>().ok().filter(|&frame| frame <= LAST_FRAME).ok_or_else(wrong)
+        };
+        let (first, last) = text.split_once('-').unwrap_or((text, text));
+        let (first, last) = (number(first)?, number(last)?);
+        if first > last {
+            Err(format!("frame {first} comes after frame {last}"))
+        } else {
+            Ok(Self { first, last })
+        }
+    }
+}
+
+impl std::fmt::Display for FrameRange {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}-{}", self.first, self.last)
     }
 }
 

@@ -58,11 +58,22 @@ pub(super) fn apply(document: &mut Document, overrides: &Overrides) -> Result<()
         match assignment.split('=').next().map(str::trim) {
             Some("camera.fov") => document.remove("camera", "height"),
             Some("camera.height") => document.remove("camera", "fov"),
+            Some(key @ ("camera.eye" | "camera.target")) => stand_still(document, &key["camera.".len()..]),
             Some(key) if key.starts_with("ambient.") => keep_ambient(document, &key["ambient.".len()..]),
             _ => {}
         }
     }
     Ok(())
+}
+
+/// An eye or a target of the command line takes the place of one on a path.
+fn stand_still(document: &mut Document, key: &str) {
+    const PATH: &str = "camera.path";
+    let has_moved = document.has(PATH, key);
+    document.remove(PATH, key);
+    if has_moved && !document.has(PATH, "eye") && !document.has(PATH, "target") {
+        document.remove("camera", "path");
+    }
 }
 
 /// Each of these keys holds all ambient light: what the command line gives takes the place of what the scene has.

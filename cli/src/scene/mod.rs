@@ -13,6 +13,7 @@ mod gltf_scene;
 mod load;
 mod materials;
 mod measured;
+mod motion;
 mod mtl_library;
 mod mtl_materials;
 mod plain_model;
@@ -32,6 +33,8 @@ pub use builtin::builtin;
 pub use description::{Description, parse_str};
 pub(crate) use framing::around as frame_around;
 pub use load::{Overrides, load, load_to_bake};
+pub use motion::Motion;
+pub(crate) use plain_model::key_light;
 pub use text::Format;
 
 use crate::input_error::InputError;
@@ -47,4 +50,10 @@ pub struct LoadedScene {
     pub warnings: Vec<String>,
     /// A hash of the scene: equal scenes draw equal pictures.
     pub fingerprint: u64,
+    /// The same of all but the camera and the size of the picture.
+    pub light: u64,
+    /// What of it moves. The scene is that of frame 0.
+    pub motion: Motion,
+    /// Whether the only light is one that was added, and comes from beside the camera.
+    pub is_lit_from_camera: bool,
 }

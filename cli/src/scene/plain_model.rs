@@ -17,7 +17,7 @@ const SKY: Vec3 = Vec3::new(0.27, 0.3, 0.35);
 const GROUND: Vec3 = Vec3::new(0.13, 0.12, 0.11);
 
 /// The key light, seen from the camera.
-pub(super) fn key_light(scene: &Scene) -> LightSource {
+pub(crate) fn key_light(scene: &Scene) -> LightSource {
     let [right, up, backward] = scene.camera.axes();
     let towards_light = -0.6 * right + 0.9 * up + 0.8 * backward;
     LightSource::new("light0", Light::Directional { direction: -towards_light, irradiance: KEY })

@@ -5,6 +5,7 @@ use super::description::{
 };
 use super::generated::Generated;
 use super::materials::MaterialTable;
+use super::motion::{Motion, MovingObject};
 use super::texture_files::load_texture;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, LightSource, LoadedScene, Mesh, NONE, Object, Scene, SkyLight};
@@ -50,7 +51,11 @@ pub(super) fn resolve(
     let aspect = f64::from(width) / f64::from(height);
     // A glTF that is the scene brings its camera and its lights.
     let model = is_plain_model.then(|| builder.meshes.values().find_map(|mesh| mesh.gltf.clone())).flatten();
-    let given = gltf_scene::camera(&description.camera, model.as_deref());
+    let mut given = gltf_scene::camera(&description.camera, model.as_deref());
+    if let Some(path) = &description.camera_path {
+        let (eye, target) = path.at(0);
+        (given.eye, given.target) = (eye.or(given.eye), target.or(given.target));
+    }
     let camera = framing::place(description, &given, &builder.mesh, aspect)?;
     let shading = description.render.shading.unwrap_or(if builder.mesh.normals.is_empty() {
         Interpolation::Flat
@@ -82,8 +87,10 @@ pub(super) fn resolve(
         AmbientDescription::Nothing if unlit => plain_model::fill_light(&scene),
         _ => ambient(description, folder, &scene, &mut warnings)?,
     };
-    let fingerprint = fingerprint::of_scene(&scene);
-    Ok(LoadedScene { scene, unmatched, warnings, fingerprint })
+    let light = fingerprint::of_light(&scene);
+    let fingerprint = fingerprint::of_view(&scene.camera, description.size, light);
+    let motion = Motion::new(description, builder.moving);
+    Ok(LoadedScene { scene, unmatched, warnings, fingerprint, light, motion, is_lit_from_camera: unlit })
 }
 
 /// The file that a key of `[ambient]` names, and a hash of it.
@@ -170,6 +177,7 @@ struct Builder<'a> {
     materials: MaterialTable<'a>,
     textures: TextureTable,
     warnings: Vec<String>,
+    moving: Vec<MovingObject>,
     generated_mesh: fn(&str) -> Option<FileMesh>,
 }
 
@@ -184,6 +192,7 @@ impl<'a> Builder<'a> {
             materials: MaterialTable::new(description, folder),
             textures: TextureTable::default(),
             warnings: Vec::new(),
+            moving: Vec::new(),
             generated_mesh: |_| None,
         }
     }
@@ -263,7 +272,7 @@ impl<'a> Builder<'a> {
             return Err(self.description.document.error(object.mesh.span, message));
         }
         let world = object.world_from_mesh;
-        let first_position = mesh.positions.len();
+        let (first_position, first_normal) = (mesh.positions.len(), mesh.normals.len());
         mesh.positions.extend(file.positions.iter().map(|&p| world.transform_point3(p)));
         if !(file.colors.is_empty() && mesh.colors.is_empty()) {
             mesh.colors.resize(first_position, Vec3::ONE);
@@ -305,6 +314,10 @@ impl<'a> Builder<'a> {
                 object.mesh.path
             ));
         });
+        if let Some(path) = &object.path {
+            let fault = self.description.document.error(path.span, "");
+            self.moving.push(MovingObject::new(path, file, mesh, [first_position, first_normal], fault));
+        }
         let name = object.name.clone().unwrap_or_else(|| object.mesh.path.clone());
         mesh.objects.push(Object { name, two_sided: object.two_sided });
         Ok(())

@@ -1,5 +1,6 @@
 //! `[camera]`.
 
+use super::path::CameraPath;
 use crate::input_error::InputError;
 use crate::scene::Projection;
 use crate::scene::text::Table;
@@ -28,9 +29,9 @@ pub struct CameraDescription {
 }
 
 impl CameraDescription {
-    pub(super) fn read(root: &mut Table<'_>) -> Result<Self, InputError> {
+    pub(super) fn read(root: &mut Table<'_>) -> Result<(Self, Option<CameraPath>), InputError> {
         let Some(mut table) = root.table("camera")? else {
-            return Ok(Self { eye: None, target: None, up: DVec3::Y, projection: None });
+            return Ok((Self { eye: None, target: None, up: DVec3::Y, projection: None }, None));
         };
         let eye = place(&mut table, "eye")?;
         let target = place(&mut table, "target")?;
@@ -50,8 +51,9 @@ impl CameraDescription {
         if let (Some(eye), Some(target)) = (eye, target) {
             check(&table, eye, target, up.unwrap_or(DVec3::Y))?;
         }
+        let path = CameraPath::read(&mut table)?;
         table.finish()?;
-        Ok(Self { eye, target, up: up.unwrap_or(DVec3::Y), projection })
+        Ok((Self { eye, target, up: up.unwrap_or(DVec3::Y), projection }, path))
     }
 }
 

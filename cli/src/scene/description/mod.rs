@@ -4,6 +4,7 @@ mod camera;
 mod lights;
 mod materials;
 mod objects;
+mod path;
 mod render;
 
 pub(crate) use camera::view_fault;
@@ -11,6 +12,7 @@ pub use camera::{CameraDescription, DEFAULT_FOV_DEG};
 pub use lights::LightDescription;
 pub use materials::{DEFAULT_ALBEDO, MaterialDescription, SurroundingsDescription, TextureReference};
 pub use objects::ObjectDescription;
+pub use path::{CameraPath, Interpolation, ObjectPath};
 pub use render::RenderDescription;
 
 use super::text::{Document, Format, Span, Table};
@@ -56,6 +58,8 @@ pub struct Description {
     pub document: Document,
     /// Eye and target may be missing: then the scene is framed.
     pub camera: CameraDescription,
+    /// Where the camera moves, if it does.
+    pub camera_path: Option<CameraPath>,
     /// Width and height.
     pub size: [u32; 2],
     /// Linear colour behind everything.
@@ -95,7 +99,7 @@ impl Description {
     /// As [`parse_str`].
     pub fn new(document: Document) -> Result<Self, InputError> {
         let mut root = Table::new(&document, document.root(), "")?;
-        let camera = CameraDescription::read(&mut root)?;
+        let (camera, camera_path) = CameraDescription::read(&mut root)?;
         let (size, background, environment) = read_image(&mut root)?;
         let render = RenderDescription::read(&mut root)?;
         let objects = objects::read_all(&mut root)?;
@@ -105,6 +109,7 @@ impl Description {
         root.finish()?;
         Ok(Self {
             camera,
+            camera_path,
             size,
             background,
             environment,

@@ -1,9 +1,10 @@
 //! `[[object]]`.
 
+use super::path::{ObjectPath, rotation};
 use super::{FileReference, file};
 use crate::input_error::InputError;
 use crate::scene::text::{Span, Table};
-use glam::{DAffine3, DMat3, DMat4, DVec3};
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 
 /// A mesh, placed.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,8 +13,10 @@ pub struct ObjectDescription {
     pub name: Option<String>,
     /// The mesh's file.
     pub mesh: FileReference,
-    /// World from mesh; invertible.
+    /// World from mesh; invertible. On a path, that of frame 0.
     pub world_from_mesh: DAffine3,
+    /// Where it moves, if it does.
+    pub path: Option<ObjectPath>,
     /// Name of the material that replaces those of the file, and where it is named.
     pub material: Option<(String, Span)>,
     /// Whether the back is drawn, too.
@@ -31,25 +34,30 @@ pub(super) fn read_all(root: &mut Table<'_>) -> Result<Vec<ObjectDescription>, I
 fn read(mut table: Table<'_>) -> Result<ObjectDescription, InputError> {
     let name = table.text("name")?.map(str::to_owned);
     let Some(mesh) = file(&mut table, "mesh")? else { return Err(table.missing("mesh", "\"model.obj\"")) };
-    let world_from_mesh = read_transform(&mut table)?;
+    let (world_from_mesh, path) = read_transform(&mut table)?;
     let material = table.text("material")?.map(|name| (name.to_owned(), table.span_of("material")));
     let two_sided = table.boolean("two_sided")?.unwrap_or(true);
     table.finish()?;
-    Ok(ObjectDescription { name, mesh, world_from_mesh, material, two_sided })
+    Ok(ObjectDescription { name, mesh, world_from_mesh, path, material, two_sided })
 }
 
-fn read_transform(table: &mut Table<'_>) -> Result<DAffine3, InputError> {
+fn read_transform(table: &mut Table<'_>) -> Result<(DAffine3, Option<ObjectPath>), InputError> {
     let translate = table.vector("translate")?;
     let rotate = table.vector("rotate")?;
     let scale = read_scale(table)?;
+    let at = |path: Option<ObjectPath>, still: DAffine3| {
+        (path.as_ref().map_or(still, |path| path.world_from_mesh(0)), path)
+    };
     let Some(numbers) = table.numbers::<16>("matrix")? else {
-        let radians = rotate.unwrap_or(DVec3::ZERO) * (std::f64::consts::PI / 180.0);
+        let (translate, rotate) = (translate.unwrap_or(DVec3::ZERO), rotate.unwrap_or(DVec3::ZERO));
+        let radians = rotate * (std::f64::consts::PI / 180.0);
         // Applied x, then y, then z.
         let turn = DMat3::from_rotation_z(radians.z)
             * DMat3::from_rotation_y(radians.y)
             * DMat3::from_rotation_x(radians.x);
-        let linear = turn * DMat3::from_diagonal(scale.unwrap_or(DVec3::ONE));
-        return Ok(DAffine3 { matrix3: linear, translation: translate.unwrap_or(DVec3::ZERO) });
+        let scale = DMat3::from_diagonal(scale.unwrap_or(DVec3::ONE));
+        let path = ObjectPath::read(table, translate, rotation(rotate), DAffine3::from_mat3(scale))?;
+        return Ok(at(path, DAffine3 { matrix3: turn * scale, translation: translate }));
     };
     if translate.is_some() || rotate.is_some() || scale.is_some() {
         let message = "`matrix` is given together with `translate`, `rotate` or `scale`";
@@ -64,7 +72,8 @@ fn read_transform(table: &mut Table<'_>) -> Result<DAffine3, InputError> {
     if affine.matrix3.determinant() == 0.0 {
         return Err(table.error("matrix", "`matrix` flattens the object: its determinant is 0"));
     }
-    Ok(affine)
+    let path = ObjectPath::read(table, DVec3::ZERO, DQuat::IDENTITY, affine)?;
+    Ok(at(path, affine))
 }
 
 /// A number or three; none of them 0.

@@ -34,13 +34,25 @@ impl Document {
         place(&mut self.root, &names, node, path_span).map_err(|message| self.error(path_span, message))
     }
 
-    /// Takes a key out of a table of the outermost one, if both are there.
+    /// Takes a key out of a table, named as in `camera.path`, if both are there.
     pub fn remove(&mut self, table: &str, key: &str) {
-        let Value::Table(tables) = &mut self.root.value else { return };
-        let found = tables.iter_mut().find(|(name, _)| name.name == table);
-        if let Some((_, Node { value: Value::Table(entries), .. })) = found {
+        if let Some(entries) = self.entries(table) {
             entries.retain(|(name, _)| name.name != key);
         }
+    }
+
+    /// Whether a table, named as in `camera.path`, has a key.
+    pub fn has(&mut self, table: &str, key: &str) -> bool {
+        self.entries(table).is_some_and(|entries| entries.iter().any(|(name, _)| name.name == key))
+    }
+
+    fn entries(&mut self, table: &str) -> Option<&mut Vec<(Key, Node)>> {
+        let mut at = &mut self.root;
+        for part in table.split('.') {
+            let Value::Table(tables) = &mut at.value else { return None };
+            at = tables.iter_mut().find(|(name, _)| name.name == part).map(|(_, node)| node)?;
+        }
+        if let Value::Table(entries) = &mut at.value { Some(entries) } else { None }
     }
 }
 

@@ -184,6 +184,19 @@ impl<'a> Table<'a> {
         Ok(numbers)
     }
 
+    /// A list of finite numbers, of any length.
+    ///
+    /// # Errors
+    ///
+    /// See above.
+    pub fn numbers_list(&mut self, key: &'static str) -> Read<Vec<f64>> {
+        let Some(node) = self.get(key) else { return Ok(None) };
+        let Value::Array(items) = &node.value else {
+            return Err(self.wrong(key, node, "a list of numbers"));
+        };
+        items.iter().map(|item| self.finite(key, item)).collect::<Result<_, _>>().map(Some)
+    }
+
     /// A list of points.
     ///
     /// # Errors

@@ -1,0 +1,63 @@
+//! `render`.
+
+mod draw;
+mod kept;
+mod layers;
+mod output;
+mod plan;
+mod shots;
+
+pub(super) use output::{OutputFormat, is_there, write_exr, write_png};
+pub(super) use shots::numbered;
+
+use super::Report;
+use crate::error::CliError;
+use crate::options::RenderOptions;
+use crate::scene;
+use draw::Film;
+use plan::{check_memory, check_size, job};
+use shots::{check_outputs, check_turntable, motion, shots};
+
+pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
+    let report = Report::new(&options.common)?;
+    let shots = shots(options)?;
+    let format = OutputFormat::of(&shots[0].output)?;
+    check_outputs(&shots)?;
+    check_options(options, format, &report)?;
+    check_turntable(options)?;
+    options.camera.check_view()?;
+    check_size(options)?;
+    let overrides = options.camera.overrides(&options.set);
+    let loaded = report.stats.stage("load", || match &options.scene {
+        Some(path) => scene::load(path, &overrides),
+        None => scene::builtin(&overrides),
+    })?;
+    loaded.warnings.iter().for_each(|warning| report.warn(warning));
+    let motion = motion(options, &loaded);
+    if motion.is_still() && shots.len() > 1 {
+        report.warn("nothing in the scene moves: all frames are alike");
+    }
+    let job = job(&loaded.scene, options)?;
+    check_memory(options, job.window, &job.layers)?;
+    // All cameras before the first picture: a film that would end in the middle of the night ends now.
+    shots.iter().try_for_each(|shot| motion.camera(&loaded.scene.camera, shot.frame).map(drop))?;
+    Film { options, report: &report, format, job, motion, shots }.draw(loaded)?;
+    if options.scene.is_none() {
+        report.note(
+            "This is the built-in scene. Next: `pointillist render model.obj`, another view with\n\
+             `pointillist render --eye 3,2.5,6.5 --fov 30`, and all options with `pointillist render --help`.",
+        );
+    }
+    report.finish()
+}
+
+fn check_options(options: &RenderOptions, format: OutputFormat, report: &Report<'_>) -> Result<(), CliError> {
+    format.check_layers(!options.layers.is_empty(), options.picture.float)?;
+    if format == OutputFormat::Exr && options.picture.exposure != 0.0 {
+        report.warn("--exposure changes PNG only; EXR keeps the light as it is");
+    }
+    if format == OutputFormat::Png && options.camera.tile.is_some() {
+        report.warn("`merge` joins EXR parts only; add -o part.exr");
+    }
+    Ok(())
+}
