@@ -1,10 +1,10 @@
 //! What `scan` and `surfel` share: where the picture goes, the camera, drawing again and again, writing.
 
 use super::Report;
-use super::render::{OutputFormat, is_there, write_exr, write_png};
+use super::render::{OutputFormat, is_there, write_picture};
 use super::report::check_output;
 use crate::error::CliError;
-use crate::image_io::{ExrFile, Frame, PixelRect, PngOptions, Precision, Stamp};
+use crate::image_io::{Frame, PixelRect, Stamp};
 use crate::input::is_standard;
 use crate::memory;
 use crate::options::{CameraOptions, PictureOptions, Vector};
@@ -107,7 +107,7 @@ pub(super) struct Target<'a> {
 impl<'a> Target<'a> {
     pub(super) fn new(path: PathBuf, options: &'a PictureOptions, layers: bool) -> Result<Self, CliError> {
         let format = OutputFormat::of(&path)?;
-        format.check_layers(layers, options.float)?;
+        format.check(layers, options)?;
         check_output(&path)?;
         Ok(Self { path, format, options })
     }
@@ -123,17 +123,8 @@ impl<'a> Target<'a> {
         done
     }
 
-    pub(super) fn write(&self, picture: &Frame, stamp: Stamp) -> Result<(), CliError> {
-        match self.format {
-            OutputFormat::Exr => {
-                let precision = if self.options.float { Precision::Float } else { Precision::Half };
-                write_exr(&self.path, ExrFile::from_frame(picture, stamp, precision))
-            }
-            OutputFormat::Png => {
-                let png = PngOptions { exposure_ev: self.options.exposure, background: [0.0; 3] };
-                write_png(&self.path, picture, &png)
-            }
-        }
+    pub(super) fn write(&self, picture: Frame, stamp: Stamp) -> Result<(), CliError> {
+        write_picture(&self.path, self.format, picture, stamp, self.options)
     }
 }
 

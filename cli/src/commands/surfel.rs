@@ -24,7 +24,8 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     let cloud = report.stats.stage("prepare", || set.cloud(options.discs.estimate_normals))?;
     let camera = points::camera(&options.camera, fov_deg, || cloud.positions())?;
     let size = points::size(&options.camera);
-    let drawn = format!("{:?}", (frame_options, &camera, size, &layers, options.picture.float));
+    let drawn =
+        format!("{:?}", (frame_options, &camera, size, &layers, options.picture.float, options.picture.bg));
     let stamp = points::stamp(set.fingerprint(), &drawn, &options.camera, region);
     if target.is_done(&stamp, window, &report) {
         return report.finish();
@@ -42,7 +43,7 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     })?;
     tell_counts(&report, &cloud, &frame);
     let picture = window_of(&as_drawn(&frame), window, &layers, &view);
-    report.stats.stage("write", || target.write(&picture, stamp))?;
+    report.stats.stage("write", || target.write(picture, stamp))?;
     let seconds = report.stats.elapsed().as_secs_f64();
     report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));
     report.finish()

@@ -22,11 +22,11 @@ pub use radiosity::{
     FactorsOptions, FormFactorKind, LinkKind, RadiosityBakeOptions, RadiosityCommand, RadiosityOptions,
     SolveMethod,
 };
-pub use render::{CameraOptions, LayerRequest, PictureOptions, RenderOptions};
+pub use render::{CameraOptions, DisplayOptions, LayerRequest, PictureOptions, RenderOptions};
 pub use sample::{SampleMethod, SampleOptions};
 pub use scan::{ScanOptions, ShadingOptions, SurfaceOptions};
 pub use surfel::{DiscOptions, FocusOptions, ProcedureValue, SurfelOptions, SurfelShading};
-pub use values::{FrameRange, LAST_FRAME, ResponseCurve, Tile, Vector};
+pub use values::{Colour, FrameRange, LAST_FRAME, ResponseCurve, Tile, Vector};
 
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use clap_complete::Shell;
@@ -84,6 +84,8 @@ pub enum Command {
         pointillist render\n  \
         pointillist render examples/house.toml -o house.exr --layers all\n  \
         pointillist render examples/rabbit.obj --eye 0.2,0.2,0.4 --target 0,0.08,0 --fov 30 -o rabbit.png\n  \
+        pointillist render examples/rabbit.obj --bg white -o rabbit.jpg\n  \
+        pointillist render examples/rabbit.obj --env examples/sky.png --bg 204060 --bits 16 -o sky.png\n  \
         pointillist render examples/house.toml --set render.shading=flat --size 1920x1080 -o flat.png\n  \
         pointillist render examples/house.toml --tile 0/4 -o part0.exr\n  \
         pointillist render examples/carousel.toml --frames 0-2 -o carousel.{frame:04}.png\n  \
@@ -299,12 +301,12 @@ pub struct MergeOptions {
     /// The number that stands in the place of {frame} in all names.
     #[arg(long, value_name = "N", value_parser = values::whole::<u32>(0..=LAST_FRAME))]
     pub frame: Option<u32>,
-    /// The whole: .exr or .png for a picture, .json, .probes or `-` (standard output) for probes.
+    /// The whole: .exr, .png or .jpg for a picture, .json, .probes or `-` (standard output) for probes.
     #[arg(short, long, value_name = "PATH")]
     pub output: PathBuf,
-    /// For PNG: brighten by this many stops.
-    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = values::exposure, allow_negative_numbers = true)]
-    pub exposure: f32,
+    /// How a PNG or JPEG is written.
+    #[command(flatten)]
+    pub display: DisplayOptions,
     /// What every command has.
     #[command(flatten)]
     pub common: Common,

@@ -32,7 +32,7 @@ pub use pointillist_render::{
 pub use builtin::builtin;
 pub use description::{Description, parse_str};
 pub(crate) use framing::around as frame_around;
-pub use load::{Overrides, load, load_to_bake};
+pub use load::{Overrides, is_model, load, load_to_bake};
 pub use motion::Motion;
 pub(crate) use plain_model::key_light;
 pub use text::Format;

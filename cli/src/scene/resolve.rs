@@ -47,7 +47,7 @@ pub(super) fn resolve(
         builder.add(object)?;
     }
     let environment = builder.environment();
-    let [width, height] = description.size;
+    let [width, height] = description.image.size;
     let aspect = f64::from(width) / f64::from(height);
     // A glTF that is the scene brings its camera and its lights.
     let model = is_plain_model.then(|| builder.meshes.values().find_map(|mesh| mesh.gltf.clone())).flatten();
@@ -69,8 +69,9 @@ pub(super) fn resolve(
         lights = model.map(|model| gltf_scene::lights(&model)).unwrap_or_default();
     }
     let mut warnings = builder.warnings;
-    let mut scene = Scene::new(camera, description.size);
-    scene.image.background = description.background;
+    let mut scene = Scene::new(camera, description.image.size);
+    scene.image.background = description.image.background;
+    scene.image.hides_environment = description.image.hides_environment;
     scene.image.environment = environment;
     scene.render.cells_per_pixel = description.render.subpixel;
     scene.render.occlusion = description.render.occlusion;
@@ -79,7 +80,9 @@ pub(super) fn resolve(
     scene.materials = builder.materials.into_materials();
     scene.textures = builder.textures.into_textures()?;
     scene.lights = lights;
-    let unlit = is_plain_model && scene.lights.is_empty();
+    // A map around the model lights it, if it is asked to.
+    let unlit =
+        is_plain_model && scene.lights.is_empty() && description.ambient != AmbientDescription::Environment;
     if unlit {
         scene.lights.push(plain_model::key_light(&scene));
     }
@@ -88,7 +91,7 @@ pub(super) fn resolve(
         _ => ambient(description, folder, &scene, &mut warnings)?,
     };
     let light = fingerprint::of_light(&scene);
-    let fingerprint = fingerprint::of_view(&scene.camera, description.size, light);
+    let fingerprint = fingerprint::of_view(&scene.camera, description.image.size, light);
     let motion = Motion::new(description, builder.moving);
     Ok(LoadedScene { scene, unmatched, warnings, fingerprint, light, motion, is_lit_from_camera: unlit })
 }
@@ -121,7 +124,7 @@ fn ambient(
         &AmbientDescription::Sky { sky, ground } => {
             Ok(AmbientLight::Sky(SkyLight { sky, ground, up: Vec3::Y }))
         }
-        AmbientDescription::Environment => match description.environment {
+        AmbientDescription::Environment => match description.image.environment {
             Some(_) => Ok(AmbientLight::Environment),
             None => {
                 let message = "`ambient.environment` needs `image.environment`, and there is none";
@@ -198,7 +201,7 @@ impl<'a> Builder<'a> {
     }
 
     fn environment(&mut self) -> Option<usize> {
-        let file = self.description.environment.clone()?;
+        let file = self.description.image.environment.clone()?;
         let reference = TextureReference { file, srgb: true };
         let purpose = Purpose::Color { srgb: true };
         Some(load_texture(&mut self.textures, self.description, self.folder, &reference, purpose))

@@ -7,7 +7,7 @@ mod output;
 mod plan;
 mod shots;
 
-pub(super) use output::{OutputFormat, is_there, write_exr, write_png};
+pub(super) use output::{OutputFormat, is_there, write_display, write_exr, write_picture};
 pub(super) use shots::numbered;
 
 use super::Report;
@@ -27,7 +27,8 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     check_turntable(options)?;
     options.camera.check_view()?;
     check_size(options)?;
-    let overrides = options.camera.overrides(&options.set);
+    check_map(options)?;
+    let overrides = options.overrides(format.gain(&options.picture.display));
     let loaded = report.stats.stage("load", || match &options.scene {
         Some(path) => scene::load(path, &overrides),
         None => scene::builtin(&overrides),
@@ -38,6 +39,7 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
         report.warn("nothing in the scene moves: all frames are alike");
     }
     let job = job(&loaded.scene, options)?;
+    format.check_sides(job.window)?;
     check_memory(options, job.window, &job.layers)?;
     // All cameras before the first picture: a film that would end in the middle of the night ends now.
     shots.iter().try_for_each(|shot| motion.camera(&loaded.scene.camera, shot.frame).map(drop))?;
@@ -52,12 +54,28 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
 }
 
 fn check_options(options: &RenderOptions, format: OutputFormat, report: &Report<'_>) -> Result<(), CliError> {
-    format.check_layers(!options.layers.is_empty(), options.picture.float)?;
-    if format == OutputFormat::Exr && options.picture.exposure != 0.0 {
-        report.warn("--exposure changes PNG only; EXR keeps the light as it is");
+    format.check(!options.layers.is_empty(), &options.picture)?;
+    if format == OutputFormat::Exr && options.picture.display.exposure != 0.0 {
+        report.warn("--exposure changes PNG and JPEG only; EXR keeps the light as it is");
     }
-    if format == OutputFormat::Png && options.camera.tile.is_some() {
+    if format != OutputFormat::Exr && options.camera.tile.is_some() {
         report.warn("`merge` joins EXR parts only; add -o part.exr");
     }
     Ok(())
+}
+
+/// Refuses `--env` for scenes, which name their own map.
+fn check_map(options: &RenderOptions) -> Result<(), CliError> {
+    let (Some(map), scene) = (&options.env, &options.scene) else { return Ok(()) };
+    let is_model = match scene {
+        Some(path) => scene::is_model(path)?,
+        None => false,
+    };
+    if is_model {
+        return Ok(());
+    }
+    Err(CliError::Usage(format!(
+        "--env is for models; a scene names its own map: --set image.environment={} --set ambient.environment=true",
+        map.display()
+    )))
 }

@@ -2,17 +2,13 @@
 
 use super::layers::layers;
 use crate::error::CliError;
-use crate::image_io::{LayerKind, PixelRect, Precision, Stamp};
+use crate::image_io::{LayerKind, PixelRect, Stamp};
 use crate::job::RenderJob;
 use crate::memory;
 use crate::options::RenderOptions;
 use crate::scene::Scene;
 use std::hash::Hasher as _;
 use twox_hash::XxHash3_64;
-
-pub(super) fn precision(options: &RenderOptions) -> Precision {
-    if options.picture.float { Precision::Float } else { Precision::Half }
-}
 
 /// What is to be drawn.
 pub(super) fn job(scene: &Scene, options: &RenderOptions) -> Result<RenderJob, CliError> {
@@ -57,7 +53,7 @@ pub(super) fn stamp(scene: &Scene, fingerprint: u64, job: &RenderJob, options: &
         hash.write(channel.as_bytes());
         hash.write(b" ");
     }
-    hash.write(&[u8::from(options.picture.float)]);
+    hash.write(&[u8::from(options.picture.float), u8::from(options.picture.bg.is_some())]);
     Stamp {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         fingerprint: hash.finish(),
