@@ -22,7 +22,7 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
         vertices: options.vertices,
     };
     let mut set = report.stats.stage("load", || ScanSet::load(&options.files, &load))?;
-    let camera = points::camera(&options.camera, None, || set.positions())?;
+    let camera = points::camera(&options.camera, set.view.as_ref(), None, || set.positions())?;
     let size = points::size(&options.camera);
     report.stats.stage("prepare", || set.cover_meshes(&camera, size, options.surface.spacing));
     set.warnings.iter().for_each(|warning| report.warn(warning));

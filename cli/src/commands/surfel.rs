@@ -22,7 +22,7 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     let set = report.stats.stage("load", || PointSet::load(&options.clouds, options.drop_invalid))?;
     set.warnings.iter().for_each(|warning| report.warn(warning));
     let cloud = report.stats.stage("prepare", || set.cloud(options.discs.estimate_normals))?;
-    let camera = points::camera(&options.camera, fov_deg, || cloud.positions())?;
+    let camera = points::camera(&options.camera, None, fov_deg, || cloud.positions())?;
     let size = points::size(&options.camera);
     let drawn =
         format!("{:?}", (frame_options, &camera, size, &layers, options.picture.float, options.picture.bg));

@@ -265,7 +265,8 @@ pub struct CompareOptions {
 /// `info`.
 #[derive(Debug, clap::Args)]
 pub struct InfoOptions {
-    /// A scene (.toml, .json), mesh (.obj, .ply, .gltf, .glb), cloud (.ply, .xyz, .conf, …), picture (.exr, .png, .jpg, .hdr), or what was baked: probes, radiosity, harmonics.
+    /// Any file that a command reads or writes: scenes, meshes, materials, clouds, pictures and their parts, what was baked, lists of
+    /// points, cells and form factors, statistics, jobs.
     pub file: PathBuf,
     /// Where results go.
     #[command(flatten)]

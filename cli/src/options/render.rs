@@ -32,7 +32,7 @@ pub struct RenderOptions {
     #[arg(long, value_name = "N", value_parser = values::whole::<u32>(1..=100_000))]
     pub turntable: Option<u32>,
     /// For models: a map of their surroundings (.hdr, .exr, .png, .jpg; equirectangular, +Y up), which lights them, is mirrored, and is
-    /// seen behind them (not with --bg)
+    /// seen behind them, in a PNG and EXR under alpha 0 (with --bg the colour is)
     #[arg(long, value_name = "MAP")]
     pub env: Option<PathBuf>,
     /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.NAME, id

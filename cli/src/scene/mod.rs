@@ -16,6 +16,7 @@ mod measured;
 mod motion;
 mod mtl_library;
 mod mtl_materials;
+mod no_effect;
 mod plain_model;
 mod resolve;
 mod smooth;
@@ -31,7 +32,7 @@ pub use pointillist_render::{
 
 pub use builtin::builtin;
 pub use description::{Description, parse_str};
-pub(crate) use framing::around as frame_around;
+pub(crate) use framing::{MARGIN as FRAME_MARGIN, around as frame_around};
 pub use load::{Overrides, is_model, load, load_to_bake};
 pub use motion::Motion;
 pub(crate) use plain_model::key_light;

@@ -9,7 +9,7 @@ use super::motion::{Motion, MovingObject};
 use super::texture_files::load_texture;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, LightSource, LoadedScene, Mesh, NONE, Object, Scene, SkyLight};
-use super::{auto_uv, framing, gltf_scene, plain_model, smooth};
+use super::{auto_uv, framing, gltf_scene, no_effect, plain_model, smooth};
 use crate::baked_file::read_baked;
 use crate::cloud_io::{self, DRAW_CLOUD};
 use crate::coordinate::{LARGEST, is_usable};
@@ -68,6 +68,8 @@ pub(super) fn resolve(
     if is_plain_model && lights.is_empty() {
         lights = model.map(|model| gltf_scene::lights(&model)).unwrap_or_default();
     }
+    let no_effect = no_effect::keys(description, builder.has_made_normals);
+    builder.warnings.extend(no_effect.iter().map(InputError::to_string));
     let mut warnings = builder.warnings;
     let mut scene = Scene::new(camera, description.image.size);
     scene.image.background = description.image.background;
@@ -182,6 +184,8 @@ struct Builder<'a> {
     warnings: Vec<String>,
     moving: Vec<MovingObject>,
     generated_mesh: fn(&str) -> Option<FileMesh>,
+    /// Vertex normals were made for an object whose file has none.
+    has_made_normals: bool,
 }
 
 impl<'a> Builder<'a> {
@@ -197,6 +201,7 @@ impl<'a> Builder<'a> {
             warnings: Vec::new(),
             moving: Vec::new(),
             generated_mesh: |_| None,
+            has_made_normals: false,
         }
     }
 
@@ -303,7 +308,8 @@ impl<'a> Builder<'a> {
             mesh.normals.extend(file.unit_normals().map(|n| turned(to_world, n)));
             if shading.is_some() || self.is_plain_model {
                 let crease_rad = crease_rad.or(self.is_plain_model.then_some(plain_model::CREASE_RAD));
-                smooth::fill(mesh, first_triangle, first_position, normals, crease_rad);
+                self.has_made_normals |=
+                    smooth::fill(mesh, first_triangle, first_position, normals, crease_rad);
             }
         }
         let index = mesh.objects.len() as u32;
