@@ -101,6 +101,31 @@ fn info_knows_the_lists_that_commands_pass_on() {
 }
 
 #[test]
+fn info_tells_what_of_a_scene_is_heavy() {
+    let folder = Folder::new();
+    let light = info(&folder, "scene.toml");
+    assert_eq!((&light["heavy"], &light["unseen"]), (&serde_json::json!([]), &serde_json::json!([])));
+    let small = light["memory_bytes"].as_u64().unwrap();
+    // A fan of leaves beside the camera's view, and a texture that no picture of 16 pixels needs.
+    image::GrayImage::from_pixel(4200, 4100, image::Luma([128])).save(folder.path("mask.png")).unwrap();
+    folder.write("leaf.mtl", "newmtl leaf\nmap_d mask.png\n");
+    let leaves: String = (0..1200).map(|i| format!("v {i} 0 9\nv {i} 1 9\nv {i}.5 0 9\n")).collect();
+    let faces: String =
+        (0..1200).map(|i| 3 * i).map(|v| format!("f {} {} {}\n", v + 1, v + 2, v + 3)).collect();
+    folder.write("leaves.obj", format!("mtllib leaf.mtl\nusemtl leaf\n{leaves}{faces}"));
+    let scene = common::SCENE.replace("[[light]]", "[[object]]\nmesh = \"leaves.obj\"\n[[light]]");
+    folder.write("tree.toml", scene);
+    let tree = info(&folder, "tree.toml");
+    assert_eq!(tree["unseen"], serde_json::json!(["leaves.obj"]));
+    let heavy = tree["heavy"].to_string();
+    for piece in ["1200 of 1201 triangles are out of view", "mask.png", "4200×4100", "foliage"] {
+        assert!(heavy.contains(piece), "{piece} is not told: {heavy}");
+    }
+    assert!(tree["memory_bytes"].as_u64().unwrap() > small + 4200 * 4100);
+    folder.fails(&["check", "tree.toml"], 0, &["note: ", "foliage"]);
+}
+
+#[test]
 fn info_knows_pictures_and_parts_of_them() {
     let folder = Folder::new();
     folder.prints(&["render", "scene.toml", "--tile", "1/2", "-o", "part.exr"]);

@@ -23,6 +23,7 @@ mod smooth;
 pub mod text;
 mod texture_files;
 mod textures;
+pub mod weight;
 
 pub use pointillist_render::{
     AmbientLight, Bump, BumpHeight, Camera, Channel, Details, LightSource, Map, Material, MeasuredBrdf, Mesh,

@@ -1,13 +1,15 @@
 //! Scenes.
 
 use super::bounds;
-use crate::scene::{LoadedScene, Material, Projection};
+use crate::options::Common;
+use crate::scene::{LoadedScene, Material, Projection, weight};
 use pointillist_shade::Model;
 use serde_json::{Value, json};
 
 pub(super) fn of_scene(loaded: &LoadedScene) -> Value {
     let LoadedScene { scene, warnings, fingerprint, .. } = loaded;
     let camera = &scene.camera;
+    let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
     let mut view = json!({
         "eye": camera.eye.to_array(),
         "target": camera.target.to_array(),
@@ -32,9 +34,15 @@ pub(super) fn of_scene(loaded: &LoadedScene) -> Value {
             .collect::<Vec<_>>(),
         "lights": scene.lights.iter().map(|light| &light.name).collect::<Vec<_>>(),
         "fingerprint": format!("{:016x}", fingerprint),
+        "unseen": weight::unseen(scene).iter().map(|object| &object.name).collect::<Vec<_>>(),
+        "heavy": weight::heavy(scene),
+        "memory_bytes": weight::memory_bytes(scene, pixels, COLOUR_AND_DEPTH, Common::default().thread_count()),
         "warnings": warnings,
     })
 }
+
+/// Numbers of a pixel without further layers.
+const COLOUR_AND_DEPTH: u64 = 5;
 
 /// What a material reflects by, and which maps it has.
 fn of_material(material: &Material) -> Value {
