@@ -42,7 +42,7 @@ pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
         OutputFormat::Exr => write_exr(&options.output, whole),
         OutputFormat::Png | OutputFormat::Jpeg => {
             let background = parts[0].stamp.background;
-            write_display(&options.output, format, &frame_of(&whole), background, false, &options.display)
+            write_display(&options.output, format, &frame_of(&whole), background, &options.display)
         }
     })?;
     report.note(&format!("{} parts joined in {}", parts.len(), options.output.display()));

@@ -89,7 +89,8 @@ pub enum Command {
         pointillist render examples/house.toml --set render.shading=flat --size 1920x1080 -o flat.png\n  \
         pointillist render examples/house.toml --tile 0/4 -o part0.exr\n  \
         pointillist render examples/carousel.toml --frames 0-2 -o carousel.{frame:04}.png\n  \
-        pointillist render examples/rabbit.obj --turntable 3 -o rabbit.{frame}.png")]
+        pointillist render examples/rabbit.obj --turntable 3 -o rabbit.{frame}.png\n  \
+        pointillist render examples/house.toml --size 3840x2160 --dry-run")]
     Render(RenderOptions),
     /// Draw range scans as they come: noisy, overlapping, without normals
     ///
@@ -138,7 +139,8 @@ pub enum Command {
     /// from other surfaces is written. The scene's lights light the patches directly, with shadows; emissive materials are light, too.
     #[command(after_help = "Examples:\n  \
         pointillist radiosity examples/house.toml --patch 1 -o baked.json\n  \
-        pointillist radiosity examples/house.toml --patch 1 --adaptive 0.5 -o fine.json\n\n\
+        pointillist radiosity examples/house.toml --patch 1 --adaptive 0.5 -o fine.json\n  \
+        pointillist radiosity examples/house.toml --patch 0.2 --dry-run\n\n\
         Then draw with it:\n  \
         pointillist render examples/house.toml --set ambient.radiosity=baked.json -o lit.png")]
     Radiosity(RadiosityOptions),

@@ -38,6 +38,9 @@ pub struct RenderOptions {
     /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.NAME, id
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub layers: Vec<LayerRequest>,
+    /// Print what the picture is expected to take (seconds, memory, what is heavy) and write nothing; --stats has it, too
+    #[arg(long)]
+    pub dry_run: bool,
     /// How the picture is written.
     #[command(flatten)]
     pub picture: PictureOptions,

@@ -197,6 +197,6 @@ impl Film<'_> {
     }
 }
 
-fn failed(error: RenderError) -> CliError {
+pub(super) fn failed(error: RenderError) -> CliError {
     CliError::Failed(error.to_string())
 }

@@ -1,6 +1,7 @@
 //! `render`.
 
 mod draw;
+mod dry_run;
 mod kept;
 mod layers;
 mod output;
@@ -43,6 +44,10 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     check_memory(options, job.window, &job.layers)?;
     // All cameras before the first picture: a film that would end in the middle of the night ends now.
     shots.iter().try_for_each(|shot| motion.camera(&loaded.scene.camera, shot.frame).map(drop))?;
+    if options.dry_run {
+        let expected = dry_run::expect(&loaded, &job, format, options, shots.len(), &report)?;
+        return report.finish_expecting(expected);
+    }
     Film { options, report: &report, format, job, motion, shots }.draw(loaded)?;
     if options.scene.is_none() {
         report.note(

@@ -9,6 +9,7 @@ use crate::image_io::{
 use crate::input::is_standard;
 use crate::memory;
 use crate::options::{Colour, DisplayOptions, PictureOptions};
+use std::io::{self, Seek, Write};
 use std::path::Path;
 
 /// How a picture is written, by the end of its name.
@@ -100,24 +101,36 @@ pub(in crate::commands) fn is_there(
     }
 }
 
-/// Writes a drawn picture in any format. With `--bg` it becomes opaque: what is open shows the colour, which
-/// `frame` may hold already (its stamp's background).
+/// Writes a drawn picture in any format.
 pub(in crate::commands) fn write_picture(
     path: &Path,
+    format: OutputFormat,
+    frame: Frame,
+    stamp: Stamp,
+    options: &PictureOptions,
+) -> Result<(), CliError> {
+    write_atomically(path, |output| encode(output, format, frame, stamp, options))
+        .map_err(|error| CliError::writing(&path.display().to_string(), &error))
+}
+
+/// The bytes of a picture in any format. With `--bg` it becomes opaque: what is open shows the colour, which
+/// `frame` may hold already (its stamp's background).
+pub(super) fn encode(
+    output: impl Write + Seek,
     format: OutputFormat,
     mut frame: Frame,
     stamp: Stamp,
     options: &PictureOptions,
-) -> Result<(), CliError> {
+) -> io::Result<()> {
     if let Some(Colour(color)) = options.bg {
         let gain = format.gain(&options.display);
         make_opaque(&mut frame, stamp.background, color.map(|channel| channel / gain));
     }
     if format == OutputFormat::Exr {
         let precision = if options.float { Precision::Float } else { Precision::Half };
-        return write_exr(path, ExrFile::from_frame(&frame, stamp, precision));
+        return ExrFile::from_frame(&frame, stamp, precision).write(output);
     }
-    write_display(path, format, &frame, stamp.background, options.bg.is_some(), &options.display)
+    encode_display(output, format, &frame, stamp.background, options.bg.is_some(), &options.display)
 }
 
 /// Fills what is open with a colour in the place of `before`, which is behind the picture so far.
@@ -142,18 +155,26 @@ pub(in crate::commands) fn write_display(
     format: OutputFormat,
     frame: &Frame,
     background: [f32; 3],
-    opaque: bool,
     options: &DisplayOptions,
 ) -> Result<(), CliError> {
+    write_atomically(path, |output| encode_display(output, format, frame, background, false, options))
+        .map_err(|error| CliError::writing(&path.display().to_string(), &error))
+}
+
+fn encode_display(
+    output: impl Write,
+    format: OutputFormat,
+    frame: &Frame,
+    background: [f32; 3],
+    opaque: bool,
+    options: &DisplayOptions,
+) -> io::Result<()> {
     let (width, height) = (frame.window.width(), frame.window.height());
     let exposure_ev = options.exposure;
-    let result = if format == OutputFormat::Jpeg {
+    if format == OutputFormat::Jpeg {
         let quality = options.quality.unwrap_or(JpegOptions::QUALITY);
-        let jpeg = JpegOptions { exposure_ev, quality };
-        write_atomically(path, |output| encode_jpeg(output, &frame.color, width, height, &jpeg))
-    } else {
-        let png = PngOptions { exposure_ev, background, opaque, bits: options.bits.unwrap_or_default() };
-        write_atomically(path, |output| encode_png(output, &frame.color, width, height, &png))
-    };
-    result.map_err(|error| CliError::writing(&path.display().to_string(), &error))
+        return encode_jpeg(output, &frame.color, width, height, &JpegOptions { exposure_ev, quality });
+    }
+    let png = PngOptions { exposure_ev, background, opaque, bits: options.bits.unwrap_or_default() };
+    encode_png(output, &frame.color, width, height, &png)
 }

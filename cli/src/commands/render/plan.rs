@@ -17,15 +17,19 @@ pub(super) fn job(scene: &Scene, options: &RenderOptions) -> Result<RenderJob, C
     Ok(RenderJob { region, window, layers: layers(scene, &options.layers)? })
 }
 
+/// Numbers of a pixel: colour, depth and those of layers.
+pub(super) fn planes(layers: &[LayerKind]) -> usize {
+    5 + layers.iter().map(|layer| layer.channels(&[]).len()).sum::<usize>()
+}
+
 /// Refuses a picture that memory cannot hold, before anything is computed.
 pub(super) fn check_memory(
     options: &RenderOptions,
     window: PixelRect,
     layers: &[LayerKind],
 ) -> Result<(), CliError> {
-    let planes: usize = 5 + layers.iter().map(|layer| layer.channels(&[]).len()).sum::<usize>();
     // Once as computed, and once more as it is written.
-    let needed = u128::from(window.pixels()) * planes as u128 * 4 * 2;
+    let needed = u128::from(window.pixels()) * planes(layers) as u128 * 4 * 2;
     let (width, height) = (window.width(), window.height());
     let fits = memory::check(needed, || format!("{width}×{height} pixels take"));
     fits.map_err(|error| match options.camera.size {
