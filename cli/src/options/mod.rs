@@ -90,7 +90,11 @@ pub enum Command {
         pointillist render examples/house.toml --tile 0/4 -o part0.exr\n  \
         pointillist render examples/carousel.toml --frames 0-2 -o carousel.{frame:04}.png\n  \
         pointillist render examples/rabbit.obj --turntable 3 -o rabbit.{frame}.png\n  \
-        pointillist render examples/house.toml --size 3840x2160 --dry-run")]
+        pointillist render examples/house.toml --size 3840x2160 --dry-run\n  \
+        pointillist render examples/house.toml --preview\n  \
+        pointillist render examples/house.toml --time-budget 5 -o soon.png\n  \
+        pointillist render examples/house.toml --error 0.002 -o right.exr\n\n\
+        Until Ctrl-C, whenever the scene changes: pointillist render SCENE.toml --watch")]
     Render(RenderOptions),
     /// Draw range scans as they come: noisy, overlapping, without normals
     ///

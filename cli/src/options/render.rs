@@ -38,6 +38,18 @@ pub struct RenderOptions {
     /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.NAME, id
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub layers: Vec<LayerRequest>,
+    /// Choose the cells per pixel so that an RMSE of at most E is expected (linear colours), and tell what is believed to be reached
+    #[arg(long, value_name = "E", value_parser = values::positive, conflicts_with = "time_budget")]
+    pub error: Option<f64>,
+    /// Stop after so many seconds: the picture is drawn coarsely first and refined until then, and is always complete
+    #[arg(long, value_name = "SECONDS", value_parser = values::positive, conflicts_with_all = ["frames", "turntable", "tile", "dry_run"])]
+    pub time_budget: Option<f64>,
+    /// Show the picture in the terminal; without -o no file is written
+    #[arg(long, conflicts_with = "dry_run")]
+    pub preview: bool,
+    /// Draw again whenever the scene or a file that it reads changes, until Ctrl-C
+    #[arg(long, conflicts_with = "dry_run")]
+    pub watch: bool,
     /// Print what the picture is expected to take (seconds, memory, what is heavy) and write nothing; --stats has it, too
     #[arg(long)]
     pub dry_run: bool,

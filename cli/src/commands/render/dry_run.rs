@@ -7,6 +7,7 @@
 use super::draw::failed;
 use super::output::{OutputFormat, encode};
 use super::plan::{planes, stamp};
+use super::sample_tiles::{TILE, spread};
 use crate::commands::Report;
 use crate::error::CliError;
 use crate::image_io::{Frame, Layer, PixelRect, Stamp};
@@ -19,12 +20,6 @@ use rayon::prelude::*;
 use std::io::Cursor;
 use std::time::Instant;
 
-/// Pixels on a side of a sample: a tile of the renderer.
-const TILE: u32 = 16;
-/// One of so many tiles is drawn, if that is no more than [`MOST_TILES`] and no less than [`LEAST_TILES`].
-const SHARE: usize = 12;
-const LEAST_TILES: usize = 24;
-const MOST_TILES: usize = 512;
 /// Drawing the sample for the first time stops after this, once each thread has drawn a tile.
 const PATIENCE_S: f64 = 2.0;
 /// Stages of a tile, as the renderer books them.
@@ -84,23 +79,6 @@ pub(super) fn expect(
 
 fn pixels_of(tiles: &[PixelRect]) -> f64 {
     tiles.iter().map(PixelRect::pixels).sum::<u64>() as f64
-}
-
-/// Tiles from all over the picture: steps of the golden section through their list come close to no place twice.
-fn spread(all: &[PixelRect]) -> Vec<PixelRect> {
-    let count = (all.len() / SHARE).clamp(LEAST_TILES, MOST_TILES).min(all.len());
-    let golden = 0.5 * (5_f64.sqrt() - 1.0);
-    let mut chosen = vec![false; all.len()];
-    let mut list = Vec::with_capacity(count);
-    for k in 0..count {
-        let mut at = ((k as f64 + 0.5) * golden).fract() * all.len() as f64;
-        while chosen[at as usize % all.len()] {
-            at += 1.0;
-        }
-        chosen[at as usize % all.len()] = true;
-        list.push(all[at as usize % all.len()]);
-    }
-    list
 }
 
 /// Tiles that were drawn, and what they took.

@@ -1,12 +1,17 @@
 //! `render`.
 
+mod budget;
 mod draw;
 mod dry_run;
+mod expected_error;
 mod kept;
 mod layers;
 mod output;
 mod plan;
+mod preview;
+mod sample_tiles;
 mod shots;
+mod watch;
 
 pub(super) use output::{OutputFormat, is_there, write_display, write_exr, write_picture};
 pub(super) use shots::numbered;
@@ -20,17 +25,26 @@ use plan::{check_memory, check_size, job};
 use shots::{check_outputs, check_turntable, motion, shots};
 
 pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
+    if options.watch { watch::run(options, &draw_once) } else { draw_once(options) }
+}
+
+fn draw_once(options: &RenderOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?;
     let shots = shots(options)?;
     let format = OutputFormat::of(&shots[0].output)?;
-    check_outputs(&shots)?;
+    let is_shown_only = options.preview && options.output.is_none();
+    if is_shown_only {
+        preview::check(options)?;
+    } else {
+        check_outputs(&shots)?;
+    }
     check_options(options, format, &report)?;
     check_turntable(options)?;
     options.camera.check_view()?;
     check_size(options)?;
     check_map(options)?;
     let overrides = options.overrides(format.gain(&options.picture.display));
-    let loaded = report.stats.stage("load", || match &options.scene {
+    let mut loaded = report.stats.stage("load", || match &options.scene {
         Some(path) => scene::load(path, &overrides),
         None => scene::builtin(&overrides),
     })?;
@@ -44,6 +58,19 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     check_memory(options, job.window, &job.layers)?;
     // All cameras before the first picture: a film that would end in the middle of the night ends now.
     shots.iter().try_for_each(|shot| motion.camera(&loaded.scene.camera, shot.frame).map(drop))?;
+    if options.preview {
+        preview::show(&loaded, options, &report)?;
+        if is_shown_only {
+            return report.finish();
+        }
+    }
+    if let Some(error) = options.error {
+        expected_error::choose(&mut loaded, &job, error, &report)?;
+    }
+    if let Some(seconds) = options.time_budget {
+        budget::draw(&loaded, &job, &shots[0].output, format, options, seconds, &report)?;
+        return report.finish();
+    }
     if options.dry_run {
         let expected = dry_run::expect(&loaded, &job, format, options, shots.len(), &report)?;
         return report.finish_expecting(expected);
