@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 mod common;
 mod dice;
+mod expected;
 mod ibpr;
 mod micropoint;
 mod radiosity;
@@ -20,7 +21,7 @@ use common::report::Outcome;
 /// Name, what it measures, and the study itself.
 type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
 
-const STUDIES: [Study; 10] = [
+const STUDIES: [Study; 11] = [
     ("dice", "areas of a triangle in the cells of a grid", run_dice),
     ("micropoint", "pictures against point sampling; foliage; shadows across texels", micropoint::run),
     ("shadow", "shadows against a shadow map, area lights against samples", shadow::run),
@@ -34,6 +35,7 @@ const STUDIES: [Study; 10] = [
     ),
     ("radiosity", "form factors, hemicubes and solutions: time against error", radiosity::run),
     ("stress", "input at the limits of numbers; fails if a row does", stress::run),
+    ("expected", "what `--dry-run` and `--error` say beside what is true", expected::run),
     ("speed", "whole pictures: seconds, threads, memory", speed::run),
 ];
 
