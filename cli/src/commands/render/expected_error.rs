@@ -35,7 +35,8 @@ pub(super) fn choose(
     most: f64,
     report: &Report<'_>,
 ) -> Result<(), CliError> {
-    let tiles = spread(&job.window.tiles(TILE).collect::<Vec<_>>());
+    // Of the whole job: tiles of one picture choose the same.
+    let tiles = spread(&job.region.tiles(TILE).collect::<Vec<_>>());
     let beliefs = report.stats.stage("error", || beliefs(loaded, &tiles, report))?;
     let last = beliefs.len() - 1;
     let chosen = beliefs.iter().position(|belief| belief.cautious <= most);
