@@ -144,4 +144,10 @@ fn an_error_that_is_asked_for_chooses_the_cells() {
     assert!(loose < 2.0 * truth && truth < 2.0 * loose, "{loose} is believed of {truth}");
     folder.fails(&["render", "ball.toml", "--error", "1e-9", "-o", "n.png"], 0, &["not reached"]);
     folder.fails(&["render", "ball.toml", "--error", "1", "--time-budget", "1"], 2, &["--time-budget"]);
+    // Tiles choose alike, or they could not be joined.
+    for (tile, name) in [("0/2", "t0.exr"), ("1/2", "t1.exr")] {
+        folder.prints(&["render", "ball.toml", "--error", "1e-9", "--float", "--tile", tile, "-o", name]);
+    }
+    folder.prints(&["merge", "t0.exr", "t1.exr", "-o", "t.exr"]);
+    assert_eq!(rmse(&folder, "t.exr", "four.exr"), 0.0);
 }

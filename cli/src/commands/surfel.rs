@@ -33,6 +33,8 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     drop(set);
     let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
     let mut frame = surfel::Frame::default();
+    // Not part of what tiles know one another by.
+    let frame_options = frame_options.with_window(window);
     report.stats.stage("draw", || {
         // All that the renderer can refuse now is a value of an option.
         let usage = |error: surfel::SurfelError| CliError::Usage(error.to_string());
