@@ -32,7 +32,8 @@ impl Finder<'_> {
     /// Reports a key if it is given.
     fn report(&mut self, path: &[&str], why: &str) {
         let document = &self.description.document;
-        if let Some(node) = find(document.root(), path) {
+        // `--bg` hides a map, if there is one.
+        if let Some(node) = find(document.root(), path).filter(|node| document.origin(node.span) != "--bg") {
             let error = document.error(node.span, format!("`{}` has no effect: {why}", path.join(".")));
             self.found.push(error);
         }
