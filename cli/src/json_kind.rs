@@ -15,6 +15,12 @@ pub(crate) enum JsonKind {
     Harmonics,
     /// What `probe capture` reads.
     Captures,
+    /// What `--stats` writes.
+    Statistics,
+    /// What `compare` writes.
+    Comparison,
+    /// What `job` writes.
+    Job,
     /// A scene file, as far as one can tell.
     Scene,
 }
@@ -27,6 +33,9 @@ impl JsonKind {
             () if has("probes") => Self::Probes,
             () if has("geometry") && has("irradiance") => Self::Radiosity,
             () if has("captures") => Self::Captures,
+            () if has("seconds") && has("peak_bytes") => Self::Statistics,
+            () if has("rmse") && has("max_pixel") => Self::Comparison,
+            () if has("specificationVersion") => Self::Job,
             () if has("sh") => Self::Harmonics,
             () => Self::Scene,
         }
@@ -45,6 +54,9 @@ impl JsonKind {
             Self::Radiosity => "baked radiosity",
             Self::Harmonics => "spherical harmonics of one environment map",
             Self::Captures => "a list of panoramas",
+            Self::Statistics => "what `--stats` wrote",
+            Self::Comparison => "what `compare` wrote",
+            Self::Job => "a job template",
             Self::Scene => "a scene",
         }
     }
@@ -56,7 +68,10 @@ impl JsonKind {
                 "a scene names probes by [ambient] probes = \"FILE\"; `pointillist probe` bakes and queries them"
             }
             Self::Radiosity => "a scene names it by [ambient] radiosity = \"FILE\"",
-            Self::Harmonics => "`pointillist info FILE` says what it holds",
+            Self::Job => "`openjd run FILE` runs it",
+            Self::Harmonics | Self::Statistics | Self::Comparison => {
+                "`pointillist info FILE` says what it holds"
+            }
             Self::Captures => "`pointillist probe capture FILE` makes light probes of it",
             Self::Scene => "`pointillist render FILE` draws it",
         }

@@ -6,10 +6,12 @@
 //! the system and the container say.
 
 use crate::input_error::InputError;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
-use std::sync::OnceLock;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::SystemTime;
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 /// What `--memory` allows, set once by the first command.
@@ -81,6 +83,19 @@ pub fn check(needed: u128, what: impl FnOnce() -> String) -> Result<(), MemoryEr
     }
 }
 
+/// What has been read since the last [`forget_files`], and what it was like then.
+static FILES: Mutex<BTreeMap<PathBuf, (SystemTime, u64)>> = Mutex::new(BTreeMap::new());
+
+/// The files that [`read`] has read since the last [`forget_files`], with the time of their last change and their length at that moment.
+pub fn files_read() -> BTreeMap<PathBuf, (SystemTime, u64)> {
+    FILES.lock().unwrap_or_else(PoisonError::into_inner).clone()
+}
+
+/// Begins a new list of [`files_read`].
+pub fn forget_files() {
+    FILES.lock().unwrap_or_else(PoisonError::into_inner).clear();
+}
+
 /// All bytes of a file, if they fit.
 ///
 /// # Errors
@@ -89,7 +104,11 @@ pub fn check(needed: u128, what: impl FnOnce() -> String) -> Result<(), MemoryEr
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     // Devices and pipes have no length.
-    let length = file.metadata()?.len();
+    let data = file.metadata()?;
+    let length = data.len();
+    if let Ok(changed) = data.modified() {
+        FILES.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_path_buf(), (changed, length));
+    }
     read_to_end(file, length, "its bytes take")
 }
 

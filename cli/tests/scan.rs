@@ -3,7 +3,7 @@
 mod common;
 
 use common::Folder;
-use pointillist_cli::image_io::read_exr_picture;
+use pointillist_cli::image_io::{ExrFile, read_exr_picture};
 
 /// A square of 41 × 41 points on z = 0, in rows, as XYZ text.
 fn sheet(z: f64) -> String {
@@ -265,4 +265,38 @@ fn one_vertex_far_away_does_not_multiply_the_points() {
     let (moved, cover, message) = scan("moved.ply");
     assert!(moved < 4 * usual, "{usual} points of a square, {moved} with a vertex moved");
     assert!(cover > 0.1 && !message.contains("warning"), "{cover} {message}");
+}
+
+#[test]
+fn the_camera_line_of_a_conf_is_the_default_view() {
+    let folder = Folder::new();
+    folder.prints(&["sample", "triangle.obj", "--count", "2000", "-o", "t.ply"]);
+    // World to camera is the conjugate of this sixth of a turn about y, and then three units along −z.
+    let (sine, cosine) = (30_f64.to_radians().sin(), 30_f64.to_radians().cos());
+    folder.write("t.conf", format!("camera 0 -0.75 -3 0 {sine} 0 {cosine}\nbmesh t.ply 0 0 0 0 0 0 1\n"));
+    let draw = |name: &str, file: &str, more: &[&str]| {
+        let line = ["scan", file, "--size", "64x48", "--float", "--no-cull", "-o", name, "--overwrite"];
+        folder.prints(&[&line[..], more].concat());
+        std::fs::read(folder.path(name)).unwrap()
+    };
+    let suggested = draw("a.exr", "t.conf", &["--fov", "40"]);
+    let [x, z] = [60_f64.to_radians().sin(), 60_f64.to_radians().cos()];
+    let (eye, target) = (format!("{},0.75,{}", 3.0 * x, 3.0 * z), format!("{},0.75,{}", 2.0 * x, 2.0 * z));
+    let view = ["--eye", &eye, "--target", &target, "--up", "0,1,0", "--fov", "40"];
+    let asked = draw("b.exr", "t.conf", &view);
+    let depth = |bytes: &[u8]| ExrFile::read(bytes).unwrap().plane("Z").unwrap();
+    let (one, other) = (depth(&suggested), depth(&asked));
+    let apart =
+        one.iter().zip(&other).filter(|(a, b)| a.is_finite() != b.is_finite() || (*a - *b).abs() > 1e-4);
+    assert!(one.iter().any(|z| z.is_finite()), "nothing is seen");
+    assert!(apart.count() <= 2, "the camera line is another view");
+    // A place on the command line takes its place as a whole.
+    let framed = draw("c.exr", "t.conf", &["--target", "0,0.75,0"]);
+    assert_ne!(depth(&framed), one);
+    assert_eq!(depth(&framed), depth(&draw("d.exr", "t.ply", &["--target", "0,0.75,0"])));
+    // Without --fov what is there fills the picture.
+    folder.write("front.conf", "camera 0 -0.75 -9 0 0 0 1\nbmesh t.ply 0 0 0 0 0 0 1\n");
+    let near = depth(&draw("e.exr", "front.conf", &[]));
+    let rows = |z: &[f32]| (0..48).filter(|y| z[y * 64..(y + 1) * 64].iter().any(|z| z.is_finite())).count();
+    assert!(rows(&near) > 40, "only {} of 48 rows are filled", rows(&near));
 }

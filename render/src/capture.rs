@@ -117,7 +117,7 @@ impl Prepared<'_> {
         }
         let economy = (!options.thorough).then(|| economy(self.geometry.triangle_count()));
         let CaptureOptions { lights, depths, .. } = options;
-        let style = Style { ambient, glow, lights, economy, depths };
+        let style = Style { ambient, glow, lights, economy, depths, hides_environment: false };
         let layers = DrawOptions::DEFAULT.with_layers(vec![LayerKind::Back, LayerKind::Direct]);
         let mut capture = Capture::new(options.resolution as usize);
         for (face, view) in views.into_iter().enumerate() {

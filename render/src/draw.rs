@@ -70,7 +70,9 @@ impl Prepared<'_> {
         monitor: &dyn Monitor,
     ) -> Result<Frame, RenderError> {
         let (ambient, depths) = (self.ambient(), DepthRange::ALL);
-        let style = Style { ambient, glow: Glow::Everything, lights: true, economy: None, depths };
+        let hides_environment = self.scene.image.hides_environment;
+        let style =
+            Style { ambient, glow: Glow::Everything, lights: true, economy: None, depths, hides_environment };
         self.draw_styled(view, &style, options, monitor)
     }
 
@@ -125,7 +127,9 @@ impl Prepared<'_> {
         monitor: &dyn Monitor,
     ) -> Result<(), RenderError> {
         let (ambient, depths) = (self.ambient(), DepthRange::ALL);
-        let style = Style { ambient, glow: Glow::Everything, lights: true, economy: None, depths };
+        let hides_environment = self.scene.image.hides_environment;
+        let style =
+            Style { ambient, glow: Glow::Everything, lights: true, economy: None, depths, hides_environment };
         self.draw_missing(&style, picture, monitor)
     }
 
@@ -170,7 +174,8 @@ impl Prepared<'_> {
             SceneLights::default()
         };
         monitor.lap("lights");
-        let background = Background::new(self.scene, (*self.environment).as_ref(), &view);
+        let environment = (*self.environment).as_ref().filter(|_| !style.hides_environment);
+        let background = Background::new(self.scene, environment, &view);
         let shader = Shader::new(self, &lights, &view, style);
         let layers = picture.layers().to_vec();
         let canvas = Mutex::new(picture);

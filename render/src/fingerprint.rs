@@ -38,6 +38,7 @@ pub fn of_light(scene: &Scene) -> u64 {
     let mut hash = Fingerprint::default();
     hash.color(scene.image.background);
     hash.option(scene.image.environment);
+    hash.int(u64::from(scene.image.hides_environment));
     hash.text(&format!("{:?}", scene.render));
     hash.mesh(&scene.mesh);
     scene.materials.iter().for_each(|material| hash.material(material));

@@ -26,6 +26,8 @@ pub(crate) struct Style<'a> {
     pub(crate) economy: Option<Economy>,
     /// Surfaces at other depths are not seen.
     pub(crate) depths: DepthRange,
+    /// The background's colour is seen in the place of the environment.
+    pub(crate) hides_environment: bool,
 }
 
 /// Whose emission is seen.

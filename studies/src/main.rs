@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 mod common;
 mod dice;
+mod expected;
 mod ibpr;
 mod micropoint;
 mod radiosity;
@@ -35,6 +36,7 @@ const STUDIES: [Study; 11] = [
     ("together", "whole pictures by radiosity and by probes, against paths", shprobe::together::run),
     ("radiosity", "form factors, hemicubes and solutions: time against error", radiosity::run),
     ("stress", "input at the limits of numbers; fails if a row does", stress::run),
+    ("expected", "what `--dry-run` and `--error` say beside what is true", expected::run),
     ("speed", "whole pictures: seconds, threads, memory", speed::run),
 ];
 

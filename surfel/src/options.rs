@@ -4,7 +4,7 @@ use crate::error::SurfelError;
 use crate::focus::Focus;
 use crate::points::Points;
 use glam::Vec3;
-use pointillist_view::Light;
+use pointillist_view::{Light, PixelRect};
 
 /// How discs become a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,6 +38,9 @@ pub struct Options {
     pub base: Vec3,
     /// Whether the frame gets normals besides color and depth. Default: false.
     pub surface_layers: bool,
+    /// The part of the picture that is wanted; `None`, the default, is all of it. Pixels in it are what they are in the whole picture, bit
+    /// for bit; others are undefined. [`Procedure::Blended`] draws only tiles that meet it, [`Procedure::Paper`] everything.
+    pub window: Option<PixelRect>,
 }
 
 impl Default for Options {
@@ -57,6 +60,7 @@ impl Options {
         ambient: 0.1,
         base: Vec3::splat(0.8),
         surface_layers: false,
+        window: None,
     };
 
     /// Sets the depth of field.
@@ -112,6 +116,13 @@ impl Options {
     #[must_use]
     pub const fn with_surface_layers(mut self, surface_layers: bool) -> Self {
         self.surface_layers = surface_layers;
+        self
+    }
+
+    /// Sets the part of the picture that is wanted.
+    #[must_use]
+    pub const fn with_window(mut self, window: PixelRect) -> Self {
+        self.window = Some(window);
         self
     }
 

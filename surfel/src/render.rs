@@ -4,7 +4,7 @@ use crate::camera::Camera;
 use crate::cloud::Cloud;
 use crate::error::SurfelError;
 use crate::frame::{Frame, FrameCounts};
-use crate::grid::TileRect;
+use crate::grid::{HEIGHT, TileRect, WIDTH};
 use crate::options::{Options, Procedure};
 use crate::paper::{self, PaperPixel, PaperTile};
 use crate::scene::Scene;
@@ -12,7 +12,7 @@ use crate::select::{self, Selected};
 use crate::shade::Shader;
 use crate::tile::Tile;
 use pointillist_parallel::{self as parallel, Pool};
-use pointillist_view::View;
+use pointillist_view::{PixelRect, View};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -69,24 +69,39 @@ impl Renderer {
         shown.resize_with(self.selected.len(), || AtomicBool::new(is_paper));
         let Options { culling, surface_layers: normals, .. } = *options;
         let scene = Scene { cloud, camera, shader, culling, normals, shown: &shown };
+        let wanted = options.window.unwrap_or(view.picture());
         match options.procedure {
-            Procedure::Blended => self.blend(&scene, frame),
+            Procedure::Blended => self.blend(&scene, &wanted, frame),
             Procedure::Paper => self.link_and_filter(&scene, frame),
         }
-        counts.nodes_hidden = shown.iter().filter(|s| !s.load(Ordering::Relaxed)).count();
+        // What lies beside the window is not looked at, so it is not known to be hidden.
+        let tiles = tiles_of(&wanted);
+        let looked_at = nodes_in(&self.selected, &tiles);
+        counts.nodes_hidden = looked_at.filter(|s| !shown[s.place as usize].load(Ordering::Relaxed)).count();
         frame.counts = counts;
         self.shown = shown;
         Ok(())
     }
 
-    fn blend(&self, scene: &Scene<'_>, frame: &mut Frame) {
+    fn blend(&self, scene: &Scene<'_>, wanted: &PixelRect, frame: &mut Frame) {
         parallel::for_each_mut_heavy(&mut frame.bands(), |band| {
-            let of_band: Vec<Selected> = nodes_in(&self.selected, &band.whole()).collect();
+            let is_wanted = |rect: &TileRect| {
+                let meets = |from: usize, size: usize, [low, high]: [u32; 2]| {
+                    from < high as usize && from + size > low as usize
+                };
+                meets(rect.x, rect.width, [wanted.x0, wanted.x1])
+                    && meets(rect.y, rect.height, [wanted.y0, wanted.y1])
+            };
+            let of_band: Vec<Selected> = if is_wanted(&band.whole()) {
+                nodes_in(&self.selected, &band.whole()).collect()
+            } else {
+                vec![]
+            };
             self.tiles.with(|tile| {
                 for number in 0..band.drawn.len() {
                     let rect = band.rect(number);
                     let nodes = nodes_in(&of_band, &rect);
-                    if nodes.clone().next().is_none() {
+                    if !is_wanted(&rect) || nodes.clone().next().is_none() {
                         band.clear(number);
                     } else {
                         tile.draw(scene, &rect, nodes, band);
@@ -113,6 +128,14 @@ impl Renderer {
         let cells = &self.cells;
         parallel::for_each_mut_heavy(&mut bands, |band| paper::reconstruct(scene, cells, band));
     }
+}
+
+/// The pixels of all tiles that meet a window, as far as they may lie beyond the picture.
+fn tiles_of(window: &PixelRect) -> TileRect {
+    let (x, y) = (window.x0 as usize / WIDTH * WIDTH, window.y0 as usize / HEIGHT * HEIGHT);
+    let width = (window.x1 as usize).next_multiple_of(WIDTH) - x;
+    let height = (window.y1 as usize).next_multiple_of(HEIGHT) - y;
+    TileRect { x, y, width, height }
 }
 
 /// The nodes with parts in some of the pixels.

@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DVec3, dvec3};
 use pointillist_surfel::invariants::{
     self, OwnedPoints, drawn, frame, frames_are_identical, frames_are_identical_but_for_size, look_at,
 };
-use pointillist_surfel::{Cloud, Focus, Light, Options, Procedure, Projection, View};
+use pointillist_surfel::{Cloud, Focus, Light, Options, PixelRect, Procedure, Projection, View};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 use testkit::holds;
@@ -105,6 +105,18 @@ fn with(mut options: Options, change: impl Fn(&mut Options)) -> Options {
 
 proptest! {
     #![proptest_config(testkit::config(28))]
+
+    #[test]
+    fn a_window_holds_what_the_whole_picture_does(p in points(), v in view(), o in options(), ends in any::<[u32; 4]>()) {
+        let Some(whole) = frame(&p, &v, &o) else { return Ok(()) };
+        let (x0, y0) = (ends[0] % v.width(), ends[1] % v.height());
+        let (x1, y1) = (x0 + 1 + ends[2] % (v.width() - x0), y0 + 1 + ends[3] % (v.height() - y0));
+        let part = frame(&p, &v, &o.with_window(PixelRect { x0, y0, x1, y1 })).expect("the same input");
+        for i in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y * v.width() + x) as usize)) {
+            prop_assert_eq!(whole.color()[i].map(f32::to_bits), part.color()[i].map(f32::to_bits));
+            prop_assert_eq!(whole.depth()[i].to_bits(), part.depth()[i].to_bits());
+        }
+    }
 
     #[test]
     fn frames_are_sound(p in points(), v in view(), o in options()) {

@@ -30,6 +30,13 @@ impl Pose {
     pub fn to_world(&self, point: DVec3) -> DVec3 {
         self.rotation * point + self.translation
     }
+
+    /// The motion back.
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.conjugate();
+        Self { rotation, translation: -(rotation * self.translation) }
+    }
 }
 
 /// A scan that a `.conf` names.
@@ -46,7 +53,8 @@ pub struct ConfScan {
 pub struct Conf {
     /// At least one, in the order of the file.
     pub scans: Vec<ConfScan>,
-    /// The suggested view, in the same form as the scans' poses; the first if there are several.
+    /// The suggested view, in the same form as the scans' poses: it takes the world to the camera, which looks along −z with +y up. The
+    /// first if there are several.
     pub camera: Option<Pose>,
     /// Scans that were left out, in sentences with the file's name and the line.
     pub warnings: Vec<String>,

@@ -6,7 +6,7 @@ use crate::error::CliError;
 use crate::input::name_of;
 use crate::input_error::InputError;
 use crate::options::{CameraOptions, CheckOptions};
-use crate::scene;
+use crate::scene::{self, weight};
 use std::path::PathBuf;
 
 pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
@@ -23,6 +23,7 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
     let scene = &loaded.scene;
     (0..=loaded.motion.last_frame())
         .try_for_each(|frame| loaded.motion.camera(&scene.camera, frame).map(drop))?;
+    weight::heavy(scene).iter().for_each(|text| report.note(&format!("note: {text}")));
     report.stats.count("triangles", scene.mesh.triangles.len() as u64);
     report.stats.count("lights", scene.lights.len() as u64);
     let text = format!(

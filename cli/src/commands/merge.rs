@@ -2,9 +2,9 @@
 
 use super::Report;
 use super::probe::{is_probe_file, merge_probes};
-use super::render::{OutputFormat, write_exr, write_png};
+use super::render::{OutputFormat, write_display, write_exr};
 use crate::error::CliError;
-use crate::image_io::{Channel, ExrFile, Frame, PngOptions, Stamp};
+use crate::image_io::{Channel, ExrFile, Frame, Stamp};
 use crate::input::{self, is_standard, name_of};
 use crate::input_error::InputError;
 use crate::name_pattern;
@@ -28,6 +28,7 @@ pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
     if let Some(part) = options.parts.iter().find(|part| !is_standard(part) && !part.exists()) {
         return Err(CliError::Parts(format!("part {} is missing", part.display())));
     }
+    format.map_or(Ok(()), |format| format.check_display(&options.display))?;
     let Some(format) = format else { return merge_probes(options, &report) };
     let parts = options.parts.iter().map(|path| report.stats.stage("load", || read_part(path)));
     let mut parts = parts.collect::<Result<Vec<_>, _>>()?;
@@ -35,13 +36,13 @@ pub(super) fn run(options: &MergeOptions) -> Result<(), CliError> {
     parts.sort_by_key(|part| (part.file.window.y0, part.file.window.x0));
     check_same_job(&parts)?;
     check_cover(&parts)?;
+    format.check_sides(parts[0].stamp.region)?;
     let whole = report.stats.stage("merge", || join(&parts));
     report.stats.stage("write", || match format {
         OutputFormat::Exr => write_exr(&options.output, whole),
-        OutputFormat::Png => {
+        OutputFormat::Png | OutputFormat::Jpeg => {
             let background = parts[0].stamp.background;
-            let png = PngOptions { exposure_ev: options.exposure, background };
-            write_png(&options.output, &frame_of(&whole), &png)
+            write_display(&options.output, format, &frame_of(&whole), background, &options.display)
         }
     })?;
     report.note(&format!("{} parts joined in {}", parts.len(), options.output.display()));

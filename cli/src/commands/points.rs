@@ -1,15 +1,16 @@
 //! What `scan` and `surfel` share: where the picture goes, the camera, drawing again and again, writing.
 
 use super::Report;
-use super::render::{OutputFormat, is_there, write_exr, write_png};
+use super::render::{OutputFormat, is_there, write_picture};
 use super::report::check_output;
+use crate::cloud_io::Pose;
 use crate::error::CliError;
-use crate::image_io::{ExrFile, Frame, PixelRect, PngOptions, Precision, Stamp};
+use crate::image_io::{Frame, PixelRect, Stamp};
 use crate::input::is_standard;
 use crate::memory;
 use crate::options::{CameraOptions, PictureOptions, Vector};
 use crate::scene::description::{CameraDescription, DEFAULT_FOV_DEG};
-use crate::scene::{Camera, Projection, frame_around};
+use crate::scene::{Camera, FRAME_MARGIN as MARGIN, Projection, frame_around};
 use cpu_time::ProcessTime;
 use glam::DVec3;
 use pointillist_ibpr as ibpr;
@@ -58,24 +59,46 @@ pub(super) fn output_path(given: Option<&Path>, first: &Path) -> PathBuf {
     }
 }
 
-/// The camera of the options; what they leave open has all points in view. `fov_deg` is for options without one.
+/// The camera of the options. What they leave open is as `suggested` (camera from world), if they say neither where the camera is nor where
+/// it looks, and otherwise has all points in view. `fov_deg` is for options without one.
 pub(super) fn camera<I: Iterator<Item = DVec3>>(
     given: &CameraOptions,
+    suggested: Option<&Pose>,
     fov_deg: Option<f64>,
     positions: impl Fn() -> I,
 ) -> Result<Camera, CliError> {
     let place = |v: Option<Vector>| v.map(|Vector(v)| DVec3::from(v));
-    let fov_y_rad = given.fov.or(fov_deg).unwrap_or(DEFAULT_FOV_DEG).to_radians();
-    let description = CameraDescription {
-        eye: place(given.eye),
-        target: place(given.target),
-        up: place(given.up).unwrap_or(DVec3::Y),
-        projection: Some(Projection::Perspective { fov_y_rad }),
-    };
     let [width, height] = size(given);
     let aspect = f64::from(width) / f64::from(height);
+    let suggested = suggested.filter(|_| given.eye.is_none() && given.target.is_none());
+    let fitting = || suggested.map(|view| fitting_fov_deg(view, positions(), aspect));
+    let fov_y_rad = given.fov.or(fov_deg).or_else(fitting).unwrap_or(DEFAULT_FOV_DEG).to_radians();
+    let world_from_camera = suggested.map(Pose::inverse);
+    let eye = world_from_camera.map(|view| view.translation);
+    let along = |axis: DVec3| world_from_camera.map(|view| view.rotation * axis);
+    let description = CameraDescription {
+        eye: place(given.eye).or(eye),
+        target: place(given.target).or(eye.zip(along(DVec3::NEG_Z)).map(|(eye, forward)| eye + forward)),
+        up: place(given.up).or(along(DVec3::Y)).unwrap_or(DVec3::Y),
+        projection: Some(Projection::Perspective { fov_y_rad }),
+    };
     frame_around(&description, positions, aspect)
         .map_err(|fault| CliError::Usage(format!("the camera cannot be used: {fault}")))
+}
+
+/// The field of view in which all points are seen that are in front of the camera: a suggested view does not say its own. At most what is
+/// usual, from within a room for example.
+fn fitting_fov_deg(view: &Pose, positions: impl Iterator<Item = DVec3>, aspect: f64) -> f64 {
+    let tangent = |point: DVec3| {
+        let seen = view.to_world(point);
+        (seen.z < 0.0).then(|| seen.y.abs().max(seen.x.abs() / aspect) / -seen.z)
+    };
+    let largest = positions.filter_map(tangent).fold(0.0, f64::max);
+    if largest > 0.0 {
+        (2.0 * (MARGIN * largest).atan()).to_degrees().min(DEFAULT_FOV_DEG)
+    } else {
+        DEFAULT_FOV_DEG
+    }
 }
 
 /// Draws a frame as often as `--repeat` asks, and notes how long each took.
@@ -107,7 +130,7 @@ pub(super) struct Target<'a> {
 impl<'a> Target<'a> {
     pub(super) fn new(path: PathBuf, options: &'a PictureOptions, layers: bool) -> Result<Self, CliError> {
         let format = OutputFormat::of(&path)?;
-        format.check_layers(layers, options.float)?;
+        format.check(layers, options)?;
         check_output(&path)?;
         Ok(Self { path, format, options })
     }
@@ -123,17 +146,8 @@ impl<'a> Target<'a> {
         done
     }
 
-    pub(super) fn write(&self, picture: &Frame, stamp: Stamp) -> Result<(), CliError> {
-        match self.format {
-            OutputFormat::Exr => {
-                let precision = if self.options.float { Precision::Float } else { Precision::Half };
-                write_exr(&self.path, ExrFile::from_frame(picture, stamp, precision))
-            }
-            OutputFormat::Png => {
-                let png = PngOptions { exposure_ev: self.options.exposure, background: [0.0; 3] };
-                write_png(&self.path, picture, &png)
-            }
-        }
+    pub(super) fn write(&self, picture: Frame, stamp: Stamp) -> Result<(), CliError> {
+        write_picture(&self.path, self.format, picture, stamp, self.options)
     }
 }
 

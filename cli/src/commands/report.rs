@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::image_io::{check_writable, write_atomically};
 use crate::input::is_standard;
-use crate::job::{Progress, Stats};
+use crate::job::{Expected, Progress, Stats};
 use crate::memory;
 use crate::options::Common;
 use std::io::{self, BufWriter, Write};
@@ -80,6 +80,22 @@ impl<'a> Report<'a> {
         if self.common.verbose {
             self.note(text);
         }
+    }
+
+    /// Prints what `--dry-run` expects on standard output, and ends the command.
+    pub(super) fn finish_expecting(&self, expected: Expected) -> Result<(), CliError> {
+        let text = expected.to_text();
+        self.stats.expect(expected);
+        if !self.on_stdout {
+            write_text(Path::new("-"), |output| output.write_all(text.as_bytes()))?;
+        }
+        self.finish()
+    }
+
+    /// Threads that compute at once.
+    pub(super) fn threads(&self) -> usize {
+        let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        self.common.thread_count().min(processors)
     }
 
     /// Writes `--stats`, and with `-v` the seconds of every stage.

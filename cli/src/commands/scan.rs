@@ -22,7 +22,7 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
         vertices: options.vertices,
     };
     let mut set = report.stats.stage("load", || ScanSet::load(&options.files, &load))?;
-    let camera = points::camera(&options.camera, None, || set.positions())?;
+    let camera = points::camera(&options.camera, set.view.as_ref(), None, || set.positions())?;
     let size = points::size(&options.camera);
     report.stats.stage("prepare", || set.cover_meshes(&camera, size, options.surface.spacing));
     set.warnings.iter().for_each(|warning| report.warn(warning));
@@ -32,7 +32,8 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     let frame_options = options.frame_options();
     let cloud = report.stats.stage("prepare", || set.cloud(frame_options.base))?;
     let layers = layer_list(&options.layers, &LAYERS).unwrap_or_default();
-    let drawn = format!("{:?}", (frame_options, &camera, size, &layers, options.picture.float));
+    let drawn =
+        format!("{:?}", (frame_options, &camera, size, &layers, options.picture.float, options.picture.bg));
     let stamp = points::stamp(set.fingerprint(), &drawn, &options.camera, region);
     if target.is_done(&stamp, window, &report) {
         return report.finish();
@@ -42,7 +43,7 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     report.stats.stage("draw", || draw(options, &cloud, &view, &mut frame, &report))?;
     tell_counts(&report, &cloud, &frame);
     let picture = window_of(&as_drawn(&frame), window, &layers, &view);
-    report.stats.stage("write", || target.write(&picture, stamp))?;
+    report.stats.stage("write", || target.write(picture, stamp))?;
     let seconds = report.stats.elapsed().as_secs_f64();
     report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));
     report.finish()

@@ -22,9 +22,10 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     let set = report.stats.stage("load", || PointSet::load(&options.clouds, options.drop_invalid))?;
     set.warnings.iter().for_each(|warning| report.warn(warning));
     let cloud = report.stats.stage("prepare", || set.cloud(options.discs.estimate_normals))?;
-    let camera = points::camera(&options.camera, fov_deg, || cloud.positions())?;
+    let camera = points::camera(&options.camera, None, fov_deg, || cloud.positions())?;
     let size = points::size(&options.camera);
-    let drawn = format!("{:?}", (frame_options, &camera, size, &layers, options.picture.float));
+    let drawn =
+        format!("{:?}", (frame_options, &camera, size, &layers, options.picture.float, options.picture.bg));
     let stamp = points::stamp(set.fingerprint(), &drawn, &options.camera, region);
     if target.is_done(&stamp, window, &report) {
         return report.finish();
@@ -32,6 +33,8 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     drop(set);
     let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
     let mut frame = surfel::Frame::default();
+    // Not part of what tiles know one another by.
+    let frame_options = frame_options.with_window(window);
     report.stats.stage("draw", || {
         // All that the renderer can refuse now is a value of an option.
         let usage = |error: surfel::SurfelError| CliError::Usage(error.to_string());
@@ -42,7 +45,7 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     })?;
     tell_counts(&report, &cloud, &frame);
     let picture = window_of(&as_drawn(&frame), window, &layers, &view);
-    report.stats.stage("write", || target.write(&picture, stamp))?;
+    report.stats.stage("write", || target.write(picture, stamp))?;
     let seconds = report.stats.elapsed().as_secs_f64();
     report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));
     report.finish()

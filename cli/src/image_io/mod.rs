@@ -1,9 +1,10 @@
-//! Pictures in and out: EXR with layers, PNG, and what is read for comparison.
+//! Pictures in and out: EXR with layers, PNG, JPEG, and what is read for comparison.
 
 mod atomic;
 mod exr_check;
 mod exr_error;
 mod exr_file;
+mod jpeg;
 mod picture;
 mod png;
 mod stamp;
@@ -11,7 +12,8 @@ mod stamp;
 pub use atomic::{check_writable, leave, write_atomically};
 pub use exr_error::ExrError;
 pub use exr_file::{Channel, ExrFile, Precision};
+pub use jpeg::{JpegOptions, encode_jpeg};
 pub use picture::{Levels, Picture, decode_image, read_exr_picture, read_levels, read_picture};
-pub use png::{PngOptions, encode_png, encode_rgb_png};
+pub use png::{Bits, PngOptions, encode_png, encode_rgb_png};
 pub use pointillist_render::{Frame, Layer, LayerKind, PixelRect};
 pub use stamp::Stamp;

@@ -1,10 +1,12 @@
 //! What one run of `render` is asked to do, and how it tells what it does.
 
+mod expected;
 pub mod interrupt;
 mod progress;
 mod stats;
 mod watch;
 
+pub use expected::Expected;
 pub use progress::{Progress, ProgressMode};
 pub use stats::{Stats, ThreadClock};
 pub use watch::{Piece, Watch};

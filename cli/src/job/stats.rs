@@ -1,5 +1,6 @@
 //! What a run took and how much it did: `--stats`.
 
+use super::Expected;
 use cpu_time::{ProcessTime, ThreadTime};
 use serde::Serialize;
 use std::cell::Cell;
@@ -33,6 +34,8 @@ struct Record {
     #[serde(flatten)]
     figures: BTreeMap<String, f64>,
     peak_bytes: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    expected: Option<Expected>,
     #[serde(skip_serializing_if = "Option::is_none")]
     frame_ms: Option<FrameTimes>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -112,6 +115,23 @@ impl Stats {
     /// Adds to the count of what was found not to matter.
     pub fn skip(&self, name: &str, n: u64) {
         *self.lock().skipped.entry(name.to_owned()).or_default() += n;
+    }
+
+    /// Says what `--dry-run` expects.
+    pub fn expect(&self, expected: Expected) {
+        self.lock().expected = Some(expected);
+    }
+
+    /// Processor seconds of some stages so far.
+    pub fn cpu_of(&self, stages: &[&str]) -> f64 {
+        let record = self.lock();
+        stages.iter().filter_map(|stage| record.cpu_seconds.get(*stage)).sum()
+    }
+
+    /// Processor seconds of all threads since the start.
+    pub fn cpu_elapsed(&self) -> f64 {
+        let cpu = self.cpu_start.and_then(|start| start.try_elapsed().ok());
+        cpu.unwrap_or_default().as_secs_f64()
     }
 
     /// Adds a frame of `--repeat`: wall time, and processor time of all threads.

@@ -22,11 +22,11 @@ pub use radiosity::{
     FactorsOptions, FormFactorKind, LinkKind, RadiosityBakeOptions, RadiosityCommand, RadiosityOptions,
     SolveMethod,
 };
-pub use render::{CameraOptions, LayerRequest, PictureOptions, RenderOptions};
+pub use render::{CameraOptions, DisplayOptions, LayerRequest, PictureOptions, RenderOptions};
 pub use sample::{SampleMethod, SampleOptions};
 pub use scan::{ScanOptions, ShadingOptions, SurfaceOptions};
 pub use surfel::{DiscOptions, FocusOptions, ProcedureValue, SurfelOptions, SurfelShading};
-pub use values::{FrameRange, LAST_FRAME, ResponseCurve, Tile, Vector};
+pub use values::{Colour, FrameRange, LAST_FRAME, ResponseCurve, Tile, Vector};
 
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use clap_complete::Shell;
@@ -84,10 +84,17 @@ pub enum Command {
         pointillist render\n  \
         pointillist render examples/house.toml -o house.exr --layers all\n  \
         pointillist render examples/rabbit.obj --eye 0.2,0.2,0.4 --target 0,0.08,0 --fov 30 -o rabbit.png\n  \
+        pointillist render examples/rabbit.obj --bg white -o rabbit.jpg\n  \
+        pointillist render examples/rabbit.obj --env examples/sky.png --bg 204060 --bits 16 -o sky.png\n  \
         pointillist render examples/house.toml --set render.shading=flat --size 1920x1080 -o flat.png\n  \
         pointillist render examples/house.toml --tile 0/4 -o part0.exr\n  \
         pointillist render examples/carousel.toml --frames 0-2 -o carousel.{frame:04}.png\n  \
-        pointillist render examples/rabbit.obj --turntable 3 -o rabbit.{frame}.png")]
+        pointillist render examples/rabbit.obj --turntable 3 -o rabbit.{frame}.png\n  \
+        pointillist render examples/house.toml --size 3840x2160 --dry-run\n  \
+        pointillist render examples/house.toml --preview\n  \
+        pointillist render examples/house.toml --time-budget 5 -o soon.png\n  \
+        pointillist render examples/house.toml --error 0.002 -o right.exr\n\n\
+        Until Ctrl-C, whenever the scene changes: pointillist render SCENE.toml --watch")]
     Render(RenderOptions),
     /// Draw range scans as they come: noisy, overlapping, without normals
     ///
@@ -136,7 +143,8 @@ pub enum Command {
     /// from other surfaces is written. The scene's lights light the patches directly, with shadows; emissive materials are light, too.
     #[command(after_help = "Examples:\n  \
         pointillist radiosity examples/house.toml --patch 1 -o baked.json\n  \
-        pointillist radiosity examples/house.toml --patch 1 --adaptive 0.5 -o fine.json\n\n\
+        pointillist radiosity examples/house.toml --patch 1 --adaptive 0.5 -o fine.json\n  \
+        pointillist radiosity examples/house.toml --patch 0.2 --dry-run\n\n\
         Then draw with it:\n  \
         pointillist render examples/house.toml --set ambient.radiosity=baked.json -o lit.png")]
     Radiosity(RadiosityOptions),
@@ -263,7 +271,8 @@ pub struct CompareOptions {
 /// `info`.
 #[derive(Debug, clap::Args)]
 pub struct InfoOptions {
-    /// A scene (.toml, .json), mesh (.obj, .ply, .gltf, .glb), cloud (.ply, .xyz, .conf, …), picture (.exr, .png, .jpg, .hdr), or what was baked: probes, radiosity, harmonics.
+    /// Any file that a command reads or writes: scenes, meshes, materials, clouds, pictures and their parts, what was baked, lists of
+    /// points, cells and form factors, statistics, jobs.
     pub file: PathBuf,
     /// Where results go.
     #[command(flatten)]
@@ -299,12 +308,12 @@ pub struct MergeOptions {
     /// The number that stands in the place of {frame} in all names.
     #[arg(long, value_name = "N", value_parser = values::whole::<u32>(0..=LAST_FRAME))]
     pub frame: Option<u32>,
-    /// The whole: .exr or .png for a picture, .json, .probes or `-` (standard output) for probes.
+    /// The whole: .exr, .png or .jpg for a picture, .json, .probes or `-` (standard output) for probes.
     #[arg(short, long, value_name = "PATH")]
     pub output: PathBuf,
-    /// For PNG: brighten by this many stops.
-    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = values::exposure, allow_negative_numbers = true)]
-    pub exposure: f32,
+    /// How a PNG or JPEG is written.
+    #[command(flatten)]
+    pub display: DisplayOptions,
     /// What every command has.
     #[command(flatten)]
     pub common: Common,

@@ -195,6 +195,9 @@ pub struct BakeOptions {
     /// Bake every probe, whatever the output holds already
     #[arg(long)]
     pub overwrite: bool,
+    /// Print what baking is expected to take (seconds, memory, what is heavy) and write nothing; --stats has it, too
+    #[arg(long)]
+    pub dry_run: bool,
     /// The baked probes: .json, .probes (binary), or `-` for standard output
     #[arg(short, long, value_name = "PATH", default_value = "baked.json")]
     pub output: PathBuf,

@@ -30,7 +30,7 @@ pub enum RadiosityCommand {
 }
 
 /// Bakes the light of a scene.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct RadiosityBakeOptions {
     /// A scene (.toml, .json) or mesh (.obj, .ply)
     #[arg(required = true)]
@@ -70,6 +70,9 @@ pub struct RadiosityBakeOptions {
     /// Write all form factors as lines of `i,j,F`
     #[arg(long, value_name = "F.csv")]
     pub factors: Option<PathBuf>,
+    /// Print what baking is expected to take (seconds, memory, what is heavy) and write nothing; --stats has it, too
+    #[arg(long)]
+    pub dry_run: bool,
     /// Override a key of the scene
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,

@@ -1,9 +1,9 @@
 //! `render`.
 
 use super::Common;
-use super::values::{self, FrameRange, Tile, Vector};
+use super::values::{self, Colour, FrameRange, Tile, Vector};
 use crate::error::CliError;
-use crate::image_io::PixelRect;
+use crate::image_io::{Bits, PixelRect};
 use crate::scene::Overrides;
 use crate::scene::description::view_fault;
 use glam::DVec3;
@@ -15,7 +15,7 @@ use std::str::FromStr;
 pub struct RenderOptions {
     /// Scene file or mesh; `-` is either on standard input.
     pub scene: Option<PathBuf>,
-    /// The picture: .png or .exr (default: pointillist.png for the built-in scene, else SCENE with .png)
+    /// The picture: .png, .jpg or .exr (default: pointillist.png for the built-in scene, else SCENE with .png)
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
     /// Override any key of the scene; the value is TOML, and a path is relative to the folder you are in
@@ -31,9 +31,28 @@ pub struct RenderOptions {
     /// Draw N views around a plain model, frames 0 to N − 1
     #[arg(long, value_name = "N", value_parser = values::whole::<u32>(1..=100_000))]
     pub turntable: Option<u32>,
+    /// For models: a map of their surroundings (.hdr, .exr, .png, .jpg; equirectangular, +Y up), which lights them, is mirrored, and is
+    /// seen behind them, in a PNG and EXR under alpha 0 (with --bg the colour is)
+    #[arg(long, value_name = "MAP")]
+    pub env: Option<PathBuf>,
     /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.NAME, id
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub layers: Vec<LayerRequest>,
+    /// Choose the cells per pixel so that an RMSE of at most E is expected (linear colours), and tell what is believed to be reached
+    #[arg(long, value_name = "E", value_parser = values::positive, conflicts_with = "time_budget")]
+    pub error: Option<f64>,
+    /// Stop after so many seconds: the picture is drawn coarsely first and refined until then, and is always complete
+    #[arg(long, value_name = "SECONDS", value_parser = values::positive, conflicts_with_all = ["frames", "turntable", "tile", "dry_run"])]
+    pub time_budget: Option<f64>,
+    /// Show the picture in the terminal; without -o no file is written
+    #[arg(long, conflicts_with = "dry_run")]
+    pub preview: bool,
+    /// Draw again whenever the scene or a file that it reads changes, until Ctrl-C
+    #[arg(long, conflicts_with = "dry_run")]
+    pub watch: bool,
+    /// Print what the picture is expected to take (seconds, memory, what is heavy) and write nothing; --stats has it, too
+    #[arg(long)]
+    pub dry_run: bool,
     /// How the picture is written.
     #[command(flatten)]
     pub picture: PictureOptions,
@@ -42,15 +61,58 @@ pub struct RenderOptions {
     pub common: Common,
 }
 
+impl RenderOptions {
+    /// What these options change in a scene; they win over `--set`. `gain` is what the picture's colours are multiplied by when it is
+    /// written.
+    pub fn overrides(&self, gain: f32) -> Overrides {
+        let mut overrides = self.camera.overrides(&self.set);
+        let mut add = |option: &str, assignment: String| {
+            overrides.assignments.push((option.to_owned(), assignment));
+        };
+        if let Some(map) = &self.env {
+            // A JSON string is a TOML string, too, whatever characters the name holds.
+            let path = serde_json::Value::from(map.to_string_lossy().as_ref());
+            add("--env", format!("image.environment={path}"));
+            if !self.set.iter().any(|assignment| assignment.trim_start().starts_with("ambient.")) {
+                add("--env", "ambient.environment=true".to_owned());
+            }
+        }
+        if let Some(Colour(color)) = self.picture.bg {
+            let [r, g, b] = color.map(|channel| channel / gain);
+            add("--bg", format!("image.background=[{r:?}, {g:?}, {b:?}]"));
+            add("--bg", "image.backdrop=\"background\"".to_owned());
+        }
+        overrides
+    }
+}
+
+/// How linear light becomes the numbers of a PNG or JPEG.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub struct DisplayOptions {
+    /// For PNG and JPEG: brighten by this many stops
+    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = values::exposure, allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// For PNG: 8 (default) or 16 bits a channel
+    #[arg(long, value_name = "N", value_parser = values::bits)]
+    pub bits: Option<Bits>,
+    /// For JPEG: 1 (smallest file) to 100 (least loss); default 92
+    #[arg(long, value_name = "Q", value_parser = values::whole::<u8>(1..=100))]
+    pub quality: Option<u8>,
+}
+
 /// How a picture is written.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct PictureOptions {
     /// For EXR: 32-bit colours instead of 16-bit
     #[arg(long)]
     pub float: bool,
-    /// For PNG: brighten by this many stops
-    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = values::exposure, allow_negative_numbers = true)]
-    pub exposure: f32,
+    /// How a PNG or JPEG is written.
+    #[command(flatten)]
+    pub display: DisplayOptions,
+    /// An opaque picture in front of this colour: rrggbb or rgb as on the web, or linear R,G,B, or white or black. --exposure
+    /// does not change it
+    #[arg(long, value_name = "COLOR")]
+    pub bg: Option<Colour>,
     /// Draw even if the EXR is already there with the same fingerprint
     #[arg(long)]
     pub overwrite: bool,

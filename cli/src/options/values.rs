@@ -1,7 +1,8 @@
 //! Values of options: vectors, sizes, windows, tiles.
 
 use crate::coordinate::LARGEST;
-use crate::image_io::PixelRect;
+use crate::image_io::{Bits, PixelRect};
+use pointillist_render::linear_from_srgb;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -21,6 +22,51 @@ impl FromStr for Vector {
             [_, _, _] => Err(format!("numbers must be finite, and at most {LARGEST:e}")),
             _ => Err(format!("{} numbers; three are needed, such as 1,2.5,-3", numbers.len())),
         }
+    }
+}
+
+/// A linear colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Colour(pub [f32; 3]);
+
+impl FromStr for Colour {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        const WANTED: &str =
+            "must be a colour such as ff8000 or f80 (as on the web), 0.5,0.5,0.5 (linear), white or black";
+        match text {
+            "white" => return Ok(Self([1.0; 3])),
+            "black" => return Ok(Self([0.0; 3])),
+            _ => {}
+        }
+        if text.contains(',') {
+            let numbers: Vec<f32> = list(text, ',', "three numbers such as 0.5,0.5,0.5")?;
+            return match numbers[..] {
+                // What a half of an EXR can hold.
+                [r, g, b] if numbers.iter().all(|n| (0.0..=65504.0).contains(n)) => Ok(Self([r, g, b])),
+                [_, _, _] => Err("numbers must be from 0 to 65504".to_owned()),
+                _ => Err(format!("{} numbers; three are needed", numbers.len())),
+            };
+        }
+        // Most shells take an unquoted `#` for the beginning of a comment, so it may be left out.
+        let digits = text.strip_prefix('#').unwrap_or(text);
+        let digits: Option<Vec<u8>> = digits.chars().map(|c| Some(c.to_digit(16)? as u8)).collect();
+        let levels = match digits.as_deref() {
+            Some(&[r, g, b]) => [17 * r, 17 * g, 17 * b],
+            Some(&[r, s, g, h, b, c]) => [16 * r + s, 16 * g + h, 16 * b + c],
+            _ => return Err(WANTED.to_owned()),
+        };
+        Ok(Self(levels.map(|level| linear_from_srgb(f32::from(level) / 255.0))))
+    }
+}
+
+/// Bits of a number in a PNG.
+pub(super) fn bits(text: &str) -> Result<Bits, String> {
+    match text {
+        "8" => Ok(Bits::Eight),
+        "16" => Ok(Bits::Sixteen),
+        _ => Err("must be 8 or 16".to_owned()),
     }
 }
 

@@ -36,6 +36,8 @@ pub struct ScanSet {
     pub scans: Vec<LoadedScan>,
     /// Meshes that get points once the view is known, after the scans.
     meshes: Vec<LoadedMesh>,
+    /// The view that the first `.conf` with one suggests: camera from world, the camera looking along its −z.
+    pub view: Option<Pose>,
     /// What may be wrong, with the name of the file.
     pub warnings: Vec<String>,
     /// Points left out because they were not finite.
@@ -68,6 +70,7 @@ impl ScanSet {
             match input::kind_of(path)?.as_str() {
                 "conf" => {
                     let conf = cloud_io::read_conf(path)?;
+                    set.view = set.view.or(conf.camera);
                     set.warnings.extend(conf.warnings);
                     for scan in &conf.scans {
                         set.read(&scan.path, Some(scan.pose), options)?;

@@ -13,7 +13,7 @@ const TOWARDS_EYE: DVec3 = DVec3::new(0.45, 0.35, 1.0);
 const LEANS: f64 = 0.15;
 
 /// Room around a framed scene.
-const MARGIN: f64 = 1.05;
+pub(crate) const MARGIN: f64 = 1.05;
 
 /// The camera that is given for a description, with what it leaves open chosen so that the mesh fills the view.
 pub(super) fn place(

@@ -37,6 +37,15 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<LoadedScene, InputErro
     resolve::resolve(&description, &folder, kind == Kind::Mesh, None)
 }
 
+/// Whether [`load`] takes a file for a model alone, and not for a scene file.
+///
+/// # Errors
+///
+/// It is neither.
+pub fn is_model(path: &Path) -> Result<bool, InputError> {
+    Ok(kind_of(path)? == Kind::Mesh)
+}
+
 /// As [`load`], without the scene's baked radiosity: for baking it, when it is old or not yet there.
 ///
 /// # Errors

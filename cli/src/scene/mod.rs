@@ -16,12 +16,14 @@ mod measured;
 mod motion;
 mod mtl_library;
 mod mtl_materials;
+mod no_effect;
 mod plain_model;
 mod resolve;
 mod smooth;
 pub mod text;
 mod texture_files;
 mod textures;
+pub mod weight;
 
 pub use pointillist_render::{
     AmbientLight, Bump, BumpHeight, Camera, Channel, Details, LightSource, Map, Material, MeasuredBrdf, Mesh,
@@ -31,8 +33,8 @@ pub use pointillist_render::{
 
 pub use builtin::builtin;
 pub use description::{Description, parse_str};
-pub(crate) use framing::around as frame_around;
-pub use load::{Overrides, load, load_to_bake};
+pub(crate) use framing::{MARGIN as FRAME_MARGIN, around as frame_around};
+pub use load::{Overrides, is_model, load, load_to_bake};
 pub use motion::Motion;
 pub(crate) use plain_model::key_light;
 pub use text::Format;

@@ -9,7 +9,7 @@ use super::motion::{Motion, MovingObject};
 use super::texture_files::load_texture;
 use super::textures::{Purpose, TextureTable};
 use super::{AmbientLight, LightSource, LoadedScene, Mesh, NONE, Object, Scene, SkyLight};
-use super::{auto_uv, framing, gltf_scene, plain_model, smooth};
+use super::{auto_uv, framing, gltf_scene, no_effect, plain_model, smooth};
 use crate::baked_file::read_baked;
 use crate::cloud_io::{self, DRAW_CLOUD};
 use crate::coordinate::{LARGEST, is_usable};
@@ -47,7 +47,7 @@ pub(super) fn resolve(
         builder.add(object)?;
     }
     let environment = builder.environment();
-    let [width, height] = description.size;
+    let [width, height] = description.image.size;
     let aspect = f64::from(width) / f64::from(height);
     // A glTF that is the scene brings its camera and its lights.
     let model = is_plain_model.then(|| builder.meshes.values().find_map(|mesh| mesh.gltf.clone())).flatten();
@@ -68,9 +68,12 @@ pub(super) fn resolve(
     if is_plain_model && lights.is_empty() {
         lights = model.map(|model| gltf_scene::lights(&model)).unwrap_or_default();
     }
+    let no_effect = no_effect::keys(description, builder.has_made_normals);
+    builder.warnings.extend(no_effect.iter().map(InputError::to_string));
     let mut warnings = builder.warnings;
-    let mut scene = Scene::new(camera, description.size);
-    scene.image.background = description.background;
+    let mut scene = Scene::new(camera, description.image.size);
+    scene.image.background = description.image.background;
+    scene.image.hides_environment = description.image.hides_environment;
     scene.image.environment = environment;
     scene.render.cells_per_pixel = description.render.subpixel;
     scene.render.occlusion = description.render.occlusion;
@@ -79,7 +82,9 @@ pub(super) fn resolve(
     scene.materials = builder.materials.into_materials();
     scene.textures = builder.textures.into_textures()?;
     scene.lights = lights;
-    let unlit = is_plain_model && scene.lights.is_empty();
+    // A map around the model lights it, if it is asked to.
+    let unlit =
+        is_plain_model && scene.lights.is_empty() && description.ambient != AmbientDescription::Environment;
     if unlit {
         scene.lights.push(plain_model::key_light(&scene));
     }
@@ -88,7 +93,7 @@ pub(super) fn resolve(
         _ => ambient(description, folder, &scene, &mut warnings)?,
     };
     let light = fingerprint::of_light(&scene);
-    let fingerprint = fingerprint::of_view(&scene.camera, description.size, light);
+    let fingerprint = fingerprint::of_view(&scene.camera, description.image.size, light);
     let motion = Motion::new(description, builder.moving);
     Ok(LoadedScene { scene, unmatched, warnings, fingerprint, light, motion, is_lit_from_camera: unlit })
 }
@@ -121,7 +126,7 @@ fn ambient(
         &AmbientDescription::Sky { sky, ground } => {
             Ok(AmbientLight::Sky(SkyLight { sky, ground, up: Vec3::Y }))
         }
-        AmbientDescription::Environment => match description.environment {
+        AmbientDescription::Environment => match description.image.environment {
             Some(_) => Ok(AmbientLight::Environment),
             None => {
                 let message = "`ambient.environment` needs `image.environment`, and there is none";
@@ -179,6 +184,8 @@ struct Builder<'a> {
     warnings: Vec<String>,
     moving: Vec<MovingObject>,
     generated_mesh: fn(&str) -> Option<FileMesh>,
+    /// Vertex normals were made for an object whose file has none.
+    has_made_normals: bool,
 }
 
 impl<'a> Builder<'a> {
@@ -194,11 +201,12 @@ impl<'a> Builder<'a> {
             warnings: Vec::new(),
             moving: Vec::new(),
             generated_mesh: |_| None,
+            has_made_normals: false,
         }
     }
 
     fn environment(&mut self) -> Option<usize> {
-        let file = self.description.environment.clone()?;
+        let file = self.description.image.environment.clone()?;
         let reference = TextureReference { file, srgb: true };
         let purpose = Purpose::Color { srgb: true };
         Some(load_texture(&mut self.textures, self.description, self.folder, &reference, purpose))
@@ -300,7 +308,8 @@ impl<'a> Builder<'a> {
             mesh.normals.extend(file.unit_normals().map(|n| turned(to_world, n)));
             if shading.is_some() || self.is_plain_model {
                 let crease_rad = crease_rad.or(self.is_plain_model.then_some(plain_model::CREASE_RAD));
-                smooth::fill(mesh, first_triangle, first_position, normals, crease_rad);
+                self.has_made_normals |=
+                    smooth::fill(mesh, first_triangle, first_position, normals, crease_rad);
             }
         }
         let index = mesh.objects.len() as u32;

@@ -7,6 +7,8 @@ use std::collections::HashMap;
 /// Gives the triangles from `first_triangle` on that have no normals the means of the faces at their corners, on this side
 /// of edges that are folded by more than `crease_rad`.
 ///
+/// Whether there were such triangles comes back.
+///
 /// Corners at the same position are one vertex: files repeat positions where the material changes, and there the
 /// surface goes on. (A file that repeats them to mark a crease has normals, or should.)
 pub(super) fn fill(
@@ -15,9 +17,9 @@ pub(super) fn fill(
     first_position: usize,
     weighting: Weighting,
     crease_rad: Option<f64>,
-) {
+) -> bool {
     if !mesh.normal_of[first_triangle..].contains(&[NONE; 3]) {
-        return;
+        return false;
     }
     let positions = &mesh.positions[first_position..];
     let mut vertex_at: HashMap<[u64; 3], u32> = HashMap::with_capacity(positions.len());
@@ -48,4 +50,5 @@ pub(super) fn fill(
     for (&t, corners) in bare.iter().zip(&normal_of) {
         mesh.normal_of[t] = corners.map(|corner| base + corner);
     }
+    true
 }

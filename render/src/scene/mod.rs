@@ -61,6 +61,9 @@ pub struct ImageSettings {
     pub background: Vec3,
     /// Index of an equirectangular texture in place of the colour: row 0 is +Y, its centre is −Z, columns run towards +X.
     pub environment: Option<usize>,
+    /// The picture shows [`ImageSettings::background`] although there is an environment, which then only lights and is mirrored. Probes
+    /// see the environment. Default: `false`.
+    pub hides_environment: bool,
 }
 
 /// How to draw.
@@ -93,7 +96,13 @@ impl Scene {
     pub fn new(camera: Camera, [width, height]: [u32; 2]) -> Self {
         Self {
             camera,
-            image: ImageSettings { width, height, background: Vec3::ZERO, environment: None },
+            image: ImageSettings {
+                width,
+                height,
+                background: Vec3::ZERO,
+                environment: None,
+                hides_environment: false,
+            },
             render: RenderSettings::default(),
             mesh: Mesh::default(),
             materials: Vec::new(),

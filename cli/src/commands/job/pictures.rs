@@ -4,6 +4,7 @@ use super::{count, file, job, named_from, program, step, template::Node, words};
 use crate::commands::Report;
 use crate::commands::render::{OutputFormat, numbered};
 use crate::error::CliError;
+use crate::image_io::Bits;
 use crate::name_pattern;
 use crate::options::{Command, FrameRange, JobOptions, RenderOptions, parse};
 use crate::scene;
@@ -18,12 +19,18 @@ pub(super) fn template(options: &JobOptions, report: &Report<'_>) -> Result<Node
     };
     let result = result(options, frames)?;
     let format = OutputFormat::of(&result)?;
-    format.check_layers(!render.layers.is_empty(), render.picture.float)?;
+    format.check(!render.layers.is_empty(), &render.picture)?;
+    check_together(&render)?;
     let most = check_scene(options, &render, report)?;
     let [scene, result] = [&options.scene, &result].map(|path| named_from(&options.output, path));
     let mut parameters = vec![
         file("Scene", "IN", &scene?, "The scene; tasks find the files that it names where it says"),
-        file("Output", "OUT", &result?, "The picture: .exr or .png, with {frame} where there are several"),
+        file(
+            "Output",
+            "OUT",
+            &result?,
+            "The picture: .exr, .png or .jpg, with {frame} where there are several",
+        ),
         count("Tiles", options.tiles, most, "Tasks for each frame"),
     ];
     let mut entries = vec![
@@ -49,6 +56,26 @@ pub(super) fn template(options: &JobOptions, report: &Report<'_>) -> Result<Node
         step("Merge", Some("Tiles"), &[frame], merge_arguments(&render, format)),
     ];
     Ok(job(options, parameters, steps))
+}
+
+/// Options about the numbers of the whole picture's file: its tiles are EXR.
+const OF_MERGE: [&str; 3] = ["--exposure", "--bits", "--quality"];
+
+/// Refuses what tasks without a terminal cannot do, and what no two tasks would do alike.
+fn check_together(render: &RenderOptions) -> Result<(), CliError> {
+    let given = [
+        ("--watch", render.watch),
+        ("--preview", render.preview),
+        ("--dry-run", render.dry_run),
+        ("--time-budget", render.time_budget.is_some()),
+        ("--bg with --exposure", render.picture.bg.is_some() && render.picture.display.exposure != 0.0),
+    ];
+    match given.into_iter().find(|(_, given)| *given) {
+        Some((name, _)) => {
+            Err(CliError::Usage(format!("options for `render`: {name} is not for the tasks of a job")))
+        }
+        None => Ok(()),
+    }
 }
 
 /// What the tasks are asked for besides what the template says.
@@ -122,16 +149,16 @@ fn tile_arguments(options: &JobOptions, render: &RenderOptions, format: OutputFo
         "--progress",
         "openjd",
     ]);
-    if format == OutputFormat::Png && !render.picture.float {
-        // A PNG that is drawn at once is made of full floats.
+    if format != OutputFormat::Exr && !render.picture.float {
+        // A PNG or JPEG that is drawn at once is made of full floats.
         arguments.extend(words(&["--float"]));
     }
     let mut more = options.more.iter();
     while let Some(word) = more.next() {
-        if word == "--exposure" {
-            // `merge` brightens.
+        if OF_MERGE.contains(&word.as_str()) {
+            // `merge` is asked for these.
             more.next();
-        } else if !word.starts_with("--exposure=") {
+        } else if !OF_MERGE.iter().any(|option| word.starts_with(&format!("{option}="))) {
             arguments.push(Node::text(word));
         }
     }
@@ -151,8 +178,15 @@ fn merge_arguments(render: &RenderOptions, format: OutputFormat) -> Vec<Node> {
         "--progress",
         "openjd",
     ]);
-    if format == OutputFormat::Png && render.picture.exposure != 0.0 {
-        arguments.extend(words(&["--exposure", &render.picture.exposure.to_string()]));
+    let display = &render.picture.display;
+    if format != OutputFormat::Exr && display.exposure != 0.0 {
+        arguments.extend(words(&["--exposure", &display.exposure.to_string()]));
+    }
+    if let Some(bits) = display.bits {
+        arguments.extend(words(&["--bits", if bits == Bits::Sixteen { "16" } else { "8" }]));
+    }
+    if let Some(quality) = display.quality {
+        arguments.extend(words(&["--quality", &quality.to_string()]));
     }
     arguments
 }

@@ -2,11 +2,11 @@
 
 use super::indirect::{self, KnownLight};
 use super::inside::{self, Outcome};
-use super::{check_output, failed, overrides, write};
+use super::{check_output, dry_run, failed, overrides, write};
 use crate::commands::Report;
 use crate::commands::report::name_of_output;
 use crate::error::CliError;
-use crate::job::Watch;
+use crate::job::{Expected, Watch};
 use crate::memory;
 use crate::options::{BakeOptions, Indirect, Inside, What};
 use crate::probe_io::{Distances, ProbeEntry, ProbeFile, read_probes};
@@ -47,6 +47,9 @@ pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
     file.fingerprint = Some(mark.clone());
     let bake =
         Bake { prepared: &prepared, solids: &solids, known, mark, options, report: &report, positions };
+    if options.dry_run {
+        return report.finish_expecting(bake.expected(&scene)?);
+    }
     let old = if options.overwrite { None } else { Old::read(&options.output, options) };
     let (kept, marks) = bake.unchanged(old.as_ref())?;
     bake.fill(&mut file, old.as_ref(), &kept, &marks)?;
@@ -81,11 +84,16 @@ fn check(options: &BakeOptions) -> Result<(), CliError> {
 /// Refuses more harmonics and distances than memory can hold.
 fn check_memory(probes: usize, options: &BakeOptions) -> Result<(), CliError> {
     let places = probes as u128 + u128::from(options.fit);
-    let (bands, side) = (u128::from(options.order) + 1, u128::from(options.distances));
-    // Three colours of each coefficient in double precision, this round's and the last's; two numbers for a direction.
-    let needed = places * (bands * bands * 3 * 8 * 2 + side * side * 2 * 4);
+    let needed = places * u128::from(place_bytes(options));
     memory::check(needed, || format!("{places} places (probes and --fit) with --order and --distances take"))
         .map_err(|error| CliError::Usage(error.with_help()))
+}
+
+/// Bytes that are kept of a place that is looked from.
+fn place_bytes(options: &BakeOptions) -> u64 {
+    let (bands, side) = (u64::from(options.order) + 1, u64::from(options.distances));
+    // Three colours of each coefficient in double precision, this round's and the last's; two numbers for a direction.
+    bands * bands * 3 * 8 * 2 + side * side * 2 * 4
 }
 
 /// What earlier runs left in the output.
@@ -280,12 +288,31 @@ impl Bake<'_> {
         Ok(numbers.into_iter().map(|n| format!("{n:016x}{:02x}{}", settings[0], settings[1])).collect())
     }
 
+    /// What `--dry-run` tells. All probes count as new, whatever the output holds.
+    fn expected(&self, scene: &Scene) -> Result<Expected, CliError> {
+        let places = self.positions.len() + self.options.fit as usize;
+        let unfitted = look_options(self.options).with_fit(0);
+        let bake = |at: &[DVec3]| {
+            self.marks(at)?;
+            self.look_with(at, &unfitted).map(drop)
+        };
+        dry_run::expect(scene, &self.positions, places, place_bytes(self.options), &bake, self.report)
+    }
+
     fn look(&self, at: &[DVec3]) -> Result<Vec<BakedProbe>, CliError> {
-        let Self { options, report, .. } = self;
+        self.look_with(at, &look_options(self.options))
+    }
+
+    fn look_with(
+        &self,
+        at: &[DVec3],
+        settings: &pointillist_render::BakeOptions,
+    ) -> Result<Vec<BakedProbe>, CliError> {
+        let Self { report, .. } = self;
         let progress = report.progress();
         let watch = Watch { task: "bake", progress: &progress, stats: &report.stats };
         let ambient = indirect::ambient(self.prepared, self.known);
-        let baked = bake_probes_in(self.prepared, self.solids, at, ambient, &look_options(options), &watch);
+        let baked = bake_probes_in(self.prepared, self.solids, at, ambient, settings, &watch);
         let ProbeBake { probes, changes } = baked.map_err(failed)?;
         for (change, bounce) in changes.iter().zip(1..) {
             report.detail(&format!("bounce {bounce}: light changed by {:.2} %", change * 100.0));

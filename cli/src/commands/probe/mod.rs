@@ -2,6 +2,7 @@
 
 mod bake;
 mod capture;
+mod dry_run;
 mod indirect;
 mod inside;
 mod merge;

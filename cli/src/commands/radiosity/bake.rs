@@ -1,6 +1,6 @@
 //! `radiosity SCENE`.
 
-use super::by_rays;
+use super::{by_rays, dry_run};
 use crate::baked_file::BakedFile;
 use crate::commands::Report;
 use crate::commands::report::{name_of_output, write_text};
@@ -27,7 +27,7 @@ const LIT: f64 = 0.02;
 const LINKED: f64 = 0.8;
 const SOLVED: f64 = 0.82;
 /// Scenes with more patches are linked by groups, unless said otherwise.
-const MOST_FULL: usize = 1000;
+pub(super) const MOST_FULL: usize = 1000;
 /// Scenes with more surfaces are linked by rays, unless said otherwise: every pair of surfaces is looked at for groups.
 const MOST_PAIRED: usize = 2000;
 /// `--tolerance` of groups, unless said otherwise.
@@ -51,6 +51,9 @@ pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
         report.warn(&format!("{count} triangles let most light through and are left out"));
     }
     let bake = Bake { options, report: &report, scene: &scene, surfaces: &surfaces };
+    if options.dry_run {
+        return report.finish_expecting(dry_run::expect(&bake)?);
+    }
     let progress = report.progress();
     if bake.by_rays() {
         by_rays::run(&bake, &progress)?;
@@ -129,6 +132,7 @@ fn affordable_elements() -> usize {
     memory::available_bytes().map_or(usize::MAX, fits)
 }
 
+#[derive(Clone, Copy)]
 pub(super) struct Bake<'a> {
     pub(super) options: &'a RadiosityBakeOptions,
     pub(super) report: &'a Report<'a>,
@@ -138,7 +142,7 @@ pub(super) struct Bake<'a> {
 
 impl Bake<'_> {
     /// Whether links are found by rays.
-    fn by_rays(&self) -> bool {
+    pub(super) fn by_rays(&self) -> bool {
         let Self { options, surfaces, .. } = self;
         let plain = options.form_factor == FormFactorKind::Analytic
             && options.method == SolveMethod::GaussSeidel
@@ -147,7 +151,7 @@ impl Bake<'_> {
         options.links == LinkKind::Rays || (options.links == LinkKind::Auto && plain && many)
     }
 
-    fn link(&self, progress: &Progress) -> Result<Transport, CliError> {
+    pub(super) fn link(&self, progress: &Progress) -> Result<Transport, CliError> {
         let Self { options, report, .. } = self;
         progress.begin("radiosity", PROGRESS_STEPS);
         let stats = &report.stats;
@@ -171,7 +175,11 @@ impl Bake<'_> {
         Ok(transport)
     }
 
-    fn solve<'t>(&self, transport: &'t Transport, progress: &Progress) -> Result<Solution<'t>, CliError> {
+    pub(super) fn solve<'t>(
+        &self,
+        transport: &'t Transport,
+        progress: &Progress,
+    ) -> Result<Solution<'t>, CliError> {
         let Self { options, report, .. } = self;
         let solution = report.stats.stage("solve", || match options.method {
             SolveMethod::GaussSeidel => transport.gauss_seidel(&SolveOptions::DEFAULT),
@@ -183,7 +191,7 @@ impl Bake<'_> {
     }
 
     /// The scene in patches, linked as asked.
-    fn divided(&self) -> Result<radiosity::Scene, CliError> {
+    pub(super) fn divided(&self) -> Result<radiosity::Scene, CliError> {
         let options = self.options;
         let patch = options.patch.unwrap_or_else(|| self.extent() / PATCHES_ACROSS);
         let mut settings = SceneOptions::DEFAULT

@@ -32,6 +32,14 @@ pub(super) fn run(bake: &Bake<'_>, progress: &Progress) -> Result<(), CliError> 
     bake.write(&Found { patches, bound: solution.bound, factors: &factors }, &baked)
 }
 
+/// Solves for light and forgets it; the number of patches comes back.
+pub(super) fn trial(bake: &Bake<'_>, progress: &Progress) -> Result<usize, CliError> {
+    let transport = link(bake, progress)?;
+    let options = SolveOptions::DEFAULT.with_tolerance(SOLVED_TO);
+    let _ = transport.solve(&options).map_err(|e| bake.refused(&e))?.bake_with(&|_| ());
+    Ok(transport.counts().patches)
+}
+
 fn link(bake: &Bake<'_>, progress: &Progress) -> Result<RayTransport, CliError> {
     let stats = &bake.report.stats;
     let patch = bake.options.patch.unwrap_or_else(|| bake.extent() / PATCHES_ACROSS);

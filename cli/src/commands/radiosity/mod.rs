@@ -2,6 +2,7 @@
 
 mod bake;
 mod by_rays;
+mod dry_run;
 mod factor_lines;
 mod factors;
 

@@ -4,12 +4,12 @@
 //! A take is prepared when the first of its frames is drawn, so that frames that are there already cost nothing but a look into their files.
 
 use super::kept::Kept;
-use super::output::{OutputFormat, is_there, write_exr, write_png};
-use super::plan::{precision, stamp};
+use super::output::{OutputFormat, is_there, write_picture};
+use super::plan::stamp;
 use super::shots::Shot;
 use crate::commands::Report;
 use crate::error::CliError;
-use crate::image_io::{ExrFile, Frame, PngOptions};
+use crate::image_io::Frame;
 use crate::job::interrupt::{self, Keeper};
 use crate::job::{Piece, Progress, RenderJob, Watch};
 use crate::options::RenderOptions;
@@ -137,13 +137,7 @@ impl Film<'_> {
         let frame = self.draw_or_keep(index, prepared, view, &mut kept, monitor)?;
         report.stats.count("pixels", job.window.pixels());
         report.stats.count("pictures", 1);
-        report.stats.stage("write", || match self.format {
-            OutputFormat::Exr => write_exr(output, ExrFile::from_frame(&frame, stamp, precision(options))),
-            OutputFormat::Png => {
-                let background = scene.image.background.to_array();
-                write_png(output, &frame, &PngOptions { exposure_ev: options.picture.exposure, background })
-            }
-        })?;
+        report.stats.stage("write", || write_picture(output, self.format, frame, stamp, &options.picture))?;
         kept.remove(report);
         drop(keeper);
         // The first picture's time is that of the whole command so far: reading the scene is part of it.
@@ -190,11 +184,11 @@ impl Film<'_> {
         }
     }
 
-    /// What of a film is there, and how it goes on: EXR that are there are known by their fingerprints, PNG have none.
+    /// What of a film is there, and how it goes on: EXR that are there are known by their fingerprints, PNG and JPEG have none.
     fn how_far(&self, done: usize) -> String {
         let count = self.shots.len();
         let goes_on = match (self.format, self.shots.get(done), self.shots.last()) {
-            (OutputFormat::Png, Some(next), Some(last)) if done > 0 => {
+            (OutputFormat::Png | OutputFormat::Jpeg, Some(next), Some(last)) if done > 0 => {
                 format!("go on with --frames {}-{}", next.frame, last.frame)
             }
             _ => GOES_ON.to_owned(),
@@ -203,6 +197,6 @@ impl Film<'_> {
     }
 }
 
-fn failed(error: RenderError) -> CliError {
+pub(super) fn failed(error: RenderError) -> CliError {
     CliError::Failed(error.to_string())
 }

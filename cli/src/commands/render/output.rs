@@ -1,10 +1,15 @@
-//! Picture files: their format, and whether one is there already.
+//! Picture files: their format, what fits into it, and whether one is there already.
 
 use super::super::Report;
 use crate::error::CliError;
-use crate::image_io::{ExrFile, Frame, PixelRect, PngOptions, Stamp, encode_png, write_atomically};
+use crate::image_io::{
+    Bits, ExrFile, Frame, JpegOptions, PixelRect, PngOptions, Precision, Stamp, encode_jpeg, encode_png,
+    write_atomically,
+};
 use crate::input::is_standard;
 use crate::memory;
+use crate::options::{Colour, DisplayOptions, PictureOptions};
+use std::io::{self, Seek, Write};
 use std::path::Path;
 
 /// How a picture is written, by the end of its name.
@@ -12,6 +17,7 @@ use std::path::Path;
 pub(in crate::commands) enum OutputFormat {
     Exr,
     Png,
+    Jpeg,
 }
 
 impl OutputFormat {
@@ -21,22 +27,59 @@ impl OutputFormat {
         match extension.as_str() {
             "exr" => Ok(Self::Exr),
             "png" => Ok(Self::Png),
+            "jpg" | "jpeg" => Ok(Self::Jpeg),
             _ if is_standard(path) => {
                 let message =
-                    "-o -: a picture is no text, and goes to a file whose name ends in .png or .exr";
+                    "-o -: a picture is no text, and goes to a file whose name ends in .png, .jpg or .exr";
                 Err(CliError::Usage(message.to_owned()))
             }
-            _ => Err(CliError::Usage(format!("`{}`: a picture's name ends in .png or .exr", path.display()))),
+            _ => Err(CliError::Usage(format!(
+                "`{}`: a picture's name ends in .png, .jpg or .exr",
+                path.display()
+            ))),
         }
     }
 
-    /// Refuses layers and floats for a PNG.
-    pub(in crate::commands) fn check_layers(self, layers: bool, float: bool) -> Result<(), CliError> {
-        if self == Self::Png && (layers || float) {
+    /// Refuses what the format has no room for: layers, floats, more bits, a quality.
+    pub(in crate::commands) fn check(self, layers: bool, options: &PictureOptions) -> Result<(), CliError> {
+        if self != Self::Exr && (layers || options.float) {
             let message = "--layers and --float need an .exr output; add -o picture.exr";
             return Err(CliError::Usage(message.to_owned()));
         }
-        Ok(())
+        self.check_display(&options.display)
+    }
+
+    /// Refuses options of another format than this.
+    pub(in crate::commands) fn check_display(self, options: &DisplayOptions) -> Result<(), CliError> {
+        let usage = |message: &str| Err(CliError::Usage(message.to_owned()));
+        match self {
+            Self::Exr if options.bits.is_some() => {
+                usage("--bits is for PNG; an EXR has 16 bits, or 32 with --float")
+            }
+            Self::Jpeg if options.bits == Some(Bits::Sixteen) => {
+                usage("--bits 16: a JPEG has 8 bits; add -o picture.png")
+            }
+            Self::Exr | Self::Png if options.quality.is_some() => {
+                usage("--quality is for JPEG; PNG and EXR lose nothing")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses a picture with longer sides than the format can say.
+    pub(in crate::commands) fn check_sides(self, window: PixelRect) -> Result<(), CliError> {
+        let (width, height, most) = (window.width(), window.height(), JpegOptions::LARGEST_SIDE);
+        if self != Self::Jpeg || width.max(height) <= most {
+            return Ok(());
+        }
+        Err(CliError::Usage(format!(
+            "{width}×{height} pixels: a JPEG has at most {most} a side; add -o picture.png"
+        )))
+    }
+
+    /// What colours are multiplied by when they are written.
+    pub(in crate::commands) fn gain(self, options: &DisplayOptions) -> f32 {
+        if self == Self::Exr { 1.0 } else { options.exposure.exp2() }
     }
 }
 
@@ -58,17 +101,80 @@ pub(in crate::commands) fn is_there(
     }
 }
 
+/// Writes a drawn picture in any format.
+pub(in crate::commands) fn write_picture(
+    path: &Path,
+    format: OutputFormat,
+    frame: Frame,
+    stamp: Stamp,
+    options: &PictureOptions,
+) -> Result<(), CliError> {
+    write_atomically(path, |output| encode(output, format, frame, stamp, options))
+        .map_err(|error| CliError::writing(&path.display().to_string(), &error))
+}
+
+/// The bytes of a picture in any format. With `--bg` it becomes opaque: what is open shows the colour, which
+/// `frame` may hold already (its stamp's background).
+pub(super) fn encode(
+    output: impl Write + Seek,
+    format: OutputFormat,
+    mut frame: Frame,
+    stamp: Stamp,
+    options: &PictureOptions,
+) -> io::Result<()> {
+    if let Some(Colour(color)) = options.bg {
+        let gain = format.gain(&options.display);
+        make_opaque(&mut frame, stamp.background, color.map(|channel| channel / gain));
+    }
+    if format == OutputFormat::Exr {
+        let precision = if options.float { Precision::Float } else { Precision::Half };
+        return ExrFile::from_frame(&frame, stamp, precision).write(output);
+    }
+    encode_display(output, format, &frame, stamp.background, options.bg.is_some(), &options.display)
+}
+
+/// Fills what is open with a colour in the place of `before`, which is behind the picture so far.
+fn make_opaque(frame: &mut Frame, before: [f32; 3], color: [f32; 3]) {
+    for pixel in &mut frame.color {
+        let open = 1.0 - pixel[3];
+        for channel in 0..3 {
+            pixel[channel] += open * (color[channel] - before[channel]);
+        }
+        pixel[3] = 1.0;
+    }
+}
+
 pub(in crate::commands) fn write_exr(path: &Path, file: ExrFile) -> Result<(), CliError> {
     write_atomically(path, |output| file.write(output))
         .map_err(|error| CliError::writing(&path.display().to_string(), &error))
 }
 
-pub(in crate::commands) fn write_png(
+/// Writes a PNG or JPEG.
+pub(in crate::commands) fn write_display(
     path: &Path,
+    format: OutputFormat,
     frame: &Frame,
-    options: &PngOptions,
+    background: [f32; 3],
+    options: &DisplayOptions,
 ) -> Result<(), CliError> {
-    let (width, height) = (frame.window.width(), frame.window.height());
-    write_atomically(path, |output| encode_png(output, &frame.color, width, height, options))
+    write_atomically(path, |output| encode_display(output, format, frame, background, false, options))
         .map_err(|error| CliError::writing(&path.display().to_string(), &error))
+}
+
+fn encode_display(
+    output: impl Write,
+    format: OutputFormat,
+    frame: &Frame,
+    background: [f32; 3],
+    opaque: bool,
+    options: &DisplayOptions,
+) -> io::Result<()> {
+    let (width, height) = (frame.window.width(), frame.window.height());
+    let exposure_ev = options.exposure;
+    if format == OutputFormat::Jpeg {
+        let quality = options.quality.unwrap_or(JpegOptions::QUALITY);
+        return encode_jpeg(output, &frame.color, width, height, &JpegOptions { exposure_ev, quality });
+    }
+    let png = PngOptions { exposure_ev, background, opaque, bits: options.bits.unwrap_or_default() };
+    encode_png(output, &frame.color, width, height, &png)
 }

@@ -2,17 +2,13 @@
 
 use super::layers::layers;
 use crate::error::CliError;
-use crate::image_io::{LayerKind, PixelRect, Precision, Stamp};
+use crate::image_io::{LayerKind, PixelRect, Stamp};
 use crate::job::RenderJob;
 use crate::memory;
 use crate::options::RenderOptions;
 use crate::scene::Scene;
 use std::hash::Hasher as _;
 use twox_hash::XxHash3_64;
-
-pub(super) fn precision(options: &RenderOptions) -> Precision {
-    if options.picture.float { Precision::Float } else { Precision::Half }
-}
 
 /// What is to be drawn.
 pub(super) fn job(scene: &Scene, options: &RenderOptions) -> Result<RenderJob, CliError> {
@@ -21,15 +17,19 @@ pub(super) fn job(scene: &Scene, options: &RenderOptions) -> Result<RenderJob, C
     Ok(RenderJob { region, window, layers: layers(scene, &options.layers)? })
 }
 
+/// Numbers of a pixel: colour, depth and those of layers.
+pub(super) fn planes(layers: &[LayerKind]) -> usize {
+    5 + layers.iter().map(|layer| layer.channels(&[]).len()).sum::<usize>()
+}
+
 /// Refuses a picture that memory cannot hold, before anything is computed.
 pub(super) fn check_memory(
     options: &RenderOptions,
     window: PixelRect,
     layers: &[LayerKind],
 ) -> Result<(), CliError> {
-    let planes: usize = 5 + layers.iter().map(|layer| layer.channels(&[]).len()).sum::<usize>();
     // Once as computed, and once more as it is written.
-    let needed = u128::from(window.pixels()) * planes as u128 * 4 * 2;
+    let needed = u128::from(window.pixels()) * planes(layers) as u128 * 4 * 2;
     let (width, height) = (window.width(), window.height());
     let fits = memory::check(needed, || format!("{width}×{height} pixels take"));
     fits.map_err(|error| match options.camera.size {
@@ -57,7 +57,7 @@ pub(super) fn stamp(scene: &Scene, fingerprint: u64, job: &RenderJob, options: &
         hash.write(channel.as_bytes());
         hash.write(b" ");
     }
-    hash.write(&[u8::from(options.picture.float)]);
+    hash.write(&[u8::from(options.picture.float), u8::from(options.picture.bg.is_some())]);
     Stamp {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         fingerprint: hash.finish(),

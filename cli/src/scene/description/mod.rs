@@ -1,6 +1,7 @@
 //! A scene file, parsed and checked without opening any file that it names.
 
 mod camera;
+mod image;
 mod lights;
 mod materials;
 mod objects;
@@ -9,6 +10,7 @@ mod render;
 
 pub(crate) use camera::view_fault;
 pub use camera::{CameraDescription, DEFAULT_FOV_DEG};
+pub use image::{DEFAULT_SIZE, ImageDescription};
 pub use lights::LightDescription;
 pub use materials::{DEFAULT_ALBEDO, MaterialDescription, SurroundingsDescription, TextureReference};
 pub use objects::ObjectDescription;
@@ -19,9 +21,6 @@ use super::text::{Document, Format, Span, Table};
 use crate::input_error::InputError;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
-
-/// Width and height of a picture whose scene does not say.
-pub const DEFAULT_SIZE: [u32; 2] = [960, 540];
 
 /// Longest side of a picture: what EXR and PNG viewers take, and far below what their headers could hold.
 pub const LARGEST_SIDE: u32 = 1_000_000;
@@ -60,12 +59,8 @@ pub struct Description {
     pub camera: CameraDescription,
     /// Where the camera moves, if it does.
     pub camera_path: Option<CameraPath>,
-    /// Width and height.
-    pub size: [u32; 2],
-    /// Linear colour behind everything.
-    pub background: Vec3,
-    /// Picture behind everything.
-    pub environment: Option<FileReference>,
+    /// The picture's size and what is behind everything.
+    pub image: ImageDescription,
     /// How to draw.
     pub render: RenderDescription,
     /// The objects.
@@ -100,51 +95,15 @@ impl Description {
     pub fn new(document: Document) -> Result<Self, InputError> {
         let mut root = Table::new(&document, document.root(), "")?;
         let (camera, camera_path) = CameraDescription::read(&mut root)?;
-        let (size, background, environment) = read_image(&mut root)?;
+        let image = ImageDescription::read(&mut root)?;
         let render = RenderDescription::read(&mut root)?;
         let objects = objects::read_all(&mut root)?;
         let lights = lights::read_all(&mut root)?;
         let materials = materials::read_all(&mut root)?;
         let ambient = read_ambient(&mut root)?;
         root.finish()?;
-        Ok(Self {
-            camera,
-            camera_path,
-            size,
-            background,
-            environment,
-            render,
-            objects,
-            lights,
-            materials,
-            ambient,
-            document,
-        })
+        Ok(Self { camera, camera_path, image, render, objects, lights, materials, ambient, document })
     }
-}
-
-type Image = ([u32; 2], Vec3, Option<FileReference>);
-
-fn read_image(root: &mut Table<'_>) -> Result<Image, InputError> {
-    let Some(mut table) = root.table("image")? else { return Ok((DEFAULT_SIZE, Vec3::ZERO, None)) };
-    let size = match table.numbers::<2>("size")? {
-        None => DEFAULT_SIZE,
-        Some(size) => {
-            let fits = |n: f64| n.fract() == 0.0 && (1.0..=f64::from(LARGEST_SIDE)).contains(&n);
-            if !size.iter().all(|&n| fits(n)) {
-                let [w, h] = size;
-                let message = format!(
-                    "`image.size` is [{w}, {h}]; width and height must be whole numbers from 1 to {LARGEST_SIDE}"
-                );
-                return Err(table.error("size", message));
-            }
-            size.map(|n| n as u32)
-        }
-    };
-    let background = table.color("background")?.unwrap_or(Vec3::ZERO);
-    let environment = file(&mut table, "environment")?;
-    table.finish()?;
-    Ok((size, background, environment))
 }
 
 /// Light that does not come straight from lights.

@@ -93,6 +93,11 @@ impl Document {
         &self.origins[0].name
     }
 
+    /// Name of the file or option that a place lies in.
+    pub fn origin(&self, span: Span) -> &str {
+        &self.origins[span.origin].name
+    }
+
     /// An error about a place in one of the texts.
     pub fn error(&self, span: Span, message: impl Into<String>) -> InputError {
         let origin = &self.origins[span.origin];
