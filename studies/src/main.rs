@@ -21,7 +21,7 @@ use common::report::Outcome;
 /// Name, what it measures, and the study itself.
 type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
 
-const STUDIES: [Study; 11] = [
+const STUDIES: [Study; 12] = [
     ("dice", "areas of a triangle in the cells of a grid", run_dice),
     ("micropoint", "pictures against point sampling; foliage; shadows across texels", micropoint::run),
     ("shadow", "shadows against a shadow map, area lights against samples", shadow::run),
