@@ -95,7 +95,13 @@ fn sites() -> Vec<Site> {
         let scene = from_data("scenes/sponza-dabrovic/sponza.obj", 1.0, camera, &format!("{SUN}{lamp}"))?;
         Some(Site { name: "Sponza", scene, candidates: [20, 8, 10], ..site })
     });
-    let sibenik = Site::sibenik().map(|site| Site { name: "Šibenik", candidates: [20, 8, 10], ..site });
+    let sibenik = Site::sibenik().and_then(|site| {
+        let camera = "eye = [30, 6, -3]\ntarget = [-5, 4.5, 1]";
+        let lights = "[[light]]\ntype = \"directional\"\ndirection = [-0.35, -1, 0.6]\nirradiance = [3.2, 2.9, 2.4]\n\
+                      [[light]]\ntype = \"point\"\nposition = [12.5, 8, 2.5]\nintensity = [150, 125, 100]\n";
+        let scene = from_data("scenes/sibenik/sibenik.obj", 0.05, camera, lights)?;
+        Some(Site { name: "Šibenik", scene, candidates: [20, 8, 10], ..site })
+    });
     let mut sites = vec![rooms];
     sites.extend(sponza);
     sites.extend(sibenik);
