@@ -143,7 +143,11 @@ pub(crate) fn measure(folder: Option<&Path>) -> Result<String, Fault> {
 
 /// Measures and writes `together.md`.
 pub(crate) fn run(out_dir: &Path) -> Outcome {
-    let text = format!("# Light between surfaces, in whole pictures\n\n{}\n{}", machine(), measure(None)?);
+    let table = measure(None)?;
+    let text = format!(
+        "# Light between surfaces, in whole pictures\n\n`cargo run --release -p studies -- together` made this ({}).\n\n{table}",
+        machine()
+    );
     write(out_dir, "together.md", &text)?;
     Ok(true)
 }
