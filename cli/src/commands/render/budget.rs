@@ -14,7 +14,7 @@ use crate::error::CliError;
 use crate::image_io::Frame;
 use crate::job::{RenderJob, Watch};
 use crate::options::RenderOptions;
-use crate::scene::LoadedScene;
+use crate::scene::{LoadedScene, Scene};
 use pointillist_render::{DrawOptions, Monitor, PixelRect, Prepared, RenderError};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -50,26 +50,9 @@ pub(super) fn draw(
     // Loading is part of the time.
     let left_s = || seconds - writing_s - report.stats.elapsed().as_secs_f64();
     let prepared = Prepared::new(scene, &watch).map_err(failed)?;
-    let layers = || job.layers.clone();
-    let (mut best, mut drawn_at) = (None, 0);
-    let mut full_s = f64::INFINITY;
-    for (step, &times) in COARSE.iter().enumerate() {
-        let fits = step == 0 || (full_s * CAUTION > left_s() && full_s / f64::from(times * times) < left_s());
-        if !fits {
-            continue;
-        }
-        let size = [scene.image.width, scene.image.height].map(|n| n.div_ceil(times));
-        let view = scene.camera.view(size).map_err(|error| failed(error.into()))?;
-        let start = Instant::now();
-        let window = shrunk(job.window, times);
-        let options = DrawOptions::DEFAULT.with_window(window).with_layers(layers());
-        best = Some(prepared.draw_view(view, &options, &report.stats).map_err(failed)?);
-        drawn_at = times;
-        full_s = start.elapsed().as_secs_f64() * f64::from(times * times);
-    }
-    let coarse = best.expect("the first step always fits");
+    let (coarse, drawn_at) = coarse_picture(&prepared, scene, job, &left_s, report)?;
     let mut picture = prepared
-        .begin(&DrawOptions::DEFAULT.with_window(job.window).with_layers(layers()))
+        .begin(&DrawOptions::DEFAULT.with_window(job.window).with_layers(job.layers.clone()))
         .map_err(failed)?;
     let until = Instant::now() + Duration::from_secs_f64(left_s().max(0.0));
     match prepared.continue_view(&mut picture, &Deadline { watch, until }) {
@@ -112,6 +95,32 @@ pub(super) fn draw(
         ));
     }
     Ok(())
+}
+
+/// The finest of the coarser pictures that there is time for, and by how much it is coarser.
+fn coarse_picture(
+    prepared: &Prepared<'_>,
+    scene: &Scene,
+    job: &RenderJob,
+    left_s: &impl Fn() -> f64,
+    report: &Report<'_>,
+) -> Result<(Frame, u32), CliError> {
+    let (mut best, mut full_s) = (None, f64::INFINITY);
+    for times in COARSE {
+        let fits =
+            best.is_none() || (full_s * CAUTION > left_s() && full_s / f64::from(times * times) < left_s());
+        if !fits {
+            continue;
+        }
+        let size = [scene.image.width, scene.image.height].map(|n| n.div_ceil(times));
+        let view = scene.camera.view(size).map_err(|error| failed(error.into()))?;
+        let start = Instant::now();
+        let window = shrunk(job.window, times);
+        let options = DrawOptions::DEFAULT.with_window(window).with_layers(job.layers.clone());
+        best = Some((prepared.draw_view(view, &options, &report.stats).map_err(failed)?, times));
+        full_s = start.elapsed().as_secs_f64() * f64::from(times * times);
+    }
+    Ok(best.expect("the first always fits"))
 }
 
 /// The pixels of a coarser picture that a window meets.
