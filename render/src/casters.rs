@@ -4,12 +4,13 @@ use crate::scene::Scene;
 use crate::shaft::{Box3, Shaft};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Geometry, MicropointError};
+use std::sync::Arc;
 
 /// The geometry that casts the shadows of some colours of light.
 pub(crate) struct Casters {
     /// 1 for the channels that it counts for, 0 for the others.
     pub(crate) channels: Vec3,
-    pub(crate) geometry: Geometry,
+    pub(crate) geometry: Arc<Geometry>,
 }
 
 /// For which tiles some casters are asked, where something clear lets colours pass differently.
@@ -99,7 +100,7 @@ pub(crate) fn clear_casters(scene: &Scene, geometry: &Geometry) -> Result<Vec<Ca
         let surfaces = geometry.surfaces();
         // Each material has two surfaces.
         let opacity = |surface: usize| surfaces[surface].opacity * (1.0 - passes[surface / 2]);
-        casters.push(Casters { channels, geometry: geometry.with_opacities(opacity)? });
+        casters.push(Casters { channels, geometry: Arc::new(geometry.with_opacities(opacity)?) });
     }
     Ok(casters)
 }

@@ -132,7 +132,7 @@ fn looks(details: &Details, s: &ShadedSurface, coat: Vec3) -> Looks {
     let is_ggx = s.material.model == Model::Ggx;
     let mirrored = above(mirror(s.to_eye, s.normal), s.face_normal);
     let tint = details.reflection;
-    let Some(glass) = details.transmission else {
+    let Some(glass) = details.transmission.filter(|t| !t.is_straight()) else {
         let weight = if is_ggx { coat * tint.unwrap_or(Vec3::ONE) } else { tint.unwrap_or(Vec3::ZERO) };
         return [(mirrored, weight), (mirrored, Vec3::ZERO)];
     };

@@ -8,10 +8,10 @@ use crate::error::RenderError;
 use crate::frame::{Frame, LayerKind};
 use crate::lights::{SceneLights, scene_lights};
 use crate::monitor::{Monitor, go_on};
+use crate::painter::{Painter, PainterMemory};
 use crate::partial::PartialFrame;
 use crate::prepared::Prepared;
 use crate::shader::{Glow, Shader, Style};
-use crate::shading::ShaderScratch;
 use pointillist_micropoint::{DepthRange, Renderer, TileCounts};
 use pointillist_parallel::Pool;
 use pointillist_shadow::{AreaCounts, ShadowCounts};
@@ -165,7 +165,11 @@ impl Prepared<'_> {
         if style.economy.is_some() {
             micropoints = micropoints.with_cells_under_masks(1);
         }
-        let renderer = Renderer::new(&self.geometry, &*self.surfaces, view, micropoints)?;
+        let sights = self.sights.iter();
+        let renderers = sights
+            .map(|sight| Renderer::new(&sight.geometry, &*self.surfaces, view, micropoints))
+            .collect::<Result<Vec<_>, _>>()?;
+        let renderer = &renderers[0];
         monitor.start_lap();
         let lights = if style.lights {
             let sampled = style.economy.is_some_and(|economy| economy.samples_areas);
@@ -176,22 +180,30 @@ impl Prepared<'_> {
         monitor.lap("lights");
         let environment = (*self.environment).as_ref().filter(|_| !style.hides_environment);
         let background = Background::new(self.scene, environment, &view);
-        let shader = Shader::new(self, &lights, &view, style);
+        let shader_of = |sight| Shader::new(self, &lights, &view, style, sight);
+        let shaders: Vec<Shader<'_>> = self.sights.iter().map(shader_of).collect();
         let layers = picture.layers().to_vec();
+        let painter = Painter {
+            sights: &self.sights,
+            renderers: &renderers,
+            shaders: &shaders,
+            background: &background,
+            layers: &layers,
+            monitor,
+        };
         let canvas = Mutex::new(picture);
         let totals = Mutex::new((TileCounts::default(), ShadowCounts::default(), AreaCounts::default()));
-        let memory = Pool::<ShaderScratch>::default();
+        let memory = Pool::<PainterMemory>::default();
         renderer.for_each_rect(
             &missing,
             || monitor.start_lap(),
             |(), tile| {
                 monitor.lap("visibility");
-                memory.with(|scratch| {
-                    let pixels = shader.shade(tile, &background, &layers, scratch, monitor);
-                    lock(&canvas).put(tile.rect(), pixels);
+                memory.with(|memory| {
+                    lock(&canvas).put(tile.rect(), painter.paint(tile, memory));
+                    let (visible, shadow, whole) = memory.take_counts();
                     let mut totals = lock(&totals);
-                    totals.0 += tile.counts();
-                    let (shadow, whole) = scratch.take_counts();
+                    totals.0 += visible;
                     totals.1 += shadow;
                     totals.2 += whole;
                 });

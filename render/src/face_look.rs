@@ -51,6 +51,7 @@ impl Shader<'_> {
         if !glows {
             material.emission = Vec3::ZERO;
         }
+        material.diffuse *= Vec3::ONE - described.details.passes_straight();
         let is_flat = self.scene.render.shading == Interpolation::Flat;
         FaceLook {
             normal: if face.front { normal } else { -normal }.as_vec3(),

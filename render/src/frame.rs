@@ -13,7 +13,8 @@ pub enum LayerKind {
     Position,
     /// `albedo.R G B`: diffuse albedo, times coverage.
     Albedo,
-    /// `direct.R G B`: radiance that surfaces reflect of the lights, times coverage.
+    /// `direct.R G B`: radiance that surfaces reflect of the lights, times coverage. What lies behind clear surfaces counts as far as they let it
+    /// pass, here and in the two colours around.
     Direct,
     /// `indirect.R G B`: radiance that surfaces reflect, mirror or transmit of ambient light and surroundings, times coverage.
     Indirect,
@@ -42,7 +43,7 @@ pub struct Frame {
     /// What of it is here.
     pub window: PixelRect,
     /// R G B A, row-major over the window. R G B is linear radiance, what is seen of the background included; A is the share of the
-    /// pixel that surfaces cover. With a black background, R G B is therefore premultiplied by A. Otherwise, subtract `(1 − A) ·
+    /// pixel that surfaces cover; where they let colours pass differently, the mean over the colours. With a black background, R G B is therefore premultiplied by A. Otherwise, subtract `(1 − A) ·
     /// background` before the picture is composited over another one.
     pub color: Vec<[f32; 4]>,
     /// Depth along the view axis; +∞ where nothing is. Empty if it was not computed.
@@ -65,6 +66,18 @@ impl LayerKind {
             Self::Lit(light) => vec![format!("lit.{}", lights.get(light).copied().unwrap_or("light"))],
             Self::Id => vec!["id".to_owned()],
             Self::Back => vec!["back".to_owned()],
+        }
+    }
+
+    /// Whether it holds a red, a green and a blue plane.
+    pub(crate) fn is_color(self) -> bool {
+        matches!(self, Self::Albedo | Self::Direct | Self::Indirect)
+    }
+
+    pub(crate) fn plane_count(self) -> usize {
+        match self {
+            Self::Normal | Self::Position | Self::Albedo | Self::Direct | Self::Indirect => 3,
+            Self::Lit(_) | Self::Id | Self::Back => 1,
         }
     }
 }

@@ -23,8 +23,9 @@ impl Shader<'_> {
         for (m, p) in tile.points().iter().zip(points) {
             let color = p.material.emission + p.indirect + p.direct;
             let s = &mut sums[index(&rect, m)];
+            let weight = self.light_weight(tile, m);
             for (c, v) in color.to_array().into_iter().enumerate() {
-                s[c] += m.weight * f64::from(v);
+                s[c] += weight * f64::from(v);
             }
             s[3] += m.weight;
         }
@@ -59,25 +60,27 @@ impl Shader<'_> {
     ) {
         let rect = tile.rect();
         pixels.planes.clear();
-        let mean = |value: &dyn Fn(usize, &Point) -> Vec3, channels: usize| {
+        let sum = |value: &dyn Fn(usize, &Point) -> Vec3, weight: &dyn Fn(&Micropoint) -> f64, channels| {
             let mut planes = vec![vec![0.0; rect.pixels() as usize]; channels];
             for (i, (m, p)) in tile.points().iter().zip(points).enumerate() {
-                let value = value(i, p).to_array();
+                let (value, weight) = (value(i, p).to_array(), weight(m) as f32);
                 let pixel = index(&rect, m);
-                planes.iter_mut().zip(value).for_each(|(plane, v)| plane[pixel] += m.weight as f32 * v);
+                planes.iter_mut().zip(value).for_each(|(plane, v)| plane[pixel] += weight * v);
             }
             planes
         };
+        let light = |value: &dyn Fn(usize, &Point) -> Vec3| sum(value, &|m| self.light_weight(tile, m), 3);
+        let share = |value: &dyn Fn(usize) -> f32| sum(&|i, _| Vec3::splat(value(i)), &|m| m.weight, 1);
         for layer in layers {
             let planes = match layer {
-                LayerKind::Albedo => mean(&|_, p| p.material.diffuse, 3),
-                LayerKind::Direct => mean(&|_, p| p.direct, 3),
-                LayerKind::Indirect => mean(&|_, p| p.indirect, 3),
+                LayerKind::Albedo => light(&|_, p| p.material.diffuse),
+                LayerKind::Direct => light(&|_, p| p.direct),
+                LayerKind::Indirect => light(&|_, p| p.indirect),
                 LayerKind::Back => {
                     let back = |i: usize| self.shows_back(&tile.faces()[tile.points()[i].face as usize]);
-                    mean(&|i, _| Vec3::splat(f32::from(u8::from(back(i)))), 1)
+                    share(&|i| f32::from(u8::from(back(i))))
                 }
-                LayerKind::Lit(light) => mean(&|i, _| Vec3::splat(lit[light][i] as f32), 1),
+                LayerKind::Lit(light) => share(&|i| lit[light][i] as f32),
                 LayerKind::Normal | LayerKind::Position | LayerKind::Id => {
                     let value = |i: usize| self.geometry_value(*layer, tile, &points[i], &tile.points()[i]);
                     let values = heaviest(tile).into_iter().map(|i| i.map_or(Vec3::ZERO, value));
@@ -88,6 +91,15 @@ impl Shader<'_> {
             };
             pixels.planes.extend(planes);
         }
+    }
+
+    /// What light from a micropoint counts in its pixel: its visible share, of a clear surface without what is seen through it.
+    fn light_weight(&self, tile: &Tile, m: &Micropoint) -> f64 {
+        if self.own_light.is_empty() {
+            return m.weight;
+        }
+        let triangle = tile.faces()[m.face as usize].id as usize;
+        m.weight * self.own_light[self.scene.mesh.material_of[triangle] as usize]
     }
 
     fn geometry_value(&self, layer: LayerKind, tile: &Tile, p: &Point, m: &Micropoint) -> Vec3 {

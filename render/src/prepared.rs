@@ -8,6 +8,7 @@ use crate::error::RenderError;
 use crate::monitor::{Monitor, go_on, stage};
 use crate::reflections::Reflections;
 use crate::scene::{AmbientLight, Scene};
+use crate::see_through::{Sight, sights};
 use crate::surfaces::Surfaces;
 use glam::Vec3;
 use pointillist_micropoint::{Geometry, TexelSums};
@@ -21,6 +22,8 @@ pub struct Prepared<'a> {
     /// What casts shadows in the place of `geometry`, if anything is clear.
     pub(crate) clear_casters: Arc<Vec<Casters>>,
     pub(crate) clear_boxes: Arc<ClearBoxes>,
+    /// What the eye sees: one sight, or more if something that it sees through is coloured.
+    pub(crate) sights: Arc<Vec<Sight>>,
     /// Polygons of materials that light others.
     pub(crate) emitters: Arc<Vec<EmittingPolygon>>,
     pub(crate) environment: Arc<Option<TexelSums<3>>>,
@@ -72,7 +75,7 @@ impl<'a> Prepared<'a> {
             None => Surfaces::new(scene),
         })?;
         go_on(monitor)?;
-        let geometry = stage(monitor, "build", || surfaces.geometry(scene))?;
+        let geometry = Arc::new(stage(monitor, "build", || surfaces.geometry(scene))?);
         go_on(monitor)?;
         let environment = match maps {
             Some(maps) => maps.environment.clone(),
@@ -83,6 +86,7 @@ impl<'a> Prepared<'a> {
             None => Reflections::new(scene, monitor)?,
         };
         let clear_casters = clear_casters(scene, &geometry)?;
+        let sights = Arc::new(sights(scene, &geometry, &clear_casters)?);
         let emitters = emitting_polygons(scene, |t| radiance_of_triangle(scene, &surfaces, t));
         monitor.count("triangles", geometry.triangle_count() as u64);
         monitor.count("triangles_of_solids", geometry.solid_triangle_count() as u64);
@@ -90,7 +94,8 @@ impl<'a> Prepared<'a> {
         Ok(Self {
             scene,
             surfaces: Arc::new(surfaces),
-            geometry: Arc::new(geometry),
+            geometry,
+            sights,
             clear_boxes: Arc::new(if clear_casters.len() > 1 {
                 ClearBoxes::new(scene)
             } else {
@@ -105,12 +110,15 @@ impl<'a> Prepared<'a> {
 
     /// The same scene with other triangles in view.
     pub(crate) fn with_geometry(&self, geometry: Geometry) -> Result<Self, RenderError> {
+        let geometry = Arc::new(geometry);
+        let clear_casters = clear_casters(self.scene, &geometry)?;
         Ok(Self {
             scene: self.scene,
             surfaces: self.surfaces.clone(),
-            clear_casters: Arc::new(clear_casters(self.scene, &geometry)?),
+            sights: Arc::new(sights(self.scene, &geometry, &clear_casters)?),
+            clear_casters: Arc::new(clear_casters),
             clear_boxes: self.clear_boxes.clone(),
-            geometry: Arc::new(geometry),
+            geometry,
             emitters: self.emitters.clone(),
             environment: self.environment.clone(),
             reflections: self.reflections.clone(),
@@ -132,6 +140,7 @@ impl<'a> Prepared<'a> {
             scene,
             surfaces: self.surfaces.clone(),
             geometry: self.geometry.clone(),
+            sights: self.sights.clone(),
             clear_casters: self.clear_casters.clone(),
             clear_boxes: self.clear_boxes.clone(),
             emitters: self.emitters.clone(),
@@ -145,12 +154,12 @@ impl<'a> Prepared<'a> {
         let clear = &*self.clear_casters;
         let (serves_all, occasion) = match &clear[..] {
             [] => (&*self.geometry, Occasion::Always),
-            [alike] => (&alike.geometry, Occasion::Always),
-            [first, ..] => (&first.geometry, Occasion::Untinted),
+            [alike] => (&*alike.geometry, Occasion::Always),
+            [first, ..] => (&*first.geometry, Occasion::Untinted),
         };
         let divided = clear.iter().filter(|_| clear.len() > 1);
         std::iter::once((Vec3::ONE, serves_all, occasion))
-            .chain(divided.map(|c| (c.channels, &c.geometry, Occasion::Tinted)))
+            .chain(divided.map(|c| (c.channels, &*c.geometry, Occasion::Tinted)))
     }
 
     /// The triangles.

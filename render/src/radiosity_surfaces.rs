@@ -100,10 +100,13 @@ fn look_of(material: &Material, mean: &dyn Fn(usize) -> Vec4) -> Look {
     let whole = |map: Option<usize>| map.map_or(Vec4::ONE, mean);
     let part = |map: Option<Map>| map.map_or(1.0, |map| map.channel.of(mean(map.texture)));
     let metallic = metallic.map_or(0.0, |m| (m * part(*metallic_map)).clamp(0.0, 1.0));
+    let passes = material.details.passes_straight();
     Look {
         albedo: material.surface.diffuse * whole(material.diffuse_map).truncate() * (1.0 - metallic),
         radiance: material.surface.emission * whole(emission_map.map(|map| map.texture)).truncate(),
-        opacity: material.surface.opacity * whole(material.opacity_map).w,
+        opacity: material.surface.opacity
+            * (1.0 - passes.element_sum() / 3.0)
+            * whole(material.opacity_map).w,
     }
 }
 

@@ -36,10 +36,11 @@ pub(crate) enum Mirrored<'a> {
     Scene(&'a SceneMap),
 }
 
-/// Whether a material mirrors anything or shows what is behind it.
+/// Whether a material mirrors or refracts anything.
 pub(crate) fn mirrors(material: &Material) -> bool {
     let details = &material.details;
-    material.surface.model == Model::Ggx || details.reflection.is_some() || details.transmission.is_some()
+    let refracts = details.transmission.is_some_and(|t| !t.is_straight());
+    material.surface.model == Model::Ggx || details.reflection.is_some() || refracts
 }
 
 /// Whether what it mirrors is blurred, by its roughness or by bumps that are smaller than a pixel.

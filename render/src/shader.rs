@@ -6,6 +6,7 @@ use crate::lights::SceneLights;
 use crate::prepared::Prepared;
 use crate::reflections::Reflections;
 use crate::scene::{NONE, Scene};
+use crate::see_through::Sight;
 use crate::shaft::Box3;
 use crate::surfaces::Surfaces;
 use glam::{DVec3, Vec3};
@@ -62,6 +63,8 @@ pub(crate) struct Shader<'a> {
     pub(crate) glow: Glow,
     pub(crate) eye: DVec3,
     pub(crate) forward: DVec3,
+    /// As [`Sight::own_light`].
+    pub(crate) own_light: &'a [f64],
 }
 
 /// Where a micropoint is.
@@ -128,6 +131,7 @@ impl<'a> Shader<'a> {
         lights: &'a SceneLights<'a>,
         view: &View,
         style: &Style<'a>,
+        sight: &'a Sight,
     ) -> Self {
         let Style { ambient, glow, economy, .. } = *style;
         Self {
@@ -141,6 +145,7 @@ impl<'a> Shader<'a> {
             glow,
             eye: view.eye(),
             forward: view.forward(),
+            own_light: &sight.own_light,
         }
     }
 

@@ -21,7 +21,6 @@ pub(crate) struct ShaderScratch {
     looks: FaceLooks,
     direct: DirectScratch,
     polygon: Vec<SurfacePoint>,
-    pixels: Pixels,
     hint: Hint,
 }
 
@@ -35,15 +34,16 @@ impl ShaderScratch {
 
 impl Shader<'_> {
     /// Shades a tile.
-    pub(crate) fn shade<'s>(
+    pub(crate) fn shade(
         &self,
         tile: &Tile,
         background: &Background<'_>,
         layers: &[LayerKind],
-        scratch: &'s mut ShaderScratch,
+        scratch: &mut ShaderScratch,
+        pixels: &mut Pixels,
         monitor: &dyn Monitor,
-    ) -> &'s Pixels {
-        let ShaderScratch { points, looks, direct, polygon, pixels, hint } = scratch;
+    ) {
+        let ShaderScratch { points, looks, direct, polygon, hint } = scratch;
         points.clear();
         looks.start(tile.faces().len());
         points.extend(tile.points().iter().map(|m| {
@@ -72,7 +72,6 @@ impl Shader<'_> {
         self.gather(tile, background, points, pixels);
         self.gather_layers(tile, layers, &lit, points, pixels);
         monitor.lap("shade");
-        pixels
     }
 
     /// The box around all that a tile sees, in the world.

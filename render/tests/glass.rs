@@ -137,3 +137,109 @@ fn asking_each_colour_only_where_glass_may_tint_it_changes_no_bit() {
         assert!(some.color == all.color, "{light:?}");
     }
 }
+
+/// Two coloured panes, one of them partly opaque, over a floor that glows, all larger than the picture. Seen from above, with a light that only
+/// the highlight of the upper pane shows.
+fn stack(upper: Vec3, lower: Vec3, opacity: f32, shine: f32) -> Scene {
+    let mut camera = Camera::perspective(dvec3(0.0, 5.0, 0.0), DVec3::ZERO, 1.0);
+    (camera.up, camera.projection) = (DVec3::NEG_Z, Projection::Orthographic { height: 0.2 });
+    let mut scene = Scene::new(camera, [3, 3]);
+    let floor = shade::Material::lambert(Vec3::ZERO).with_emission(Vec3::new(4.0, 2.0, 1.0));
+    let floor = scene.add_material(Material::new("floor", floor));
+    let mut glass = |name: &str, color: Vec3, surface: shade::Material| {
+        let mut details = Details::default();
+        details.transmission = Some(Transmission { color, index: 1.0 });
+        scene.add_material(Material::new(name, surface).with_details(details))
+    };
+    let matt = shade::Material::lambert(Vec3::ZERO);
+    let shiny = matt.with_specular(shade::Model::NormalizedBlinnPhong, Vec3::splat(shine), 20.0);
+    let panes = [
+        (floor, 0.0),
+        (glass("lower", lower, matt.with_opacity(opacity)), 1.0),
+        (glass("upper", upper, shiny), 2.0),
+    ];
+    for (material, y) in panes {
+        let corners = square(3.0, y, 0.0);
+        let part = Part::new("square", &corners, &[[0, 1, 2], [0, 2, 3]]).with_material(material);
+        scene.mesh.add(&part).unwrap();
+    }
+    let light = Light::Directional { direction: DVec3::NEG_Y, irradiance: Vec3::ONE };
+    scene.lights.push(LightSource::new("light", light));
+    scene
+}
+
+#[test]
+fn what_is_behind_shows_through_in_the_colours_of_all_panes() {
+    let glow = Vec3::new(4.0, 2.0, 1.0);
+    for (upper, lower) in [
+        (GLASS, Vec3::new(0.25, 0.5, 1.0)),
+        (Vec3::splat(0.5), Vec3::new(0.0, 1.0, 0.5)),
+        (Vec3::splat(0.5), Vec3::splat(0.25)),
+        (Vec3::X, Vec3::Y),
+        (Vec3::ONE, Vec3::ZERO),
+    ] {
+        for opacity in [1.0, 0.75] {
+            let frame = render(&stack(upper, lower, opacity, 0.0), &DrawOptions::DEFAULT, &()).unwrap();
+            let passes = upper * (Vec3::ONE - opacity * (Vec3::ONE - lower));
+            for c in &frame.color {
+                let seen = Vec3::new(c[0], c[1], c[2]);
+                assert!((seen - glow * passes).abs().max_element() < 1e-5, "{upper} {lower}: {seen}");
+                assert!((c[3] - 1.0).abs() < 1e-5, "{upper} {lower}: coverage {}", c[3]);
+            }
+        }
+    }
+}
+
+#[test]
+fn highlights_of_clear_surfaces_are_whole() {
+    let seen = |upper, shine| {
+        let options = DrawOptions::DEFAULT.with_layers(vec![LayerKind::Lit(0), LayerKind::Direct]);
+        let frame = render(&stack(upper, Vec3::ZERO, 1.0, shine), &options, &()).unwrap();
+        let direct = &frame.layers[1].planes;
+        assert!((0..3).all(|c| (direct[c][4] - frame.color[4][c]).abs() < 1e-6), "nothing behind is seen");
+        Vec3::new(frame.color[4][0], frame.color[4][1], frame.color[4][2])
+    };
+    let opaque = seen(Vec3::ZERO, 0.5);
+    assert!(opaque.min_element() > 0.1);
+    for clear in [GLASS, Vec3::splat(0.5), Vec3::ONE, Vec3::new(1.0, 0.5, 0.0)] {
+        assert!(
+            (seen(clear, 0.5) / opaque - 1.0).abs().max_element() < 1e-5,
+            "{clear}: {}",
+            seen(clear, 0.5)
+        );
+    }
+}
+
+#[test]
+fn the_rest_of_the_light_is_diffused() {
+    let mut scene = stack(GLASS, Vec3::ZERO, 1.0, 0.0);
+    scene.materials[2].surface.diffuse = Vec3::splat(0.8);
+    let c = render(&scene, &DrawOptions::DEFAULT, &()).unwrap().color[4];
+    let expected = 0.8 * (Vec3::ONE - GLASS) / std::f32::consts::PI;
+    assert!((Vec3::new(c[0], c[1], c[2]) - expected).abs().max_element() < 1e-5, "{c:?}");
+}
+
+/// A pane over part of a floor: what is drawn does not depend on which tiles know of a colour.
+#[test]
+fn windows_onto_glass_agree_with_the_whole_picture() {
+    let scene = {
+        let camera = Camera::perspective(dvec3(0.0, 6.0, 9.0), DVec3::ZERO, 0.8);
+        let mut scene = stack(GLASS, Vec3::new(0.25, 0.5, 1.0), 0.5, 0.5);
+        (scene.camera, scene.image.width, scene.image.height) = (camera, 70, 50);
+        scene
+    };
+    let layers = vec![LayerKind::Direct, LayerKind::Lit(0), LayerKind::Id];
+    let whole = render(&scene, &DrawOptions::DEFAULT.with_layers(layers.clone()), &()).unwrap();
+    let window = pointillist_render::PixelRect { x0: 11, y0: 7, x1: 60, y1: 43 };
+    let part = render(&scene, &DrawOptions::DEFAULT.with_layers(layers).with_window(window), &()).unwrap();
+    let (width, own) = (70, window.width() as usize);
+    for (i, color) in part.color.iter().enumerate() {
+        let at = (window.y0 as usize + i / own) * width + window.x0 as usize + i % own;
+        assert_eq!(*color, whole.color[at]);
+        for (a, b) in part.layers.iter().zip(&whole.layers) {
+            assert!(a.planes.iter().zip(&b.planes).all(|(a, b)| a[i] == b[at]));
+        }
+    }
+    let tinted = whole.color.iter().filter(|c| (c[0] - 4.0 * c[2]).abs() > 1e-3).count();
+    assert!(tinted > 500, "{tinted}");
+}

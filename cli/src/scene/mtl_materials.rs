@@ -1,7 +1,7 @@
 //! From the keys of an MTL material to a material of the renderer.
 //!
 //! `illum` decides which of them count: 0 and 1 are matt, 2 (or none) has the highlight of `Ks` and `Ns`, 3 and above
-//! mirror their surroundings by `Ks`, too, and 4, 6, 7 and 9 let light through by `Tf` and `Ni` if `Tf` is given. `Pr` or `Pm` make
+//! mirror their surroundings by `Ks`, too, and 4, 6, 7 and 9 let light through by `Tf` if that is given, 6 and 7 by `Ni`, too. `Pr` or `Pm` make
 //! the surface GGX whatever `illum` says.
 
 use super::mtl_library::Library;
@@ -99,11 +99,22 @@ fn surface(material: &MtlMaterial, details: &mut Details) -> shade::Material {
     if illumination >= 3 {
         details.reflection = Some(specular).filter(|&s| s != Vec3::ZERO);
     }
-    if let (4 | 6 | 7 | 9, Some(color)) = (illumination, material.transmission) {
-        let index = material.refraction_index.filter(|&n| n > 0.0).unwrap_or(GLASS);
-        details.transmission = Some(Transmission { color, index });
-    }
+    details.transmission = transmission(material, illumination);
     surface
+}
+
+/// `Tf`, where `illum` asks for glass: 4 and 9 are passed straight, 6 and 7 refract. Some programs write `illum 4` and `Tf 1 1 1` for every
+/// material, and mean that `d` alone says what passes.
+fn transmission(material: &MtlMaterial, illumination: u8) -> Option<Transmission> {
+    let color = material.transmission?.clamp(Vec3::ZERO, Vec3::ONE);
+    match illumination {
+        4 | 9 if color != Vec3::ONE => Some(Transmission { color, index: 1.0 }),
+        6 | 7 => {
+            let index = material.refraction_index.filter(|&n| n > 0.0).unwrap_or(GLASS);
+            Some(Transmission { color, index })
+        }
+        _ => None,
+    }
 }
 
 /// `refl`: a map of the surroundings of the material's own.

@@ -98,9 +98,10 @@ impl Finder<'_> {
             report("color_space", "the material has no map of colours");
         }
         let is_ggx = m.surface.model == Model::Ggx;
-        let mirrors = is_ggx || m.reflection.is_some() || m.transmission.is_some();
+        let refracts = m.transmission.is_some_and(|t| !t.is_straight());
+        let mirrors = is_ggx || m.reflection.is_some() || refracts;
         if m.surroundings != SurroundingsDescription::Scene && !mirrors {
-            report("environment", "the material neither mirrors nor transmits");
+            report("environment", "the material neither mirrors nor refracts");
         }
         if m.merl.is_some() {
             for key in ["diffuse", "specular", "shininess"] {

@@ -109,8 +109,25 @@ pub enum BumpHeight {
 pub struct Transmission {
     /// The share of each colour that passes.
     pub color: Vec3,
-    /// Refraction index of what is behind the front; 1 for a thin sheet that does not bend light.
+    /// Refraction index of what is behind the front. 1 is a thin sheet, which light passes straight: what is behind is seen through it. With
+    /// any other, the surroundings are seen, refracted once.
     pub index: f32,
+}
+
+impl Transmission {
+    /// Whether what is behind is seen through it.
+    #[must_use]
+    pub fn is_straight(&self) -> bool {
+        self.index == 1.0
+    }
+}
+
+impl Details {
+    /// The share of each colour that passes straight: 0 where the surface is not clear, or refracts.
+    #[must_use]
+    pub fn passes_straight(&self) -> Vec3 {
+        self.transmission.filter(Transmission::is_straight).map_or(Vec3::ZERO, |t| t.color)
+    }
 }
 
 /// Where mirrored light comes from.

@@ -100,8 +100,8 @@ const KINDS_OF_UV: [(&str, AutoUv); 4] = [
 
 /// Roughness of a GGX surface that does not say.
 const DEFAULT_ROUGHNESS: f64 = 0.5;
-/// Refraction index of a surface that does not say: glass.
-const DEFAULT_INDEX: f64 = 1.5;
+/// Refraction index of a surface that does not say: a thin sheet, which light passes straight.
+const DEFAULT_INDEX: f64 = 1.0;
 
 pub(super) fn read_all(root: &mut Table<'_>) -> Result<Vec<(String, MaterialDescription)>, InputError> {
     let tables = root.named_tables("material")?;
@@ -262,6 +262,10 @@ fn color_or_number(table: &mut Table<'_>, key: &'static str) -> Result<Option<Ve
 
 fn read_transmission(table: &mut Table<'_>) -> Result<Option<Transmission>, InputError> {
     let color = color_or_number(table, "transmission")?;
+    if color.is_some_and(|c| c.max_element() > 1.0) {
+        return Err(table
+            .error("transmission", "`transmission` must be 0 to 1: no more passes than arrives".to_owned()));
+    }
     let index = table.number_where("refraction_index", "more than 0", |n| n > 0.0 && n < 1e6)?;
     match color {
         None if index.is_some() => Err(unused(table, "refraction_index", "it needs `transmission`")),
