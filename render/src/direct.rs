@@ -86,7 +86,7 @@ impl Shader<'_> {
             monitor.lap("shadow");
         }
         let samples = f64::from(self.scene.lights[light.light].light.samples());
-        let share = share(light.channels) / samples;
+        let share = share(light.channels * self.channels) / samples;
         for a in &direct.arrivals {
             let p = &mut points[a.point as usize];
             p.direct += a.radiance * a.fraction as f32;

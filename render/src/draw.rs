@@ -12,6 +12,7 @@ use crate::painter::{Painter, PainterMemory};
 use crate::partial::PartialFrame;
 use crate::prepared::Prepared;
 use crate::shader::{Glow, Shader, Style};
+use glam::Vec3;
 use pointillist_micropoint::{DepthRange, Renderer, TileCounts};
 use pointillist_parallel::Pool;
 use pointillist_shadow::{AreaCounts, ShadowCounts};
@@ -180,13 +181,14 @@ impl Prepared<'_> {
         monitor.lap("lights");
         let environment = (*self.environment).as_ref().filter(|_| !style.hides_environment);
         let background = Background::new(self.scene, environment, &view);
-        let shader_of = |sight| Shader::new(self, &lights, &view, style, sight);
-        let shaders: Vec<Shader<'_>> = self.sights.iter().map(shader_of).collect();
+        let shader = |sight, channels| Shader::new(self, &lights, &view, style, (sight, channels));
+        let by_sight: Vec<Shader<'_>> = self.sights.iter().map(|s| shader(s, s.channels)).collect();
         let layers = picture.layers().to_vec();
         let painter = Painter {
             sights: &self.sights,
             renderers: &renderers,
-            shaders: &shaders,
+            by_sight: &by_sight,
+            all_colors: shader(&self.sights[0], Vec3::ONE),
             background: &background,
             layers: &layers,
             monitor,

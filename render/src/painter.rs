@@ -11,11 +11,15 @@ use crate::shading::ShaderScratch;
 use pointillist_micropoint::{Renderer, Tile, TileCounts};
 use pointillist_shadow::{AreaCounts, ShadowCounts};
 
-/// What all tiles of a picture share. Renderers and shaders are those of the sights, in their order.
+/// What all tiles of a picture share.
 pub(crate) struct Painter<'a> {
     pub(crate) sights: &'a [Sight],
+    /// For each sight.
     pub(crate) renderers: &'a [Renderer<'a>],
-    pub(crate) shaders: &'a [Shader<'a>],
+    /// For each sight, its channels.
+    pub(crate) by_sight: &'a [Shader<'a>],
+    /// For tiles that all sights see alike.
+    pub(crate) all_colors: Shader<'a>,
     pub(crate) background: &'a Background<'a>,
     pub(crate) layers: &'a [LayerKind],
     pub(crate) monitor: &'a dyn Monitor,
@@ -40,22 +44,24 @@ impl PainterMemory {
 }
 
 impl Painter<'_> {
-    /// The pixels of a tile that the first renderer made. Depth and layers without colours are as the first sight has them.
+    /// The pixels of a tile that the first renderer made. Depth, and layers with neither colours nor shares of light, are as the first sight
+    /// has them.
     pub(crate) fn paint<'m>(&self, tile: &Tile, memory: &'m mut PainterMemory) -> &'m Pixels {
         let PainterMemory { scratch, pixels, other_tile, other_pixels, counts } = memory;
-        self.shaders[0].shade(tile, self.background, self.layers, scratch, pixels, self.monitor);
+        let is_tinted = self.sights.len() > 1 && shows_tint(self.all_colors.scene, tile);
+        let first = if is_tinted { &self.by_sight[0] } else { &self.all_colors };
+        first.shade(tile, self.background, self.layers, scratch, pixels, self.monitor);
         *counts += tile.counts();
-        if self.sights.len() == 1 || !shows_tint(self.shaders[0].scene, tile) {
+        if !is_tinted {
             return pixels;
         }
-        let first = share(self.sights[0].channels) as f32;
-        pixels.color.iter_mut().for_each(|color| color[3] *= first);
-        for (k, sight) in self.sights.iter().enumerate().skip(1) {
-            self.renderers[k].render(tile.rect(), other_tile);
+        let of_first = share(self.sights[0].channels) as f32;
+        pixels.color.iter_mut().for_each(|color| color[3] *= of_first);
+        for ((sight, renderer), shader) in self.sights.iter().zip(self.renderers).zip(self.by_sight).skip(1) {
+            renderer.render(tile.rect(), other_tile);
             self.monitor.lap("visibility");
-            *counts += other_tile.counts();
-            let shader = &self.shaders[k];
             shader.shade(other_tile, self.background, self.layers, scratch, other_pixels, self.monitor);
+            *counts += other_tile.counts();
             pixels.take_channels(other_pixels, sight, self.layers);
         }
         pixels
@@ -74,8 +80,11 @@ impl Pixels {
         let mut planes = self.planes.iter_mut().zip(&other.planes);
         for layer in layers {
             for (c, (own, found)) in planes.by_ref().take(layer.plane_count()).enumerate() {
-                if layer.is_color() && counts(c) {
-                    own.copy_from_slice(found);
+                match layer {
+                    // Shaders count the share of their channels only.
+                    LayerKind::Lit(_) => own.iter_mut().zip(found).for_each(|(own, found)| *own += found),
+                    _ if layer.is_color() && counts(c) => own.copy_from_slice(found),
+                    _ => {}
                 }
             }
         }

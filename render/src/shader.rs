@@ -63,6 +63,8 @@ pub(crate) struct Shader<'a> {
     pub(crate) glow: Glow,
     pub(crate) eye: DVec3,
     pub(crate) forward: DVec3,
+    /// 1 for the channels that are shaded, 0 for the others.
+    pub(crate) channels: Vec3,
     /// As [`Sight::own_light`].
     pub(crate) own_light: &'a [f64],
 }
@@ -131,7 +133,7 @@ impl<'a> Shader<'a> {
         lights: &'a SceneLights<'a>,
         view: &View,
         style: &Style<'a>,
-        sight: &'a Sight,
+        (sight, channels): (&'a Sight, Vec3),
     ) -> Self {
         let Style { ambient, glow, economy, .. } = *style;
         Self {
@@ -145,17 +147,19 @@ impl<'a> Shader<'a> {
             glow,
             eye: view.eye(),
             forward: view.forward(),
+            channels,
             own_light: &sight.own_light,
         }
     }
 
-    /// Whether an entry of a light counts for what is in a box.
-    pub(crate) fn counts(&self, occasion: Occasion, origin: Origin, receivers: Box3) -> bool {
-        match occasion {
+    /// Whether an entry of a light, which brings these channels, counts for what is in a box.
+    pub(crate) fn counts(&self, channels: Vec3, occasion: Occasion, origin: Origin, receivers: Box3) -> bool {
+        let on_occasion = match occasion {
             Occasion::Always => true,
             Occasion::Untinted => !self.clear.may_tint(origin, receivers),
             Occasion::Tinted => self.clear.may_tint(origin, receivers),
-        }
+        };
+        channels * self.channels != Vec3::ZERO && on_occasion
     }
 
     /// Unit normals of a face's corners, if it has them, on the side that is seen.

@@ -57,11 +57,15 @@ impl Shader<'_> {
             }
         }
         let within = if self.lights.are_tinted() { self.bounds(tile) } else { (DVec3::ZERO, DVec3::ZERO) };
-        for light in self.lights.samples.iter().filter(|l| self.counts(l.occasion, l.origin, within)) {
+        for light in
+            self.lights.samples.iter().filter(|l| self.counts(l.channels, l.occasion, l.origin, within))
+        {
             self.add_light(tile, light, points, direct, lit.get_mut(&light.light), monitor);
         }
         let mut asked = None;
-        for light in self.lights.whole.iter().filter(|l| self.counts(l.occasion, l.origin, within)) {
+        for light in
+            self.lights.whole.iter().filter(|l| self.counts(l.channels, l.occasion, l.origin, within))
+        {
             let layer = light.light.and_then(|number| lit.get_mut(&number));
             if asked != Some(layer.is_some()) {
                 self.ask_for_whole(tile, points, layer.is_some(), direct);

@@ -78,7 +78,7 @@ impl Shader<'_> {
             let (radiance, lit) = seen[owner as usize];
             points[owner as usize].direct += radiance;
             if let Some(layer) = lit_layer.as_deref_mut() {
-                layer[owner as usize] += lit / light.extent() * share(light.channels);
+                layer[owner as usize] += lit / light.extent() * share(light.channels * self.channels);
             }
         }
         monitor.lap("shadow");

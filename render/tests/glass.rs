@@ -179,8 +179,14 @@ fn what_is_behind_shows_through_in_the_colours_of_all_panes() {
         (Vec3::ONE, Vec3::ZERO),
     ] {
         for opacity in [1.0, 0.75] {
-            let frame = render(&stack(upper, lower, opacity, 0.0), &DrawOptions::DEFAULT, &()).unwrap();
-            let passes = upper * (Vec3::ONE - opacity * (Vec3::ONE - lower));
+            let options = DrawOptions::DEFAULT.with_layers(vec![LayerKind::Lit(0)]);
+            let frame = render(&stack(upper, lower, opacity, 0.0), &options, &()).unwrap();
+            let through_lower = Vec3::ONE - opacity * (Vec3::ONE - lower);
+            let passes = upper * through_lower;
+            // The shares of upper pane, lower pane and floor, each times the light that arrives there.
+            let lit = (Vec3::ONE - upper) + upper * upper * (Vec3::ONE - through_lower) + passes * passes;
+            let found = frame.layers[0].planes[0][4];
+            assert!((found - lit.element_sum() / 3.0).abs() < 1e-5, "{upper} {lower}: lit {found}, {lit}");
             for c in &frame.color {
                 let seen = Vec3::new(c[0], c[1], c[2]);
                 assert!((seen - glow * passes).abs().max_element() < 1e-5, "{upper} {lower}: {seen}");
