@@ -190,6 +190,35 @@ fn mirrors_and_glass_look_where_they_should() {
 }
 
 #[test]
+fn glass_shows_what_stands_behind_it() {
+    let folder = folder();
+    folder.write(
+        "wall.obj",
+        "mtllib w.mtl\nv -9 -9 -3\nv 9 -9 -3\nv 9 9 -3\nv -9 9 -3\nusemtl glow\nf 1 2 3 4\n",
+    );
+    folder.write("w.mtl", "newmtl glow\nKd 0 0 0\nKe 4 2 1\n");
+    let wall = "[[object]]\nmesh = \"wall.obj\"\n";
+    let pane = "diffuse = [0, 0, 0]\ntransmission = [0.25, 0.5, 1]\n";
+    all(&draw(&folder, wall, pane), [1.0, 1.0, 1.0], 1e-5);
+    // A pane that refracts shows the surroundings, here the ambient light.
+    let ambient = "[ambient]\ncolor = [0.5, 0.5, 0.5]\n";
+    let block = format!("{pane}refraction_index = 1.000001\n");
+    all(&draw(&folder, &format!("{wall}{ambient}"), &block), [0.125, 0.25, 0.5], 1e-3);
+    folder.write("with_mtl.obj", format!("mtllib m.mtl\nusemtl m\n{SQUARE}"));
+    let by_mtl = |mtl: &str| {
+        folder.write("m.mtl", format!("newmtl m\nKd 0 0 0\n{mtl}"));
+        folder.write("o.toml", format!("{VIEW}{wall}[[object]]\nmesh = \"with_mtl.obj\"\n"));
+        pixels(&folder, "o.toml")
+    };
+    all(&by_mtl("Tf 0.25 0.5 1\nillum 9\n"), [1.0, 1.0, 1.0], 1e-5);
+    all(&by_mtl("Tf 1 1 1\nd 0.5\nillum 4\n"), [2.0, 1.0, 0.5], 1e-5);
+    refused(
+        "transmission = [0, 0, 1.5]\n",
+        &["`material.m.transmission` must be from 0 to 1", "transmission = [0, 0, 1.5]"],
+    );
+}
+
+#[test]
 fn a_captured_mirror_shows_what_is_behind_the_eye() {
     let folder = folder();
     // A glowing wall of two colours behind the camera, at z = 8, and the square in between mirrors it.

@@ -263,8 +263,9 @@ fn color_or_number(table: &mut Table<'_>, key: &'static str) -> Result<Option<Ve
 fn read_transmission(table: &mut Table<'_>) -> Result<Option<Transmission>, InputError> {
     let color = color_or_number(table, "transmission")?;
     if color.is_some_and(|c| c.max_element() > 1.0) {
-        return Err(table
-            .error("transmission", "`transmission` must be 0 to 1: no more passes than arrives".to_owned()));
+        let name = table.name_of("transmission");
+        let message = format!("`{name}` must be from 0 to 1: no more light passes than arrives");
+        return Err(table.error("transmission", message));
     }
     let index = table.number_where("refraction_index", "more than 0", |n| n > 0.0 && n < 1e6)?;
     match color {
