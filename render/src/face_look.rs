@@ -51,7 +51,8 @@ impl Shader<'_> {
         if !glows {
             material.emission = Vec3::ZERO;
         }
-        material.diffuse *= Vec3::ONE - described.details.passes_straight();
+        // Coloured glass takes up what of a colour does not pass; it does not diffuse it.
+        material.diffuse *= 1.0 - described.details.passes_straight().max_element();
         let is_flat = self.scene.render.shading == Interpolation::Flat;
         FaceLook {
             normal: if face.front { normal } else { -normal }.as_vec3(),

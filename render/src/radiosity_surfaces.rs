@@ -102,7 +102,9 @@ fn look_of(material: &Material, mean: &dyn Fn(usize) -> Vec4) -> Look {
     let metallic = metallic.map_or(0.0, |m| (m * part(*metallic_map)).clamp(0.0, 1.0));
     let passes = material.details.passes_straight();
     Look {
-        albedo: material.surface.diffuse * whole(material.diffuse_map).truncate() * (1.0 - metallic),
+        albedo: material.surface.diffuse
+            * whole(material.diffuse_map).truncate()
+            * ((1.0 - metallic) * (1.0 - passes.max_element())),
         radiance: material.surface.emission * whole(emission_map.map(|map| map.texture)).truncate(),
         opacity: material.surface.opacity
             * (1.0 - passes.element_sum() / 3.0)

@@ -107,7 +107,7 @@ pub enum BumpHeight {
 /// Light from behind a clear surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transmission {
-    /// The share of each colour that passes.
+    /// The share of each colour that passes, 0 to 1. What passes straight is lost to the diffuse albedo: that counts by 1 − the largest share.
     pub color: Vec3,
     /// Refraction index of what is behind the front. 1 is a thin sheet, which light passes straight: what is behind is seen through it. With
     /// any other, the surroundings are seen, refracted once.
