@@ -1,7 +1,9 @@
 //! Hashes of scenes, the same on every machine: equal scenes have equal numbers and draw equal pictures, so that a picture that is
 //! there already need not be drawn again.
 
-use crate::scene::{AmbientLight, Camera, Details, Material, Mesh, Scene, SkyLight, Texels, Texture};
+use crate::scene::{
+    AmbientLight, Camera, Details, MapPlace, Material, Mesh, Scene, SkyLight, Texels, Texture,
+};
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade::{Falloff, Light, Material as ShadeMaterial};
 use pointillist_shadow::Resolution;
@@ -143,7 +145,8 @@ impl Fingerprint {
         mesh.positions.iter().for_each(|&p| self.vector(p));
         mesh.normals.iter().chain(&mesh.colors).for_each(|&n| self.color(n));
         mesh.uvs.iter().for_each(|&DVec2 { x, y }| [x, y].into_iter().for_each(|n| self.float(n)));
-        [&mesh.triangles, &mesh.normal_of, &mesh.uv_of].into_iter().for_each(|list| self.triples(list));
+        let lists = [&mesh.triangles, &mesh.normal_of, &mesh.uv_of, &mesh.second_uv_of];
+        lists.into_iter().for_each(|list| self.triples(list));
         mesh.material_of.iter().chain(&mesh.object_of).for_each(|n| self.0.write(&n.to_le_bytes()));
         mesh.objects.iter().for_each(|object| self.int(u64::from(object.two_sided)));
     }
@@ -157,6 +160,10 @@ impl Fingerprint {
             .for_each(|c| self.color(c));
         self.option(material.diffuse_map);
         self.option(material.opacity_map);
+        let places = [material.diffuse_place, material.opacity_place];
+        if places != [MapPlace::default(); 2] {
+            self.text(&format!("{places:?}"));
+        }
         if material.details != Details::default() {
             self.text(&format!("{:?}", material.details));
         }

@@ -86,6 +86,8 @@ impl Finder<'_> {
             &m.roughness_map,
             &m.metallic_map,
             &m.emission_map,
+            &m.reflection_map,
+            &m.light_map,
             &m.bump_map,
             &m.normal_map,
         ];
@@ -94,13 +96,20 @@ impl Finder<'_> {
                 report(key, "the material has no map");
             }
         }
-        if [&m.diffuse_map, &m.specular_map, &m.emission_map].iter().all(|map| map.is_none()) {
+        let colors = [&m.diffuse_map, &m.specular_map, &m.emission_map, &m.reflection_map, &m.light_map];
+        if colors.iter().all(|map| map.is_none()) {
             report("color_space", "the material has no map of colours");
         }
         let is_ggx = m.surface.model == Model::Ggx;
         let mirrors = is_ggx || m.reflection.is_some() || m.transmission.is_some();
         if m.surroundings != SurroundingsDescription::Scene && !mirrors {
             report("environment", "the material neither mirrors nor transmits");
+        }
+        if !mirrors {
+            report("environment_lookup", "the material mirrors nothing");
+        }
+        if m.surface.diffuse == Vec3::ZERO {
+            report("lightmap", "its light is reflected by `diffuse`, which is 0");
         }
         if m.merl.is_some() {
             for key in ["diffuse", "specular", "shininess"] {

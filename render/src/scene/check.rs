@@ -2,8 +2,8 @@
 
 use super::error::SceneError;
 use super::{
-    AmbientLight, Bump, BumpHeight, Details, LightSource, Map, Material, Mesh, NONE, Scene, Surroundings,
-    Transmission,
+    AmbientLight, Bump, BumpHeight, Details, LightSource, MapPlace, Material, Mesh, NONE, Scene,
+    Surroundings, Transmission,
 };
 use glam::Vec3;
 use pointillist_shade::Light;
@@ -52,12 +52,16 @@ impl Mesh {
         if !self.uv_of.is_empty() {
             needed("uv_of", self.uv_of.len(), count)?;
         }
+        if !self.second_uv_of.is_empty() {
+            needed("second_uv_of", self.second_uv_of.len(), count)?;
+        }
         if !self.colors.is_empty() {
             needed("colors", self.colors.len(), self.positions.len())?;
         }
         check_corners("triangles", &self.triangles, self.positions.len(), false)?;
         check_corners("normal_of", &self.normal_of, self.normals.len(), true)?;
         check_corners("uv_of", &self.uv_of, self.uvs.len(), true)?;
+        check_corners("second_uv_of", &self.second_uv_of, self.uvs.len(), true)?;
         check_indices("material_of", &self.material_of, materials)?;
         check_indices("object_of", &self.object_of, self.objects.len())?;
         let all_finite = |list: &'static str, wrong: Option<usize>| match wrong {
@@ -84,6 +88,9 @@ impl Material {
         ] {
             finite(value.is_finite(), || format!("{user}: {name}"))?;
         }
+        for place in self.places() {
+            finite(place.map_from_uv.is_finite(), || format!("{user}: the place of a map"))?;
+        }
         self.details
             .numbers()
             .try_for_each(|(name, value)| finite(value.is_finite(), || format!("{user}: {name}")))?;
@@ -101,26 +108,20 @@ impl Material {
         }
     }
 
+    /// Where its maps lie.
+    fn places(&self) -> impl Iterator<Item = MapPlace> {
+        let own = [self.diffuse_place, self.opacity_place];
+        self.details.maps().map(|map| map.place).chain(own)
+    }
+
     /// All textures that it refers to.
     fn textures(&self) -> impl Iterator<Item = usize> {
-        let Details { occlusion, bump, normal, surroundings, .. } = &self.details;
-        let d = &self.details;
-        let maps = [
-            d.specular_map,
-            d.shininess_map,
-            d.roughness_map,
-            d.metallic_map,
-            d.emission_map,
-            occlusion.map(|(map, _)| map),
-            bump.map(|bump| bump.map),
-            normal.map(|(map, _)| map),
-        ];
-        let own = match surroundings {
-            Surroundings::Texture(texture) => Some(*texture),
+        let own = match self.details.surroundings {
+            Surroundings::Texture(texture) => Some(texture),
             Surroundings::Scene | Surroundings::Capture => None,
         };
-        let texture = |map: Map| map.texture;
-        maps.into_iter().flatten().map(texture).chain(own).chain(self.diffuse_map).chain(self.opacity_map)
+        let maps = self.details.maps().map(|map| map.texture);
+        maps.chain(own).chain(self.diffuse_map).chain(self.opacity_map)
     }
 }
 

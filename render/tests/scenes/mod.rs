@@ -5,8 +5,8 @@ use pointillist_render::sh::Sh;
 use pointillist_render::shade::{self, Falloff, Light, LightOutline, MerlTable};
 use pointillist_render::shprobe::Field;
 use pointillist_render::{
-    AmbientLight, BakedLight, BakedSide, Bump, BumpHeight, Camera, Channel, Details, LightSource, Lightmap,
-    Map, Material, MeasuredBrdf, Part, Scene, SkyLight, Surroundings, Texels, Texture, Transmission,
+    AmbientLight, BakedLight, BakedSide, Bump, BumpHeight, Camera, Details, LightSource, Lightmap, Map,
+    Material, MeasuredBrdf, Part, Scene, SkyLight, Surroundings, Texels, Texture, Transmission,
 };
 use proptest::prelude::*;
 use std::num::NonZeroU32;
@@ -101,7 +101,7 @@ fn details() -> impl Strategy<Value = Details> {
             (metal, mirror, glass, measured, one_sided, own),
             n,
         )| {
-            let map = Map { texture: 0, wrap: shade::Wrap::Repeat, channel: Channel::Mean };
+            let map = Map::new(0);
             let (share, reflection, color, index) = n;
             let mut details = Details::default();
             details.bump = bump.then_some(Bump { map, height: BumpHeight::OfTexture(0.1) });

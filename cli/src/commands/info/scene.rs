@@ -55,6 +55,8 @@ fn of_material(material: &Material) -> Value {
         ("roughness", d.roughness_map.is_some()),
         ("metallic", d.metallic_map.is_some()),
         ("emission", d.emission_map.is_some()),
+        ("reflection", d.reflection_map.is_some()),
+        ("light", d.light_map.is_some()),
         ("occlusion", d.occlusion.is_some()),
         ("bump", d.bump.is_some()),
         ("normal", d.normal.is_some()),
