@@ -107,7 +107,7 @@ impl Shader<'_> {
         let s = surface;
         let is_ggx = s.material.model == Model::Ggx;
         let coat = if is_ggx { coat(&s.material, s) } else { Vec3::ZERO };
-        let through = s.material.diffuse * (Vec3::ONE - coat);
+        let through = s.material.ambient_albedo() * (Vec3::ONE - coat);
         let mut light = if through == Vec3::ZERO {
             Vec3::ZERO
         } else {

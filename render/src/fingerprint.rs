@@ -48,6 +48,9 @@ pub fn of_light(scene: &Scene) -> u64 {
     for light in &scene.lights {
         hash.text(&light.name);
         hash.light(&light.light);
+        if light.ambient != Vec3::ZERO {
+            hash.color(light.ambient);
+        }
         hash.int(u64::from(light.shadow));
         hash.int(match light.resolution {
             Resolution::Auto => 0,
@@ -152,12 +155,16 @@ impl Fingerprint {
     }
 
     fn material(&mut self, material: &Material) {
-        let ShadeMaterial { model, diffuse, specular, shininess, roughness, emission, opacity, .. } =
-            material.surface;
+        let ShadeMaterial {
+            model, diffuse, ambient, specular, shininess, roughness, emission, opacity, ..
+        } = material.surface;
         self.text(&format!("{model:?} {:?}", material.wrap));
         [diffuse, specular, emission, Vec3::new(shininess, opacity, roughness)]
             .into_iter()
             .for_each(|c| self.color(c));
+        if let Some(ambient) = ambient {
+            self.color(ambient);
+        }
         self.option(material.diffuse_map);
         self.option(material.opacity_map);
         let places = [material.diffuse_place, material.opacity_place];
@@ -214,8 +221,8 @@ impl Fingerprint {
                 self.vector(position);
                 falloff = f;
             }
-            Light::Spot { position, direction, beam_rad, cutoff_rad, falloff: f, .. } => {
-                [position, direction, DVec3::new(beam_rad, cutoff_rad, 0.0)]
+            Light::Spot { position, direction, beam_rad, cutoff_rad, exponent, falloff: f, .. } => {
+                [position, direction, DVec3::new(beam_rad, cutoff_rad, exponent)]
                     .into_iter()
                     .for_each(|v| self.vector(v));
                 falloff = f;
@@ -254,6 +261,6 @@ mod tests {
     #[test]
     fn every_field_of_a_surface_is_in_the_fingerprint() {
         let text = format!("{:?}", ShadeMaterial::default());
-        assert_eq!(text.matches(": ").count(), 7, "{text}");
+        assert_eq!(text.matches(": ").count(), 8, "{text}");
     }
 }

@@ -30,14 +30,17 @@ impl Shader<'_> {
         let outlines =
             |each: &mut dyn FnMut(&[SurfacePoint], f32)| self.for_outlines(tile, m, face, polygon, each);
         let (surface, mapped) = self.surface(face, look, &place, outlines);
-        let indirect = if self.surfaces.details(face.id).is_some() {
+        let mut indirect = if self.surfaces.details(face.id).is_some() {
             self.surrounding_light(&self.described(face).details, &surface, &mapped, hint)
-        } else if surface.material.diffuse == Vec3::ZERO {
+        } else if surface.material.ambient_albedo() == Vec3::ZERO {
             // What reflects nothing needs no light.
             Vec3::ZERO
         } else {
-            self.ambient.at(&surface.spot(surface.normal), hint) * surface.material.diffuse
+            self.ambient.at(&surface.spot(surface.normal), hint) * surface.material.ambient_albedo()
         };
+        if surface.material.model.is_opengl() {
+            indirect += self.lights.ambient_at(place.position) * surface.material.ambient_albedo();
+        }
         Point { place, normal: surface.normal, material: surface.material, direct: Vec3::ZERO, indirect }
     }
 
@@ -70,7 +73,7 @@ impl Shader<'_> {
             material = self.widened_by_curvature(face, material, &mut outlines);
         }
         if !self.scene.mesh.colors.is_empty() {
-            material.diffuse *= self.vertex_color(face.id, barycentric);
+            material = material.colored(self.vertex_color(face.id, barycentric));
         }
         let normal = match look.varies_by_corner {
             true => self.shading_normal(face, barycentric, face_normal, to_eye),
@@ -112,7 +115,7 @@ impl Shader<'_> {
         if total <= 0.0 {
             return material;
         }
-        material.with_diffuse(material.diffuse * (sum / total))
+        material.colored(sum / total)
     }
 
     /// What is seen of a micropoint, piece by piece, with the weight of each.

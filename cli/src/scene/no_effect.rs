@@ -60,6 +60,7 @@ impl Finder<'_> {
     }
 
     fn light(&mut self, index: usize, light: &LightDescription) {
+        let has_opengl = self.description.materials.iter().any(|(_, m)| m.surface.model.is_opengl());
         let index = index.to_string();
         let mut report = |key: &str, why: &str| self.report(&["light", &index, key], why);
         if !light.shadow {
@@ -70,7 +71,12 @@ impl Finder<'_> {
                 "a light with an area or a length is exact; `samples = N` takes points on it",
             );
         }
-        if let Some((key, Vec3::ZERO)) = power(&light.light) {
+        if !has_opengl {
+            report("ambient", "no material has model = \"opengl\"");
+        }
+        if let Some((key, Vec3::ZERO)) = power(&light.light)
+            && light.ambient == Vec3::ZERO
+        {
             report(key, "the light is black");
         }
     }

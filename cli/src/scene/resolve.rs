@@ -169,7 +169,7 @@ fn ambient(
 fn lights(description: &Description) -> Vec<LightSource> {
     let source = |light: &super::description::LightDescription| {
         let source = LightSource::new(&light.name, light.light);
-        source.with_shadow(light.shadow).with_resolution(light.resolution)
+        source.with_ambient(light.ambient).with_shadow(light.shadow).with_resolution(light.resolution)
     };
     description.lights.iter().map(source).collect()
 }

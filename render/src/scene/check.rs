@@ -82,6 +82,7 @@ impl Material {
         let numbers = Vec3::new(s.shininess, s.roughness, s.opacity);
         for (name, value) in [
             ("diffuse", s.diffuse),
+            ("ambient", s.ambient_albedo()),
             ("specular", s.specular),
             ("emission", s.emission),
             ("a constant", numbers),
@@ -179,8 +180,8 @@ fn finite(is_finite: bool, what: impl FnOnce() -> String) -> Result<(), SceneErr
 }
 
 fn check_light(source: &LightSource) -> Result<(), SceneError> {
-    let LightSource { name, light, .. } = source;
-    finite(is_finite(light), || format!("light `{name}`"))?;
+    let LightSource { name, light, ambient, .. } = source;
+    finite(is_finite(light) && ambient.is_finite(), || format!("light `{name}`"))?;
     let (Light::Polygon { radiance, .. } | Light::Line { radiance, .. }) = light else { return Ok(()) };
     if radiance.min_element() < 0.0 {
         return Err(SceneError::NegativeLight { name: name.clone() });
@@ -199,9 +200,10 @@ fn is_finite(light: &Light) -> bool {
         && match *light {
             Light::Directional { direction, .. } => direction.is_finite(),
             Light::Point { position, .. } => position.is_finite(),
-            Light::Spot { position, direction, beam_rad, cutoff_rad, .. } => {
+            Light::Spot { position, direction, beam_rad, cutoff_rad, exponent, .. } => {
                 position.is_finite()
                     && direction.is_finite()
+                    && exponent.is_finite()
                     && beam_rad.is_finite()
                     && cutoff_rad.is_finite()
             }

@@ -65,6 +65,8 @@ fn of_material(material: &Material) -> Value {
         _ if d.measured.is_some() => "merl",
         Model::Lambert => "lambert",
         Model::NormalizedPhong => "phong",
+        Model::OpenGl => "opengl",
+        Model::OpenGlPhong => "opengl, phong",
         Model::NormalizedBlinnPhong => "blinn-phong",
         Model::Ggx => "ggx",
         Model::Phong => "phong, not normalised",

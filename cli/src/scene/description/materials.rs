@@ -81,12 +81,13 @@ enum ModelName {
 }
 
 /// The models by name: the normalised forms, because lights are in physical units.
-const MODELS: [(&str, ModelName); 5] = [
+const MODELS: [(&str, ModelName); 6] = [
     ("lambert", ModelName::Formula(Model::Lambert)),
     ("phong", ModelName::Formula(Model::NormalizedPhong)),
     ("blinn-phong", ModelName::Formula(Model::NormalizedBlinnPhong)),
     ("ggx", ModelName::Formula(Model::Ggx)),
     ("merl", ModelName::Measured),
+    ("opengl", ModelName::Formula(Model::OpenGl)),
 ];
 
 const KINDS_OF_UV: [(&str, AutoUv); 4] = [
@@ -108,6 +109,7 @@ pub(super) fn read_all(root: &mut Table<'_>) -> Result<Vec<(String, MaterialDesc
 
 fn read(span: Span, mut table: Table<'_>) -> Result<MaterialDescription, InputError> {
     let model = table.choice("model", &MODELS)?.unwrap_or(ModelName::Formula(Model::Lambert));
+    let model = with_highlight(&mut table, model)?;
     let srgb = table.choice("color_space", &[("srgb", true), ("linear", false)])?.unwrap_or(true);
     table.choice("filter", &[("texel", ())])?;
     let wrap = table
@@ -167,6 +169,16 @@ fn read(span: Span, mut table: Table<'_>) -> Result<MaterialDescription, InputEr
     Ok(found)
 }
 
+/// `highlight`: which one OpenGL's formula has.
+fn with_highlight(table: &mut Table<'_>, model: ModelName) -> Result<ModelName, InputError> {
+    let highlight = table.choice("highlight", &[("blinn", Model::OpenGl), ("phong", Model::OpenGlPhong)])?;
+    match highlight {
+        None => Ok(model),
+        Some(highlight) if model == ModelName::Formula(Model::OpenGl) => Ok(ModelName::Formula(highlight)),
+        Some(_) => Err(unused(table, "highlight", "it is for model = \"opengl\"")),
+    }
+}
+
 fn is_share(n: f64) -> bool {
     (0.0..=1.0).contains(&n)
 }
@@ -211,9 +223,19 @@ fn read_surface(
     }
     let model = if let ModelName::Formula(model) = model { model } else { Model::Lambert };
     let diffuse = table.color("diffuse")?.unwrap_or(Vec3::splat(default_albedo));
+    let ambient = color_or_number(table, "ambient")?;
+    if ambient.is_some() && !model.is_opengl() {
+        return Err(unused(
+            table,
+            "ambient",
+            "it is for model = \"opengl\"; others reflect ambient light by `diffuse`",
+        ));
+    }
     let emission = table.color("emission")?.unwrap_or(default_emission);
     let opacity = table.number_where("opacity", "from 0 to 1", is_share)?.unwrap_or(1.0);
-    Ok(Material::lambert(diffuse)
+    let surface = Material::lambert(diffuse);
+    Ok(ambient
+        .map_or(surface, |ambient| surface.with_ambient(ambient))
         .with_specular(model, specular, shininess.unwrap_or(default_shininess) as f32)
         .with_roughness(roughness.unwrap_or(default_roughness) as f32)
         .with_emission(emission)
@@ -241,12 +263,22 @@ fn check_unused(table: &Table<'_>, model: ModelName, found: &MaterialDescription
     }
     let for_ggx = "it is for model = \"ggx\"";
     let rough = is_ggx || found.reflection.is_some();
-    let shiny = matches!(model, ModelName::Formula(Model::NormalizedPhong | Model::NormalizedBlinnPhong));
+    let shiny = matches!(
+        model,
+        ModelName::Formula(
+            Model::NormalizedPhong | Model::NormalizedBlinnPhong | Model::OpenGl | Model::OpenGlPhong
+        )
+    );
     let needs = [
         ("metallic", found.metallic.is_some(), is_ggx, for_ggx),
         ("metallic_map", found.metallic_map.is_some(), is_ggx, for_ggx),
         ("roughness_map", found.roughness_map.is_some(), rough, for_ggx),
-        ("shininess_map", found.shininess_map.is_some(), shiny, "it is for \"phong\" and \"blinn-phong\""),
+        (
+            "shininess_map",
+            found.shininess_map.is_some(),
+            shiny,
+            "it is for \"phong\", \"blinn-phong\" and \"opengl\"",
+        ),
         ("specular_map", found.specular_map.is_some(), shiny || is_ggx, "\"lambert\" has no highlight"),
     ];
     match needs.into_iter().find(|&(_, given, used, _)| given && !used) {
