@@ -349,6 +349,12 @@ fn a_second_set_of_coordinates_is_taken_where_a_texture_asks_for_it() {
         json!({ "index": 0, "extensions": { "KHR_texture_transform": { "texCoord": 1 } } });
     folder.write("m.glb", glb(&two));
     assert_eq!(corners(&pixels(&folder, "m.glb")), [RED, RED, BLUE, RED]);
+    // Light maps of a scene file lie by it unless they say otherwise.
+    folder.write("picture.png", png());
+    let scene = "[camera]\neye = [0, 0, 4]\ntarget = [0, 0, 0]\nheight = 2\n[[object]]\nmesh = \"m.glb\"\n\
+                 [material.material0]\ndiffuse = [1, 1, 1]\nlightmap = \"picture.png\"\n";
+    folder.write("s.toml", scene);
+    assert_eq!(corners(&pixels(&folder, "s.toml")), [RED, RED, BLUE, RED]);
     // A mesh without that set: the first counts, with a warning.
     folder.write("m.glb", glb(&document(base)));
     assert_eq!(corners(&pixels(&folder, "m.glb"))[1], GREEN);
