@@ -259,6 +259,155 @@ fn broken_files_name_the_element() {
     folder.fails(&["check", "lost.glb"], 3, &["lost.glb", "cannot be read"]);
 }
 
+/// Where the corners of the picture lie in its pixels.
+fn corners(pixels: &[[f32; 4]]) -> [[f32; 4]; 4] {
+    [pixels[0], pixels[7], pixels[56], pixels[63]]
+}
+
+const RED: [f32; 4] = [1.0, 0.0, 0.0, 1.0];
+const GREEN: [f32; 4] = [0.0, 1.0, 0.0, 1.0];
+const BLUE: [f32; 4] = [0.0, 0.0, 1.0, 1.0];
+
+fn transformed(mut material: Value, path: &str, transform: Value) -> Value {
+    *material.pointer_mut(path).expect("a texture") =
+        json!({ "index": 0, "extensions": { "KHR_texture_transform": transform } });
+    material
+}
+
+#[test]
+fn textures_are_transformed() {
+    const BASE: &str = "/pbrMetallicRoughness/baseColorTexture";
+    let draw = |material: Value| {
+        let mut document = document(material);
+        document["extensionsRequired"] = json!(["KHR_texture_transform"]);
+        document["samplers"][0] = json!({});
+        let folder = Folder::new();
+        folder.write("m.glb", glb(&document));
+        assert!(
+            !String::from_utf8_lossy(&folder.command(&["check", "m.glb"]).output().unwrap().stderr)
+                .contains("KHR")
+        );
+        corners(&pixels(&folder, "m.glb"))
+    };
+    // v runs downward: the upper right texel.
+    let quarter = json!({ "offset": [0.5, 0], "scale": [0.5, 0.5] });
+    assert_eq!(draw(transformed(unlit("OPAQUE"), BASE, quarter.clone())), [GREEN; 4]);
+    // Coordinates turn counter-clockwise about the upper left corner, the picture clockwise.
+    let turned = json!({ "rotation": PI / 2.0 });
+    let seen = draw(transformed(unlit("OPAQUE"), BASE, turned));
+    assert!(seen.iter().zip([BLUE, RED, [1.0; 4], GREEN]).all(|(a, b)| close(*a, b)), "{seen:?}");
+    // Alpha goes with its colour; white is clear.
+    let shifted = draw(transformed(unlit("BLEND"), BASE, json!({ "offset": [0.5, 0] })));
+    assert_eq!(shifted, [GREEN, RED, [0.0; 4], BLUE]);
+    // Lit by irradiance 2, base colours are diffuse: only green where the green texel is.
+    let mut matt = json!({ "pbrMetallicRoughness": { "metallicFactor": 0, "baseColorTexture": {} } });
+    matt["extensions"] = json!({ "KHR_materials_ior": { "ior": 1 } });
+    let lit = draw(transformed(matt, BASE, quarter));
+    assert!(lit.iter().all(|p| p[1] > 0.3 && p[0] == 0.0 && p[2] == 0.0), "{lit:?}");
+}
+
+#[test]
+fn normal_and_occlusion_textures_are_transformed_too() {
+    let folder = Folder::new();
+    let scene = "[camera]\neye = [0, 0, 4]\ntarget = [0, 0, 0]\nheight = 2\n[[object]]\nmesh = \"m.glb\"\n";
+    let draw = |light: &str, key: &str, offset: [f32; 2]| {
+        let mut material = json!({ "pbrMetallicRoughness": { "metallicFactor": 0 } });
+        let transform = json!({ "offset": offset, "scale": [0.5, 0.5] });
+        material[key] = json!({ "index": 0, "extensions": { "KHR_texture_transform": transform } });
+        folder.write("m.glb", glb(&document(material)));
+        folder.write("s.toml", format!("{scene}{light}"));
+        pixels(&folder, "s.toml")[27][0]
+    };
+    // Red of the upper left texel is 1, of the one below 0.
+    let ambient = "[ambient]\ncolor = [1, 1, 1]\n";
+    let open = draw(ambient, "occlusionTexture", [0.0, 0.0]);
+    assert!(open > 0.9 && draw(ambient, "occlusionTexture", [0.0, 0.5]) == 0.0, "{open}");
+    // Blue stands for a normal to the left, which faces the light; red for one to the right.
+    let left = "[[light]]\ntype = \"directional\"\ndirection = [1, 0, -1]\nirradiance = [2, 2, 2]\n";
+    let (red, blue) = (draw(left, "normalTexture", [0.0, 0.0]), draw(left, "normalTexture", [0.0, 0.5]));
+    assert!(red < 0.1 && blue > 0.4, "{red} {blue}");
+}
+
+#[test]
+fn a_second_set_of_coordinates_is_taken_where_a_texture_asks_for_it() {
+    let mut base = unlit("OPAQUE");
+    base["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": 0, "texCoord": 1 });
+    let mut two = document(base.clone());
+    two["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(3);
+    // A sparse accessor without bytes of its own is zeros, the upper left texel, but for the lower left corner at (0, 1).
+    two["accessors"].as_array_mut().unwrap().push(
+        json!({ "componentType": 5126, "count": 4, "type": "VEC2", "sparse": {
+        "count": 1, "indices": { "bufferView": 2, "componentType": 5123 },
+        "values": { "bufferView": 0, "byteOffset": 8 }
+    } }),
+    );
+    let folder = Folder::new();
+    folder.write("m.glb", glb(&two));
+    assert_eq!(corners(&pixels(&folder, "m.glb")), [RED, RED, BLUE, RED]);
+    // The extension may name the set, too.
+    two["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] =
+        json!({ "index": 0, "extensions": { "KHR_texture_transform": { "texCoord": 1 } } });
+    folder.write("m.glb", glb(&two));
+    assert_eq!(corners(&pixels(&folder, "m.glb")), [RED, RED, BLUE, RED]);
+    // Light maps of a scene file lie by it unless they say otherwise.
+    folder.write("picture.png", png());
+    let scene = "[camera]\neye = [0, 0, 4]\ntarget = [0, 0, 0]\nheight = 2\n[[object]]\nmesh = \"m.glb\"\n\
+                 [material.material0]\ndiffuse = [1, 1, 1]\nlightmap = \"picture.png\"\n";
+    folder.write("s.toml", scene);
+    assert_eq!(corners(&pixels(&folder, "s.toml")), [RED, RED, BLUE, RED]);
+    // A mesh without that set: the first counts, with a warning.
+    folder.write("m.glb", glb(&document(base)));
+    assert_eq!(corners(&pixels(&folder, "m.glb"))[1], GREEN);
+    let output = folder.command(&["check", "m.glb"]).output().unwrap();
+    assert!(String::from_utf8_lossy(&output.stderr).contains("second set of texture coordinates"));
+}
+
+#[test]
+fn sparse_accessors_replace_elements() {
+    let sparse = |count: usize| {
+        json!({
+            "count": count,
+            "indices": { "bufferView": 2, "byteOffset": 8, "componentType": 5123 },
+            "values": { "bufferView": 0, "byteOffset": 16 }
+        })
+    };
+    // Vertices 2 and 3 become (−1, 0, 1) and (1, 0, −1): the upper half is empty.
+    let mut half = document(unlit("OPAQUE"));
+    half["accessors"][0]["sparse"] = sparse(2);
+    let folder = Folder::new();
+    folder.write("m.glb", glb(&half));
+    let seen = pixels(&folder, "m.glb");
+    assert!(seen[..32].iter().all(|p| *p == [0.0; 4]) && seen[56][3] == 1.0, "{:?} {:?}", seen[31], seen[56]);
+    refused(
+        |d| {
+            d["accessors"][0]["sparse"] = sparse(2);
+            d["accessors"][0]["sparse"]["indices"]["byteOffset"] = json!(4);
+        },
+        &["mesh 0", "the sparse indices of accessor 0 do not rise"],
+    );
+    refused(
+        |d| {
+            d["accessors"][1]["count"] = json!(3);
+            d["accessors"][1]["sparse"] = sparse(2);
+        },
+        &["the sparse indices of accessor 1 name element 3, but there are 3"],
+    );
+    refused(
+        |d| {
+            d["accessors"][0]["sparse"] = sparse(2);
+            d["accessors"][0]["sparse"]["values"]["byteOffset"] = json!(40);
+        },
+        &["the sparse values of accessor 0 goes beyond its bufferView"],
+    );
+    refused(
+        |d| {
+            d["accessors"][0] = json!({ "componentType": 5126, "count": 900_000_000, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1] });
+            d["accessors"][0]["sparse"] = sparse(2);
+        },
+        &["accessor 0 is sparse and has 900000000 elements"],
+    );
+}
+
 proptest! {
     #![proptest_config(testkit::config(200))]
 

@@ -57,7 +57,7 @@ fn material(input: &MaterialInput) -> Material {
         .with_opacity(f32::from(input.opacity) / 255.0)
         .with_roughness(0.3);
     let mut material = Material::new("any", surface);
-    let map = |n: u8| Map { texture: usize::from(n % 3), wrap: Wrap::Mirror, channel: Channel::Red };
+    let map = |n: u8| Map { wrap: Wrap::Mirror, channel: Channel::Red, ..Map::new(usize::from(n % 3)) };
     let [diffuse, opacity, bump, roughness] = input.maps;
     material.diffuse_map = diffuse.map(|n| usize::from(n % 3));
     material.opacity_map = opacity.map(|n| usize::from(n % 3));

@@ -9,7 +9,7 @@ use crate::uvs::Uvs;
 use std::collections::HashMap;
 
 /// Three corners as bits of their positions and texture coordinates, sorted: the same for both sides of a card.
-type Corners = [[u64; 5]; 3];
+type Corners = [[u64; 7]; 3];
 
 /// A triangle that has the place, texture coordinates and surface of an earlier one.
 #[derive(Clone, Copy, Debug)]
@@ -60,12 +60,12 @@ pub(crate) fn other_sides(mesh: &Mesh, copies: &[MaskedCopy]) -> HashMap<u32, Ot
 }
 
 fn corners(mesh: &Mesh, uvs: &Uvs, triangle: usize) -> Corners {
-    let uv = uvs.of(triangle as u32);
+    let [first, second] = uvs.both(triangle as u32);
     let vertices = mesh.triangles[triangle];
     let mut corners = [0, 1, 2].map(|k: usize| {
-        let (p, uv) = (mesh.positions[vertices[k] as usize], uv[k]);
+        let (p, a, b) = (mesh.positions[vertices[k] as usize], first[k], second[k]);
         // −0 is 0.
-        [p.x, p.y, p.z, uv.x, uv.y].map(|v| (v + 0.0).to_bits())
+        [p.x, p.y, p.z, a.x, a.y, b.x, b.y].map(|v| (v + 0.0).to_bits())
     });
     corners.sort_unstable();
     corners

@@ -2,25 +2,41 @@
 
 use crate::detail_maps::{DetailMaps, DetailMeans};
 use crate::reflections::Mirrored;
-use crate::scene::{BumpHeight, Details};
+use crate::scene::{BumpHeight, Details, Map};
 use crate::shader::{ShadedSurface, Shader};
 use glam::Vec3;
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::SurfacePoint;
 use pointillist_shade::{Material, Model, UvFrame, coat_albedo, keep_visible, mirror, refract};
 
+/// What the maps of a material say of light that does not come straight from lights.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mapped {
+    /// The share of ambient and mirrored light that arrives.
+    pub(crate) occlusion: f32,
+    /// What arrives in the place of ambient light, if the material says so.
+    pub(crate) light: Option<Vec3>,
+    /// Factor on what is mirrored.
+    pub(crate) reflection: Vec3,
+}
+
+impl Mapped {
+    /// What no maps say.
+    pub(crate) const NOTHING: Self = Self { occlusion: 1.0, light: None, reflection: Vec3::ONE };
+}
+
 /// Directions to ask the surroundings about, and what each counts.
 type Looks = [(Vec3, Vec3); 2];
 
 impl Shader<'_> {
-    /// Applies the maps to material and normal; the share of ambient light that is left comes back.
+    /// Applies the maps to material and normal; what they say of ambient light comes back.
     pub(crate) fn apply_maps(
         &self,
         details: &Details,
         maps: &DetailMaps,
         surface: &mut ShadedSurface,
         outlines: impl FnMut(&mut dyn FnMut(&[SurfacePoint], f32)),
-    ) -> f32 {
+    ) -> Mapped {
         let means = if maps.any() {
             maps.means(self.surfaces.uvs(), surface.triangle, outlines)
         } else {
@@ -38,7 +54,11 @@ impl Shader<'_> {
         }
         self.tilt(details, &means, surface);
         let share = details.occlusion.map_or(1.0, |(_, strength)| strength);
-        1.0 + share * (means.occlusion - 1.0)
+        Mapped {
+            occlusion: 1.0 + share * (means.occlusion - 1.0),
+            light: means.light,
+            reflection: means.reflection,
+        }
     }
 
     fn tilt(&self, details: &Details, means: &DetailMeans, s: &mut ShadedSurface) {
@@ -46,17 +66,21 @@ impl Shader<'_> {
             return;
         }
         let corners = self.scene.corners(s.triangle);
-        let Some(frame) = UvFrame::new(corners, self.surfaces.uvs().of(s.triangle)) else { return };
+        let frame = |map: Map| UvFrame::new(corners, self.surfaces.uvs().of(s.triangle, &map.place));
         let side = if s.front { 1.0 } else { -1.0 };
         let mut normal = s.normal;
         let mut variance = 0.0;
-        if let Some((_, scale)) = details.normal {
+        if let Some((map, scale)) = details.normal
+            && let Some(frame) = frame(map)
+        {
             let v = means.normal;
             normal = frame.mapped(normal, side, Vec3::new(scale * v.x, scale * v.y, v.z));
             let slopes = means.normal_slopes;
             variance += scale * scale * (slopes.z - slopes.truncate().length_squared());
         }
-        if let Some(bump) = details.bump {
+        if let Some(bump) = details.bump
+            && let Some(frame) = frame(bump.map)
+        {
             let height = match bump.height {
                 BumpHeight::World(height) => height,
                 BumpHeight::OfTexture(share) => share * frame.span,
@@ -77,24 +101,24 @@ impl Shader<'_> {
         &self,
         details: &Details,
         surface: &ShadedSurface,
-        occlusion: f32,
+        mapped: &Mapped,
         hint: &mut Hint,
     ) -> Vec3 {
         let s = surface;
         let is_ggx = s.material.model == Model::Ggx;
         let coat = if is_ggx { coat(&s.material, s) } else { Vec3::ZERO };
-        let through = s.material.diffuse * (Vec3::ONE - coat);
+        let through = s.material.ambient_albedo() * (Vec3::ONE - coat);
         let mut light = if through == Vec3::ZERO {
             Vec3::ZERO
         } else {
-            self.ambient.at(&s.spot(s.normal), hint) * through
+            mapped.light.unwrap_or_else(|| self.ambient.at(&s.spot(s.normal), hint)) * through
         };
-        for (direction, weight) in looks(details, surface, coat) {
+        for (direction, weight) in looks(details, surface, coat, mapped.reflection) {
             if weight != Vec3::ZERO {
                 light += self.seen_towards(details, surface, direction, hint) * weight;
             }
         }
-        light * occlusion
+        light * mapped.occlusion
     }
 
     /// What comes from about a direction. Without a map of the surroundings, it is ambient light from there.
@@ -128,21 +152,24 @@ fn coat(material: &Material, s: &ShadedSurface) -> Vec3 {
 }
 
 /// Where the eye looks on from a surface: mirrored, and through it.
-fn looks(details: &Details, s: &ShadedSurface, coat: Vec3) -> Looks {
+fn looks(details: &Details, s: &ShadedSurface, coat: Vec3, factor: Vec3) -> Looks {
     let is_ggx = s.material.model == Model::Ggx;
-    let mirrored = above(mirror(s.to_eye, s.normal), s.face_normal);
-    let tint = details.reflection;
+    let mirrored = match details.mirrors_by_normal {
+        true => s.normal,
+        false => above(mirror(s.to_eye, s.normal), s.face_normal),
+    };
+    // 1 without a map.
+    let tint = |without: Vec3| details.reflection.unwrap_or(without) * factor;
     let Some(glass) = details.transmission.filter(|t| !t.is_straight()) else {
-        let weight = if is_ggx { coat * tint.unwrap_or(Vec3::ONE) } else { tint.unwrap_or(Vec3::ZERO) };
+        let weight = if is_ggx { coat * tint(Vec3::ONE) } else { tint(Vec3::ZERO) };
         return [(mirrored, weight), (mirrored, Vec3::ZERO)];
     };
     // Seen from behind, the look goes out of what is behind the front.
     let index = if s.front { glass.index } else { 1.0 / glass.index };
     let onward = refract(s.to_eye, s.normal, index);
-    let tint = tint.unwrap_or(Vec3::ONE);
     let reflectance = if is_ggx { coat } else { Vec3::splat(onward.reflectance) };
     let passed = if onward.reflectance < 1.0 { glass.color * (Vec3::ONE - reflectance) } else { Vec3::ZERO };
-    [(mirrored, reflectance * tint), (onward.direction, passed)]
+    [(mirrored, reflectance * tint(Vec3::ONE)), (onward.direction, passed)]
 }
 
 /// A mirrored direction that a tilted normal sends into the surface, brought back up to it.

@@ -5,35 +5,63 @@
 //! a mean of normals is the normal of what they cover together. How far slopes are spread about their mean widens the highlight: the
 //! means of their products say so (LEAN mapping, M. Olano, D. Baker, I3D 2010).
 
-use crate::scene::{Details, Map, Material, Scene, Texels, Texture, unit_of_byte};
+use crate::scene::{Channel, Details, Map, MapPlace, Material, Scene, Texels, Texture, unit_of_byte};
 use crate::texel_sums::{Lazy, color_sums, values, when_needed};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec2, Vec3, Vec4, vec3};
 use pointillist_micropoint::{MicropointError, SurfacePoint, TexelSums};
 use pointillist_parallel as parallel;
-use pointillist_shade::{Model, slope_of_heights};
+use pointillist_shade::{Model, Wrap, slope_of_heights};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// The sums of a map, shared by the materials that have it.
 type Sums<const N: usize> = Arc<Lazy<TexelSums<N>>>;
 
+/// A map's sums and where it lies on the surface.
+struct Placed<const N: usize> {
+    sums: Sums<N>,
+    place: MapPlace,
+}
+
+impl<const N: usize> Placed<N> {
+    fn mean(&self, uvs: &Uvs, triangle: u32, polygon: &[SurfacePoint]) -> [f64; N] {
+        uvs.mean(triangle, polygon, &self.sums, &self.place)
+    }
+}
+
+/// What sums are made of: a map, wherever it lies.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Source {
+    texture: usize,
+    wrap: Wrap,
+    channel: Channel,
+}
+
+impl Source {
+    fn of(Map { texture, wrap, channel, .. }: Map) -> Self {
+        Self { texture, wrap, channel }
+    }
+}
+
 /// The maps of one material.
 #[derive(Default)]
 pub(crate) struct DetailMaps {
-    specular: Option<Sums<3>>,
-    emission: Option<Sums<3>>,
-    shininess: Option<Sums<1>>,
-    roughness: Option<Sums<1>>,
-    metallic: Option<Sums<1>>,
-    occlusion: Option<Sums<1>>,
+    specular: Option<Placed<3>>,
+    emission: Option<Placed<3>>,
+    reflection: Option<Placed<3>>,
+    light: Option<Placed<3>>,
+    shininess: Option<Placed<1>>,
+    roughness: Option<Placed<1>>,
+    metallic: Option<Placed<1>>,
+    occlusion: Option<Placed<1>>,
     /// Slopes along u and v.
-    slope: Option<Sums<2>>,
+    slope: Option<Placed<2>>,
     /// Their products u², u v and v², where there is a highlight to widen.
-    slope_products: Option<Sums<3>>,
-    normal: Option<Sums<3>>,
+    slope_products: Option<Placed<3>>,
+    normal: Option<Placed<3>>,
     /// Slopes x and y of the normals and their square in sum, likewise.
-    normal_slopes: Option<Sums<3>>,
+    normal_slopes: Option<Placed<3>>,
 }
 
 /// Means over what is seen; where there is no map, what changes nothing.
@@ -41,6 +69,9 @@ pub(crate) struct DetailMaps {
 pub(crate) struct DetailMeans {
     pub(crate) specular: Vec3,
     pub(crate) emission: Vec3,
+    pub(crate) reflection: Vec3,
+    /// Light that arrives, in the place of ambient light; nothing without a light map.
+    pub(crate) light: Option<Vec3>,
     pub(crate) shininess: f32,
     pub(crate) roughness: f32,
     pub(crate) metallic: f32,
@@ -57,26 +88,27 @@ pub(crate) struct DetailMeans {
 
 /// Maps that materials share, each summed up once.
 pub(crate) struct DetailTable {
-    numbers: HashMap<Map, Sums<1>>,
-    colors: HashMap<Map, Sums<3>>,
-    slopes: HashMap<Map, Sums<2>>,
-    slope_products: HashMap<Map, Sums<3>>,
-    normals: HashMap<Map, Sums<3>>,
-    normal_slopes: HashMap<Map, Sums<3>>,
+    numbers: HashMap<Source, Sums<1>>,
+    colors: HashMap<Source, Sums<3>>,
+    slopes: HashMap<Source, Sums<2>>,
+    slope_products: HashMap<Source, Sums<3>>,
+    normals: HashMap<Source, Sums<3>>,
+    normal_slopes: HashMap<Source, Sums<3>>,
 }
 
 impl DetailTable {
     /// The maps of all materials.
     pub(crate) fn new(scene: &Scene) -> Result<Self, MicropointError> {
-        let maps = |of: fn(&Details) -> [Option<Map>; 4]| -> HashSet<Map> {
-            scene.materials.iter().flat_map(|m| of(&m.details)).flatten().collect()
+        let maps = |of: fn(&Details) -> [Option<Map>; 4]| -> HashSet<Source> {
+            scene.materials.iter().flat_map(|m| of(&m.details)).flatten().map(Source::of).collect()
         };
-        let in_highlights = |of: fn(&Details) -> Option<Map>| -> HashSet<Map> {
-            scene.materials.iter().filter(|m| has_highlight(m)).filter_map(|m| of(&m.details)).collect()
+        let in_highlights = |of: fn(&Details) -> Option<Map>| -> HashSet<Source> {
+            let shiny = scene.materials.iter().filter(|m| has_highlight(m));
+            shiny.filter_map(|m| of(&m.details)).map(Source::of).collect()
         };
         let numbers =
             maps(|d| [d.shininess_map, d.roughness_map, d.metallic_map, d.occlusion.map(|(map, _)| map)]);
-        let colors = maps(|d| [d.specular_map, d.emission_map, None, None]);
+        let colors = maps(|d| [d.specular_map, d.emission_map, d.reflection_map, d.light_map]);
         // Heights that are all the same have no slope.
         let mut slopes = maps(|d| [d.bump.map(|bump| bump.map), None, None, None]);
         slopes.retain(|map| !scene.textures[map.texture].is_constant());
@@ -99,21 +131,26 @@ impl DetailTable {
         let bump = details.bump.map(|bump| bump.map);
         let normal = details.normal.map(|(map, _)| map);
         let in_highlight = |map: Option<Map>| map.filter(|_| has_highlight(material));
-        let number = |map: Option<Map>| map.and_then(|map| self.numbers.get(&map).cloned());
-        let color = |map: Option<Map>| map.and_then(|map| self.colors.get(&map).cloned());
         DetailMaps {
-            specular: color(details.specular_map),
-            emission: color(details.emission_map),
-            shininess: number(details.shininess_map),
-            roughness: number(details.roughness_map),
-            metallic: number(details.metallic_map),
-            occlusion: number(details.occlusion.map(|(map, _)| map)),
-            slope: bump.and_then(|map| self.slopes.get(&map).cloned()),
-            slope_products: in_highlight(bump).and_then(|map| self.slope_products.get(&map).cloned()),
-            normal: normal.and_then(|map| self.normals.get(&map).cloned()),
-            normal_slopes: in_highlight(normal).and_then(|map| self.normal_slopes.get(&map).cloned()),
+            specular: placed(&self.colors, details.specular_map),
+            emission: placed(&self.colors, details.emission_map),
+            reflection: placed(&self.colors, details.reflection_map),
+            light: placed(&self.colors, details.light_map),
+            shininess: placed(&self.numbers, details.shininess_map),
+            roughness: placed(&self.numbers, details.roughness_map),
+            metallic: placed(&self.numbers, details.metallic_map),
+            occlusion: placed(&self.numbers, details.occlusion.map(|(map, _)| map)),
+            slope: placed(&self.slopes, bump),
+            slope_products: placed(&self.slope_products, in_highlight(bump)),
+            normal: placed(&self.normals, normal),
+            normal_slopes: placed(&self.normal_slopes, in_highlight(normal)),
         }
     }
+}
+
+fn placed<const N: usize>(sums: &HashMap<Source, Sums<N>>, map: Option<Map>) -> Option<Placed<N>> {
+    let map = map?;
+    Some(Placed { sums: sums.get(&Source::of(map))?.clone(), place: map.place })
 }
 
 /// Whether a material has a highlight. A metallic map may give a GGX surface the reflectance that it lacks.
@@ -122,11 +159,11 @@ fn has_highlight(material: &Material) -> bool {
 }
 
 fn all<const N: usize>(
-    maps: &HashSet<Map>,
+    maps: &HashSet<Source>,
     scene: &Scene,
-    sums: fn(Map, &Texture) -> Result<TexelSums<N>, MicropointError>,
-) -> Result<HashMap<Map, Sums<N>>, MicropointError> {
-    let maps: Vec<Map> = maps.iter().copied().collect();
+    sums: fn(Source, &Texture) -> Result<TexelSums<N>, MicropointError>,
+) -> Result<HashMap<Source, Sums<N>>, MicropointError> {
+    let maps: Vec<Source> = maps.iter().copied().collect();
     let one = |i: usize| {
         let map = maps[i];
         let sums = when_needed([&scene.textures[map.texture]], move |[texture]| sums(map, texture))?;
@@ -135,7 +172,7 @@ fn all<const N: usize>(
     parallel::map_heavy(maps.len(), one).into_iter().collect()
 }
 
-fn number_sums(map: Map, t: &Texture) -> Result<TexelSums<1>, MicropointError> {
+fn number_sums(map: Source, t: &Texture) -> Result<TexelSums<1>, MicropointError> {
     let wrap = texel_wrap(map.wrap);
     let Texture { width, height, .. } = *t;
     if let Texels::Gray8(texels) = &t.texels {
@@ -145,7 +182,7 @@ fn number_sums(map: Map, t: &Texture) -> Result<TexelSums<1>, MicropointError> {
     TexelSums::new(width, height, wrap, |x, y| [map.channel.of(t.texel(x, y))])
 }
 
-fn slope_sums(map: Map, t: &Texture) -> Result<TexelSums<2>, MicropointError> {
+fn slope_sums(map: Source, t: &Texture) -> Result<TexelSums<2>, MicropointError> {
     let wrap = texel_wrap(map.wrap);
     match &t.texels {
         // All channels are the grey.
@@ -154,7 +191,7 @@ fn slope_sums(map: Map, t: &Texture) -> Result<TexelSums<2>, MicropointError> {
     }
 }
 
-fn slope_product_sums(map: Map, t: &Texture) -> Result<TexelSums<3>, MicropointError> {
+fn slope_product_sums(map: Source, t: &Texture) -> Result<TexelSums<3>, MicropointError> {
     let texel = |x, y| {
         let slope = slope(map, t, x, y);
         [slope.x * slope.x, slope.x * slope.y, slope.y * slope.y]
@@ -162,20 +199,20 @@ fn slope_product_sums(map: Map, t: &Texture) -> Result<TexelSums<3>, MicropointE
     TexelSums::new_signed(t.width, t.height, texel_wrap(map.wrap), texel)
 }
 
-fn slope(map: Map, t: &Texture, x: u32, y: u32) -> Vec2 {
+fn slope(map: Source, t: &Texture, x: u32, y: u32) -> Vec2 {
     let height =
         |x: i64, y: i64| map.channel.of(t.texel(map.wrap.texel(x, t.width), map.wrap.texel(y, t.height)));
     slope_of_heights([t.width, t.height], x, y, height)
 }
 
-fn normal_sums(map: Map, t: &Texture) -> Result<TexelSums<3>, MicropointError> {
+fn normal_sums(map: Source, t: &Texture) -> Result<TexelSums<3>, MicropointError> {
     TexelSums::new_signed(t.width, t.height, texel_wrap(map.wrap), |x, y| normal(t, x, y))
 }
 
 /// Steepest normal of a map, as its smallest z: slopes grow without limit towards the horizon, and few such texels would widen all highlights.
 const LEAST_Z: f32 = 0.1;
 
-fn normal_slope_sums(map: Map, t: &Texture) -> Result<TexelSums<3>, MicropointError> {
+fn normal_slope_sums(map: Source, t: &Texture) -> Result<TexelSums<3>, MicropointError> {
     let texel = |x, y| {
         let [x, y, z] = normal(t, x, y);
         let slope = Vec2::new(x, y) / z.max(LEAST_Z);
@@ -201,14 +238,17 @@ fn normal_of_texel(texel: Vec4) -> Vec3 {
 impl DetailMaps {
     /// Whether any map is to be looked up.
     pub(crate) fn any(&self) -> bool {
-        let colors = self.specular.is_some() || self.emission.is_some();
+        let colors = [&self.specular, &self.emission, &self.reflection, &self.light];
         let numbers = [&self.shininess, &self.roughness, &self.metallic, &self.occlusion];
-        colors || numbers.iter().any(|map| map.is_some()) || self.slope.is_some() || self.normal.is_some()
+        colors.iter().any(|map| map.is_some())
+            || numbers.iter().any(|map| map.is_some())
+            || self.slope.is_some()
+            || self.normal.is_some()
     }
 
     /// The factor on the emission over a polygon of a triangle.
     pub(crate) fn emission(&self, uvs: &Uvs, triangle: u32, polygon: &[SurfacePoint]) -> Vec3 {
-        self.emission.as_ref().map_or(Vec3::ONE, |sums| vector(uvs.mean(triangle, polygon, sums)))
+        self.emission.as_ref().map_or(Vec3::ONE, |map| vector(map.mean(uvs, triangle, polygon)))
     }
 
     /// Means over outlines, each with its weight.
@@ -233,6 +273,8 @@ impl DetailMeans {
     const NOTHING: Self = Self {
         specular: Vec3::ZERO,
         emission: Vec3::ZERO,
+        reflection: Vec3::ZERO,
+        light: None,
         shininess: 0.0,
         roughness: 0.0,
         metallic: 0.0,
@@ -247,6 +289,8 @@ impl DetailMeans {
     pub(crate) const NEUTRAL: Self = Self {
         specular: Vec3::ONE,
         emission: Vec3::ONE,
+        reflection: Vec3::ONE,
+        light: None,
         shininess: 1.0,
         roughness: 1.0,
         metallic: 1.0,
@@ -258,33 +302,37 @@ impl DetailMeans {
     };
 
     fn add(&mut self, maps: &DetailMaps, uvs: &Uvs, triangle: u32, polygon: &[SurfacePoint], weight: f32) {
-        let number = |map: &Option<Sums<1>>| {
-            map.as_ref().map_or(0.0, |sums| weight * uvs.mean(triangle, polygon, sums)[0] as f32)
+        let number = |map: &Option<Placed<1>>| {
+            map.as_ref().map_or(0.0, |map| weight * map.mean(uvs, triangle, polygon)[0] as f32)
         };
-        let three = |map: &Option<Sums<3>>| {
-            map.as_ref().map_or(Vec3::ZERO, |sums| vector(uvs.mean(triangle, polygon, sums)) * weight)
+        let three = |map: &Option<Placed<3>>| {
+            map.as_ref().map_or(Vec3::ZERO, |map| vector(map.mean(uvs, triangle, polygon)) * weight)
         };
         self.specular += three(&maps.specular);
         self.emission += three(&maps.emission);
+        self.reflection += three(&maps.reflection);
+        if maps.light.is_some() {
+            self.light = Some(self.light.unwrap_or_default() + three(&maps.light));
+        }
         self.shininess += number(&maps.shininess);
         self.roughness += number(&maps.roughness);
         self.metallic += number(&maps.metallic);
         self.occlusion += number(&maps.occlusion);
         self.slope_products += three(&maps.slope_products);
         self.normal_slopes += three(&maps.normal_slopes);
-        if let Some(sums) = &maps.slope {
-            let [u, v] = uvs.mean(triangle, polygon, sums);
+        if let Some(map) = &maps.slope {
+            let [u, v] = map.mean(uvs, triangle, polygon);
             self.slope += Vec2::new(u as f32, v as f32) * weight;
         }
-        if let Some(sums) = &maps.normal {
-            self.normal += vector(uvs.mean(triangle, polygon, sums)) * weight;
-        }
+        self.normal += three(&maps.normal);
     }
 
     fn scaled(self, f: f32) -> Self {
         Self {
             specular: self.specular * f,
             emission: self.emission * f,
+            reflection: self.reflection * f,
+            light: self.light.map(|light| light * f),
             shininess: self.shininess * f,
             roughness: self.roughness * f,
             metallic: self.metallic * f,
@@ -301,6 +349,7 @@ impl DetailMeans {
         Self {
             specular: if maps.specular.is_some() { self.specular } else { none.specular },
             emission: if maps.emission.is_some() { self.emission } else { none.emission },
+            reflection: if maps.reflection.is_some() { self.reflection } else { none.reflection },
             shininess: if maps.shininess.is_some() { self.shininess } else { none.shininess },
             roughness: if maps.roughness.is_some() { self.roughness } else { none.roughness },
             metallic: if maps.metallic.is_some() { self.metallic } else { none.metallic },

@@ -61,6 +61,7 @@ impl Shader<'_> {
                 || (!is_flat && self.corner_normals(face).is_some()),
             is_constant: self.surfaces.details(face.id).is_none()
                 && material.diffuse == Vec3::ZERO
+                && material.ambient_albedo() == Vec3::ZERO
                 && material.specular == Vec3::ZERO,
         }
     }

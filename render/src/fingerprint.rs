@@ -1,7 +1,9 @@
 //! Hashes of scenes, the same on every machine: equal scenes have equal numbers and draw equal pictures, so that a picture that is
 //! there already need not be drawn again.
 
-use crate::scene::{AmbientLight, Camera, Details, Material, Mesh, Scene, SkyLight, Texels, Texture};
+use crate::scene::{
+    AmbientLight, Camera, Details, MapPlace, Material, Mesh, Scene, SkyLight, Texels, Texture,
+};
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_shade::{Falloff, Light, Material as ShadeMaterial};
 use pointillist_shadow::Resolution;
@@ -46,6 +48,9 @@ pub fn of_light(scene: &Scene) -> u64 {
     for light in &scene.lights {
         hash.text(&light.name);
         hash.light(&light.light);
+        if light.ambient != Vec3::ZERO {
+            hash.color(light.ambient);
+        }
         hash.int(u64::from(light.shadow));
         hash.int(match light.resolution {
             Resolution::Auto => 0,
@@ -143,20 +148,29 @@ impl Fingerprint {
         mesh.positions.iter().for_each(|&p| self.vector(p));
         mesh.normals.iter().chain(&mesh.colors).for_each(|&n| self.color(n));
         mesh.uvs.iter().for_each(|&DVec2 { x, y }| [x, y].into_iter().for_each(|n| self.float(n)));
-        [&mesh.triangles, &mesh.normal_of, &mesh.uv_of].into_iter().for_each(|list| self.triples(list));
+        let lists = [&mesh.triangles, &mesh.normal_of, &mesh.uv_of, &mesh.second_uv_of];
+        lists.into_iter().for_each(|list| self.triples(list));
         mesh.material_of.iter().chain(&mesh.object_of).for_each(|n| self.0.write(&n.to_le_bytes()));
         mesh.objects.iter().for_each(|object| self.int(u64::from(object.two_sided)));
     }
 
     fn material(&mut self, material: &Material) {
-        let ShadeMaterial { model, diffuse, specular, shininess, roughness, emission, opacity, .. } =
-            material.surface;
+        let ShadeMaterial {
+            model, diffuse, ambient, specular, shininess, roughness, emission, opacity, ..
+        } = material.surface;
         self.text(&format!("{model:?} {:?}", material.wrap));
         [diffuse, specular, emission, Vec3::new(shininess, opacity, roughness)]
             .into_iter()
             .for_each(|c| self.color(c));
+        if let Some(ambient) = ambient {
+            self.color(ambient);
+        }
         self.option(material.diffuse_map);
         self.option(material.opacity_map);
+        let places = [material.diffuse_place, material.opacity_place];
+        if places != [MapPlace::default(); 2] {
+            self.text(&format!("{places:?}"));
+        }
         if material.details != Details::default() {
             self.text(&format!("{:?}", material.details));
         }
@@ -207,8 +221,8 @@ impl Fingerprint {
                 self.vector(position);
                 falloff = f;
             }
-            Light::Spot { position, direction, beam_rad, cutoff_rad, falloff: f, .. } => {
-                [position, direction, DVec3::new(beam_rad, cutoff_rad, 0.0)]
+            Light::Spot { position, direction, beam_rad, cutoff_rad, exponent, falloff: f, .. } => {
+                [position, direction, DVec3::new(beam_rad, cutoff_rad, exponent)]
                     .into_iter()
                     .for_each(|v| self.vector(v));
                 falloff = f;
@@ -247,6 +261,6 @@ mod tests {
     #[test]
     fn every_field_of_a_surface_is_in_the_fingerprint() {
         let text = format!("{:?}", ShadeMaterial::default());
-        assert_eq!(text.matches(": ").count(), 7, "{text}");
+        assert_eq!(text.matches(": ").count(), 8, "{text}");
     }
 }

@@ -55,9 +55,16 @@ const LINE_SHIFT: f64 = 0.03;
 pub(crate) struct SceneLights<'a> {
     pub(crate) samples: Vec<LightSample<'a>>,
     pub(crate) whole: Vec<WholeLight<'a>>,
+    /// Lights in the colours of the ambient light that they add.
+    ambient: Vec<Light>,
 }
 
 impl SceneLights<'_> {
+    /// Ambient light that the lights add at a place, if nothing weakens it.
+    pub(crate) fn ambient_at(&self, position: DVec3) -> Vec3 {
+        self.ambient.iter().map(|light| light.illuminate(0, position).irradiance).sum()
+    }
+
     /// Whether something clear may colour the light of some tiles.
     pub(crate) fn are_tinted(&self) -> bool {
         let mut occasions =
@@ -79,6 +86,9 @@ pub(crate) fn scene_lights<'a>(
     let (scene, surfaces) = (prepared.scene, &*prepared.surfaces);
     let mut lights = SceneLights::default();
     for (light, source) in scene.lights.iter().enumerate() {
+        if source.ambient != Vec3::ZERO {
+            lights.ambient.push(source.light.with_color(source.ambient));
+        }
         let unhindered = (!source.shadow).then_some((Vec3::ONE, &*prepared.geometry, Occasion::Always));
         let casters = unhindered.into_iter().chain(prepared.casters().filter(|_| source.shadow));
         for cast @ (channels, geometry, occasion) in casters {

@@ -1,7 +1,7 @@
 //! A scene with everything computed that does not depend on the view.
 
 use crate::ambient::Ambient;
-use crate::background::sum_up_environment;
+use crate::background::{Panorama, sum_up_environment};
 use crate::casters::{Casters, ClearBoxes, Occasion, clear_casters};
 use crate::emitters::{EmittingPolygon, emitting_polygons, radiance_of_triangle};
 use crate::error::RenderError;
@@ -11,7 +11,7 @@ use crate::scene::{AmbientLight, Scene};
 use crate::see_through::{Sight, sights};
 use crate::surfaces::Surfaces;
 use glam::Vec3;
-use pointillist_micropoint::{Geometry, TexelSums};
+use pointillist_micropoint::Geometry;
 use std::sync::Arc;
 
 /// What all views of a scene share: textures summed up, geometry sorted into clusters.
@@ -26,7 +26,7 @@ pub struct Prepared<'a> {
     pub(crate) sights: Arc<Vec<Sight>>,
     /// Polygons of materials that light others.
     pub(crate) emitters: Arc<Vec<EmittingPolygon>>,
-    pub(crate) environment: Arc<Option<TexelSums<3>>>,
+    pub(crate) environment: Arc<Option<Panorama>>,
     pub(crate) reflections: Arc<Reflections>,
 }
 
@@ -35,7 +35,7 @@ pub struct Prepared<'a> {
 #[derive(Clone)]
 pub struct PreparedMaps {
     surfaces: Arc<Surfaces>,
-    environment: Arc<Option<TexelSums<3>>>,
+    environment: Arc<Option<Panorama>>,
     reflections: Arc<Reflections>,
     sizes: [usize; 3],
 }

@@ -2,10 +2,11 @@
 
 use crate::error::RenderError;
 use crate::monitor::{Monitor, go_on, stage};
-use crate::scene::{AmbientLight, Details, Material, Scene, Surroundings};
+use crate::scene::{AmbientLight, Details, Material, Scene, Surroundings, Texture};
 use glam::Vec3;
-use pointillist_sh::{Panorama, PanoramaProjector, Sh, Weights};
-use pointillist_shade::{CubeMap, Environment, Equirectangular, Model, SMALLEST_ROUGHNESS};
+use pointillist_sh::{self as sh, CubeProjector, Panorama, PanoramaProjector, Sh, Weights};
+use pointillist_shade::{CubeMap, Environment, Equirectangular, Model, SMALLEST_ROUGHNESS, cube_direction};
+use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -116,25 +117,63 @@ impl Reflections {
     }
 }
 
-/// What probes hold of an equirectangular texture where all of it is seen.
+/// What probes hold of a texture of all directions where all of it is seen.
 fn bands_of_probes(scene: &Scene, texture: usize) -> Option<Sh> {
     let AmbientLight::Probes { field, .. } = &scene.ambient else { return None };
     let t = &scene.textures[texture];
-    let pixel = |(x, y)| t.texel(x, y).truncate().to_array();
-    let pixels: Vec<[f32; 3]> =
-        (0..t.height).flat_map(|y| (0..t.width).map(move |x| (x, y))).map(pixel).collect();
+    let pixels: Vec<[f32; 3]> = colors(t).into_iter().map(|color| color.to_array()).collect();
     let (width, height) = (t.width as usize, t.height as usize);
+    if t.is_cube() {
+        let map = sh::CubeMap::from_texels(width, &pixels).ok()?;
+        return CubeProjector::new(width, field.order(), Weights::Exact).ok()?.project(&map).ok();
+    }
     let map = Panorama::new(width, height, &pixels).ok()?;
     PanoramaProjector::new(width, height, field.order(), Weights::Exact).ok()?.project(&map).ok()
 }
 
-/// An equirectangular texture as a cube with about as many texels to a degree.
+fn colors(t: &Texture) -> Vec<Vec3> {
+    (0..t.height).flat_map(|y| (0..t.width).map(move |x| t.texel(x, y).truncate())).collect()
+}
+
+/// A texture of all directions as a cube with about as many texels to a degree.
 fn environment(scene: &Scene, texture: usize, rough: bool) -> Environment {
     let t = &scene.textures[texture];
-    let texels: Vec<Vec3> =
-        (0..t.height).flat_map(|y| (0..t.width).map(move |x| t.texel(x, y).truncate())).collect();
-    let map = Equirectangular::new(&texels, t.width, t.height).expect("a texture has all its texels");
-    let size = (t.width / 4).clamp(16, LARGEST_FACE).next_power_of_two();
-    let map = Environment::sharp(CubeMap::from_function(size, |d| map.sample(d)));
+    let texels = colors(t);
+    let map = Environment::sharp(if t.is_cube() {
+        of_cube(t.width, &texels)
+    } else {
+        let map = Equirectangular::new(&texels, t.width, t.height).expect("a texture has all its texels");
+        let size = (t.width / 4).clamp(16, LARGEST_FACE).next_power_of_two();
+        CubeMap::from_function(size, |d| map.sample(d))
+    });
     if rough { map.with_rough_levels() } else { map }
+}
+
+/// A cube's own texels, unless it is too large or cannot be halved down to one texel, as blurred levels want it.
+fn of_cube(size: u32, texels: &[Vec3]) -> CubeMap {
+    let map = CubeMap::new(size, texels).expect("a texture has all its texels");
+    let wanted = size.next_power_of_two().min(LARGEST_FACE);
+    match wanted.cmp(&size) {
+        Ordering::Equal => map,
+        Ordering::Greater => CubeMap::from_function(wanted, |d| map.sample(d)),
+        // One sample in each texel would miss what lies between: the texels that a texel covers are averaged.
+        Ordering::Less => averaged(&map, wanted),
+    }
+}
+
+/// Means over as many samples in each texel as the larger map has texels there.
+fn averaged(map: &CubeMap, size: u32) -> CubeMap {
+    let steps = map.size().div_ceil(size);
+    let (n, k) = (f64::from(size), f64::from(steps));
+    let place = |i: u32, step: u32| 2.0 * (f64::from(i) + (f64::from(step) + 0.5) / k) / n - 1.0;
+    let mut texels = Vec::with_capacity(6 * size as usize * size as usize);
+    for (face, y, x) in (0..6).flat_map(|f| (0..size).flat_map(move |y| (0..size).map(move |x| (f, y, x)))) {
+        let of_row = |dy: u32| {
+            (0..steps)
+                .map(move |dx| map.sample(cube_direction(face, place(x, dx), place(y, dy))))
+                .sum::<Vec3>()
+        };
+        texels.push((0..steps).map(of_row).sum::<Vec3>() / (steps * steps) as f32);
+    }
+    CubeMap::new(size, &texels).expect("each texel was made")
 }

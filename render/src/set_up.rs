@@ -1,5 +1,6 @@
 //! Everything about a micropoint that does not depend on lights: place, normals, material, ambient light.
 
+use crate::detail::Mapped;
 use crate::face_look::FaceLook;
 use crate::shader::{Place, Point, ShadedSurface, Shader};
 use glam::{DVec2, Vec3};
@@ -28,15 +29,18 @@ impl Shader<'_> {
         let place = self.place(tile, m.grid, face, look);
         let outlines =
             |each: &mut dyn FnMut(&[SurfacePoint], f32)| self.for_outlines(tile, m, face, polygon, each);
-        let (surface, occlusion) = self.surface(face, look, &place, outlines);
-        let indirect = if self.surfaces.details(face.id).is_some() {
-            self.surrounding_light(&self.described(face).details, &surface, occlusion, hint)
-        } else if surface.material.diffuse == Vec3::ZERO {
+        let (surface, mapped) = self.surface(face, look, &place, outlines);
+        let mut indirect = if self.surfaces.details(face.id).is_some() {
+            self.surrounding_light(&self.described(face).details, &surface, &mapped, hint)
+        } else if surface.material.ambient_albedo() == Vec3::ZERO {
             // What reflects nothing needs no light.
             Vec3::ZERO
         } else {
-            self.ambient.at(&surface.spot(surface.normal), hint) * surface.material.diffuse
+            self.ambient.at(&surface.spot(surface.normal), hint) * surface.material.ambient_albedo()
         };
+        if surface.material.model.is_opengl() {
+            indirect += self.lights.ambient_at(place.position) * surface.material.ambient_albedo();
+        }
         Point { place, normal: surface.normal, material: surface.material, direct: Vec3::ZERO, indirect }
     }
 
@@ -55,21 +59,21 @@ impl Shader<'_> {
         Place { position, barycentric, to_eye: to_eye.as_vec3(), face_normal }
     }
 
-    /// A place of a face with its maps averaged over `outlines`, each with its weight, and the share of ambient light that its maps leave.
+    /// A place of a face with its maps averaged over `outlines`, each with its weight, and what its maps say of ambient light.
     pub(crate) fn surface(
         &self,
         face: &Face,
         look: &FaceLook,
         place: &Place,
         mut outlines: impl FnMut(&mut dyn FnMut(&[SurfacePoint], f32)),
-    ) -> (ShadedSurface, f32) {
+    ) -> (ShadedSurface, Mapped) {
         let Place { position, barycentric, to_eye, face_normal } = *place;
         let mut material = self.textured(face, look.material, &mut outlines);
         if self.economy.is_none() {
             material = self.widened_by_curvature(face, material, &mut outlines);
         }
         if !self.scene.mesh.colors.is_empty() {
-            material.diffuse *= self.vertex_color(face.id, barycentric);
+            material = material.colored(self.vertex_color(face.id, barycentric));
         }
         let normal = match look.varies_by_corner {
             true => self.shading_normal(face, barycentric, face_normal, to_eye),
@@ -77,11 +81,11 @@ impl Shader<'_> {
         };
         let (triangle, front) = (face.id, face.front);
         let mut s = ShadedSurface { triangle, front, position, to_eye, face_normal, normal, material };
-        let occlusion = match self.surfaces.details(face.id) {
+        let mapped = match self.surfaces.details(face.id) {
             Some(maps) => self.apply_maps(&self.described(face).details, maps, &mut s, outlines),
-            None => 1.0,
+            None => Mapped::NOTHING,
         };
-        (s, occlusion)
+        (s, mapped)
     }
 
     fn shading_normal(&self, face: &Face, barycentric: Vec3, face_normal: Vec3, to_eye: Vec3) -> Vec3 {
@@ -111,7 +115,7 @@ impl Shader<'_> {
         if total <= 0.0 {
             return material;
         }
-        material.with_diffuse(material.diffuse * (sum / total))
+        material.colored(sum / total)
     }
 
     /// What is seen of a micropoint, piece by piece, with the weight of each.

@@ -2,7 +2,7 @@
 
 use crate::copies::{MaskedCopy, OtherSide, masked_copies, other_sides};
 use crate::detail_maps::{DetailMaps, DetailTable};
-use crate::scene::{Details, Material, Scene, Texture};
+use crate::scene::{Details, MapPlace, Material, Scene, Texture};
 use crate::texel_sums::{Lazy, color_sums, opacity_sums, when_needed};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec3, Vec4};
@@ -27,6 +27,18 @@ enum Textured {
         /// By itself: shadows ask for it often, and for nothing else.
         opacity: Lazy<MaskSums>,
     },
+    /// Both, in different places of the surface: texels of the one have no texel of the other.
+    Apart {
+        color: Lazy<TexelSums<3>>,
+        opacity: Lazy<MaskSums>,
+    },
+}
+
+/// Where the textures of colour and of opacity lie.
+#[derive(Clone, Copy)]
+struct Places {
+    color: MapPlace,
+    opacity: MapPlace,
 }
 
 /// Colour under a mask of opacity.
@@ -78,9 +90,21 @@ impl MaskedColor {
     }
 }
 
+impl Places {
+    fn of(material: &Material) -> Self {
+        Self { color: material.diffuse_place, opacity: material.opacity_place }
+    }
+
+    fn are_one(&self) -> bool {
+        self.color == self.opacity
+    }
+}
+
 /// What does not depend on where the triangles are.
 struct Still {
     textures: Vec<Arc<Textured>>,
+    /// By material, as `textures`.
+    places: Vec<Places>,
     uvs: Uvs,
     surface_of: Vec<u32>,
     surfaces: Vec<SurfaceOpacity>,
@@ -108,7 +132,8 @@ impl Surfaces {
         let any_texture = any_detail || textures.iter().any(|t| !matches!(**t, Textured::Nothing));
         let uvs = if any_texture { Uvs::new(&scene.mesh) } else { Uvs::default() };
         let material_of = scene.mesh.material_of.clone();
-        let still = Still { textures, uvs, surface_of, surfaces, material_of, details };
+        let places = scene.materials.iter().map(Places::of).collect();
+        let still = Still { textures, places, uvs, surface_of, surfaces, material_of, details };
         Ok(Self::of_places(scene, Arc::new(still)))
     }
 
@@ -178,9 +203,13 @@ impl Surfaces {
         &self.still.textures[self.still.material_of[triangle as usize] as usize]
     }
 
+    fn places(&self, triangle: u32) -> &Places {
+        &self.still.places[self.still.material_of[triangle as usize] as usize]
+    }
+
     /// Whether the colour of a triangle varies.
     pub(crate) fn has_color(&self, triangle: u32) -> bool {
-        matches!(self.textured(triangle), Textured::Color(_) | Textured::Masked { .. })
+        !matches!(self.textured(triangle), Textured::Nothing | Textured::Opacity(_))
     }
 
     /// Whether the opacity of a triangle varies.
@@ -191,7 +220,9 @@ impl Surfaces {
     fn mask(&self, triangle: u32) -> Option<&MaskSums> {
         match self.textured(triangle) {
             Textured::Nothing | Textured::Color(_) => None,
-            Textured::Opacity(mask) | Textured::Masked { opacity: mask, .. } => Some(mask),
+            Textured::Opacity(mask)
+            | Textured::Masked { opacity: mask, .. }
+            | Textured::Apart { opacity: mask, .. } => Some(mask),
         }
     }
 
@@ -205,11 +236,14 @@ impl Surfaces {
     pub(crate) fn color(&self, triangle: u32, polygon: &[SurfacePoint]) -> Vec3 {
         match self.textured(triangle) {
             Textured::Nothing | Textured::Opacity(_) => Vec3::ONE,
-            Textured::Color(sums) => {
-                Vec3::from_array(self.still.uvs.mean(triangle, polygon, sums).map(|v| v as f32))
+            Textured::Color(sums) | Textured::Apart { color: sums, .. } => {
+                let place = &self.places(triangle).color;
+                Vec3::from_array(self.still.uvs.mean(triangle, polygon, sums, place).map(|v| v as f32))
             }
             Textured::Masked { color, .. } => {
-                let mean = self.still.uvs.mean(triangle, polygon, &color.premultiplied).map(|v| v as f32);
+                let place = &self.places(triangle).color;
+                let mean = self.still.uvs.mean(triangle, polygon, &color.premultiplied, place);
+                let mean = mean.map(|v| v as f32);
                 color.straight(Vec4::from_array(mean))
             }
         }
@@ -218,17 +252,21 @@ impl Surfaces {
 
 impl TexturedOpacity for Surfaces {
     fn mean_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
-        self.mask(triangle).map_or(1.0, |mask| self.still.uvs.mean_of_mask(triangle, polygon, mask) as f32)
+        self.mask(triangle).map_or(1.0, |mask| {
+            self.still.uvs.mean_of_mask(triangle, polygon, mask, &self.places(triangle).opacity) as f32
+        })
     }
 
     fn rough_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> f32 {
-        self.mask(triangle)
-            .map_or(1.0, |mask| self.still.uvs.rough_mean_of_mask(triangle, polygon, mask) as f32)
+        self.mask(triangle).map_or(1.0, |mask| {
+            self.still.uvs.rough_mean_of_mask(triangle, polygon, mask, &self.places(triangle).opacity) as f32
+        })
     }
 
     fn even_opacity(&self, triangle: u32, polygon: &[SurfacePoint]) -> Option<f32> {
         self.mask(triangle).map_or(Some(1.0), |mask| {
-            self.still.uvs.uniform_mean_of_mask(triangle, polygon, mask).map(|mean| mean as f32)
+            let place = &self.places(triangle).opacity;
+            self.still.uvs.uniform_mean_of_mask(triangle, polygon, mask, place).map(|mean| mean as f32)
         })
     }
 }
@@ -237,7 +275,7 @@ impl TexturedOpacity for Surfaces {
 fn surfaces_by_material(scene: &Scene, textures: &[Arc<Textured>]) -> (Vec<SurfaceOpacity>, Vec<u32>) {
     let mut surfaces = Vec::with_capacity(2 * scene.materials.len());
     for (m, t) in scene.materials.iter().zip(textures) {
-        let textured_opacity = matches!(**t, Textured::Opacity(_) | Textured::Masked { .. });
+        let textured_opacity = !matches!(**t, Textured::Nothing | Textured::Color(_));
         let opacity = m.surface.opacity;
         surfaces.push(SurfaceOpacity { opacity, textured_opacity, two_sided: true });
         surfaces.push(SurfaceOpacity { opacity, textured_opacity, two_sided: false });
@@ -256,10 +294,12 @@ fn textured_by_material(scene: &Scene) -> Result<Vec<Arc<Textured>>, MicropointE
     let mut different = vec![];
     let mut number_of = Vec::with_capacity(scene.materials.len());
     for m in &scene.materials {
-        let number = *numbers.entry((m.diffuse_map, m.opacity_map, m.wrap)).or_insert_with(|| {
-            different.push(m);
-            different.len() - 1
-        });
+        let number = *numbers
+            .entry((m.diffuse_map, m.opacity_map, m.wrap, Places::of(m).are_one()))
+            .or_insert_with(|| {
+                different.push(m);
+                different.len() - 1
+            });
         number_of.push(number);
     }
     let sums =
@@ -285,6 +325,10 @@ fn textured(material: &Material, textures: &[Texture]) -> Result<Textured, Micro
         (None, None) => Textured::Nothing,
         (Some(color), None) => Textured::Color(when_needed([color], move |[color]| color_sums(color, wrap))?),
         (None, Some(mask)) => Textured::Opacity(opacity(mask)?),
+        (Some(color), Some(mask)) if !Places::of(material).are_one() => Textured::Apart {
+            color: when_needed([color], move |[color]| color_sums(color, wrap))?,
+            opacity: opacity(mask)?,
+        },
         (Some(color), Some(mask)) => {
             let make = move |[color, mask]: [&Texture; 2]| MaskedColor::new(color, mask, wrap);
             Textured::Masked { color: Box::new(when_needed([color, mask], make)?), opacity: opacity(mask)? }

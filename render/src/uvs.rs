@@ -1,27 +1,39 @@
 //! Where textures lie on triangles, and means of texels over what is seen of them.
 
-use crate::scene::{Mesh, NONE};
+use crate::scene::{MapPlace, Mesh, UvSet};
 use glam::{DVec2, DVec3};
 use pointillist_micropoint::{MaskSums, SurfacePoint, TexelCorner, TexelSums, TexelWrap};
 use pointillist_shade::Wrap;
 
 /// Texture coordinates of the corners of all triangles; nothing for a scene without textures.
 #[derive(Default)]
-pub(crate) struct Uvs(Vec<[DVec2; 3]>);
+pub(crate) struct Uvs {
+    first: Vec<[DVec2; 3]>,
+    /// Empty if no triangle has other coordinates than those of the first set.
+    second: Vec<[DVec2; 3]>,
+}
 
 impl Uvs {
     /// Those of a mesh; zero where it has none.
     pub(crate) fn new(mesh: &Mesh) -> Self {
-        let uv = |i: u32| if i == NONE { DVec2::ZERO } else { mesh.uvs[i as usize] };
-        if mesh.uv_of.is_empty() {
-            return Self(vec![[DVec2::ZERO; 3]; mesh.triangles.len()]);
-        }
-        Self(mesh.uv_of.iter().map(|t| t.map(uv)).collect())
+        let set = |set: UvSet| -> Vec<[DVec2; 3]> {
+            let place = MapPlace { set, ..MapPlace::default() };
+            (0..mesh.triangles.len()).map(|t| mesh.map_corners(t, &place).unwrap_or_default()).collect()
+        };
+        let second = if mesh.second_uv_of.is_empty() { vec![] } else { set(UvSet::Second) };
+        Self { first: set(UvSet::First), second }
     }
 
-    /// Coordinates of a triangle's corners.
-    pub(crate) fn of(&self, triangle: u32) -> [DVec2; 3] {
-        self.0.get(triangle as usize).copied().unwrap_or_default()
+    /// A triangle's coordinates in both sets.
+    pub(crate) fn both(&self, triangle: u32) -> [[DVec2; 3]; 2] {
+        [UvSet::First, UvSet::Second].map(|set| self.of(triangle, &MapPlace { set, ..MapPlace::default() }))
+    }
+
+    /// Coordinates of a triangle's corners on a map.
+    pub(crate) fn of(&self, triangle: u32, place: &MapPlace) -> [DVec2; 3] {
+        let has_own = place.set == UvSet::Second && !self.second.is_empty();
+        let set = if has_own { &self.second } else { &self.first };
+        place.of(set.get(triangle as usize).copied().unwrap_or_default())
     }
 
     /// Mean of a map over a polygon of a triangle.
@@ -30,18 +42,31 @@ impl Uvs {
         triangle: u32,
         polygon: &[SurfacePoint],
         map: &TexelSums<N>,
+        place: &MapPlace,
     ) -> [f64; N] {
-        map.mean(self.corners(triangle, polygon, map).as_slice())
+        map.mean(self.corners(triangle, polygon, map, place).as_slice())
     }
 
     /// Mean of a mask over a polygon of a triangle.
-    pub(crate) fn mean_of_mask(&self, triangle: u32, polygon: &[SurfacePoint], mask: &MaskSums) -> f64 {
-        mask.mean(self.corners(triangle, polygon, mask.sums()).as_slice())
+    pub(crate) fn mean_of_mask(
+        &self,
+        triangle: u32,
+        polygon: &[SurfacePoint],
+        mask: &MaskSums,
+        place: &MapPlace,
+    ) -> f64 {
+        mask.mean(self.corners(triangle, polygon, mask.sums(), place).as_slice())
     }
 
     /// The same roughly ([`MaskSums::rough_mean`]).
-    pub(crate) fn rough_mean_of_mask(&self, triangle: u32, polygon: &[SurfacePoint], mask: &MaskSums) -> f64 {
-        mask.rough_mean(self.corners(triangle, polygon, mask.sums()).as_slice())
+    pub(crate) fn rough_mean_of_mask(
+        &self,
+        triangle: u32,
+        polygon: &[SurfacePoint],
+        mask: &MaskSums,
+        place: &MapPlace,
+    ) -> f64 {
+        mask.rough_mean(self.corners(triangle, polygon, mask.sums(), place).as_slice())
     }
 
     /// The mean of a mask if it is uniform ([`MaskSums::uniform_mean`]).
@@ -50,8 +75,9 @@ impl Uvs {
         triangle: u32,
         polygon: &[SurfacePoint],
         mask: &MaskSums,
+        place: &MapPlace,
     ) -> Option<f64> {
-        mask.uniform_mean(self.corners(triangle, polygon, mask.sums()).as_slice())
+        mask.uniform_mean(self.corners(triangle, polygon, mask.sums(), place).as_slice())
     }
 
     fn corners<const N: usize>(
@@ -59,8 +85,9 @@ impl Uvs {
         triangle: u32,
         polygon: &[SurfacePoint],
         sums: &TexelSums<N>,
+        place: &MapPlace,
     ) -> Corners {
-        let uv = &self.0[triangle as usize];
+        let uv = &self.of(triangle, place);
         let size = DVec2::new(f64::from(sums.width()), f64::from(sums.height()));
         let mut corners = Corners::default();
         debug_assert!(polygon.len() <= corners.list.len(), "{} corners", polygon.len());
@@ -118,7 +145,8 @@ mod tests {
     #[test]
     fn what_runs_along_the_top_of_a_texture_sees_its_top_row() -> Result<(), MicropointError> {
         let rows = TexelSums::<1>::new(4, 3, TexelWrap::Repeat, |_, y| [y as f32])?;
-        let uvs = Uvs(vec![[dvec2(0.1, 1.0), dvec2(0.7, 1.0), dvec2(0.3, 1.0)]]);
+        let uvs = Uvs { first: vec![[dvec2(0.1, 1.0), dvec2(0.7, 1.0), dvec2(0.3, 1.0)]], second: vec![] };
+        let plain = MapPlace::default();
         for k in 1..100 {
             let (y, z) = (f64::from(k) / 301.0, f64::from(k) / 207.0);
             let place = |y: f64, z: f64| SurfacePoint {
@@ -127,7 +155,8 @@ mod tests {
                 rational: 1.0,
                 barycentric: DVec3::new(1.0 - y - z, y, z),
             };
-            assert_eq!(uvs.mean(0, &[place(y, z), place(0.9 * y, z), place(y, 0.9 * z)], &rows), [0.0]);
+            let seen = [place(y, z), place(0.9 * y, z), place(y, 0.9 * z)];
+            assert_eq!(uvs.mean(0, &seen, &rows, &plain), [0.0]);
         }
         Ok(())
     }

@@ -167,7 +167,7 @@ impl Shader<'_> {
         // The base below a GGX coat is no constant: it gets what the coat lets through.
         let constant = material.model != Model::Ggx || material.specular == Vec3::ZERO;
         if measured.is_none() && constant && emission.falloff == Falloff::InverseSquare {
-            sum += material.diffuse * emission.radiance * seen.share(normal.as_dvec3()) as f32;
+            sum += material.lambert_albedo() * emission.radiance * seen.share(normal.as_dvec3()) as f32;
             material.diffuse = Vec3::ZERO;
             if material.model == Model::Lambert || material.specular == Vec3::ZERO {
                 return sum;

@@ -226,7 +226,7 @@ fn a_map_counts_by_its_mean_over_a_polygon() {
     let mut own = scene();
     let texture = own.add_texture(Texture::from_srgb("map", [4, 4], |x, _| [if x < 2 { 255 } else { 0 }; 3]));
     let material = lamp_material(&mut own, |details| {
-        details.emission_map = Some(Map { texture, wrap: Default::default(), channel: Default::default() });
+        details.emission_map = Some(Map::new(texture));
     });
     let uvs = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| glam::dvec2(u, v));
     let quad = panel();

@@ -44,6 +44,8 @@ fn lists_of_the_wrong_length_are_named() {
     assert_eq!(error, SceneError::Length { list: "normal_of", length: 2, expected: 1 });
     let error = refusal(|s| s.mesh.uv_of.push([NONE; 3]));
     assert_eq!(error, SceneError::Length { list: "uv_of", length: 2, expected: 1 });
+    let error = refusal(|s| s.mesh.second_uv_of = vec![[NONE; 3]; 2]);
+    assert_eq!(error, SceneError::Length { list: "second_uv_of", length: 2, expected: 1 });
     let error = refusal(|s| s.mesh.colors = vec![Vec3::ONE]);
     assert_eq!(error, SceneError::Length { list: "colors", length: 1, expected: 3 });
 }
@@ -55,6 +57,7 @@ fn indices_beyond_their_list_are_named() {
     assert_eq!(refusal(|s| s.mesh.triangles[0][1] = NONE), corner("triangles", 3));
     assert_eq!(refusal(|s| s.mesh.normal_of[0] = [0, NONE, NONE]), corner("normal_of", 0));
     assert_eq!(refusal(|s| s.mesh.uv_of[0] = [0, NONE, NONE]), corner("uv_of", 0));
+    assert_eq!(refusal(|s| s.mesh.second_uv_of = vec![[0; 3]]), corner("second_uv_of", 0));
     let index = |list, index, count| SceneError::Index { list, triangle: 0, index, count };
     assert_eq!(refusal(|s| s.mesh.material_of[0] = 7), index("material_of", 7, 1));
     assert_eq!(refusal(|s| s.mesh.object_of[0] = 1), index("object_of", 1, 1));
@@ -93,6 +96,10 @@ fn numbers_that_are_not_finite_are_named() {
     let infinite =
         LightSource::new("lamp", Light::Directional { direction: DVec3::X, irradiance: Vec3::INFINITY });
     assert_eq!(refusal(|s| s.lights[0] = infinite).to_string(), "light `lamp` is not finite");
+    assert_eq!(
+        what(|s| s.materials[0].diffuse_place.map_from_uv.translation.x = f64::NAN),
+        "material `grey`: the place of a map is not finite"
+    );
     assert_eq!(what(|s| s.image.background.y = f32::NAN), "image.background is not finite");
     assert_eq!(what(|s| s.mesh.normals.push(Vec3::NAN)), "`normals[0]` is not finite");
     // Positions are checked where geometry is built from them.

@@ -35,7 +35,7 @@ fn grey(albedo: f32) -> Material {
 fn map(scene: &mut Scene, color: Vec4) -> Map {
     let texture =
         scene.add_texture(Texture::new("even", [2, 2], Texels::Float(vec![color.to_array(); 4].into())));
-    Map { texture, wrap: shade::Wrap::Repeat, channel: Channel::Green }
+    Map { channel: Channel::Green, ..Map::new(texture) }
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn bumps_within_a_pixel_widen_the_highlight_by_the_variance_of_their_slopes() {
     // A pixel sees the texture once: eight waves with the slopes s, 0, −s, 0.
     let waves = (0..32 * 4).map(|i| [100, 150, 100, 50][i % 4]).collect();
     let texture = bumpy.add_texture(Texture::new("waves", [32, 4], Texels::from_grays(waves)));
-    let map = Map { texture, wrap: shade::Wrap::Repeat, channel: Channel::Mean };
+    let map = Map::new(texture);
     let height = 0.01;
     bumpy.materials[0].details.bump = Some(Bump { map, height: BumpHeight::World(height) });
     // A difference of 100 steps over two texels; a texture spans a quarter.
@@ -199,7 +199,7 @@ fn slopes_that_do_not_vary_change_no_highlight() {
         if let Some((size, texel)) = texels {
             let texels = Texels::OpaqueLinear8(vec![texel; (size * size) as usize].into());
             let texture = scene.add_texture(Texture::new("even", [size; 2], texels));
-            let map = Map { texture, wrap: shade::Wrap::Repeat, channel: Channel::Mean };
+            let map = Map::new(texture);
             scene.materials[0].details.normal = Some((map, 1.0));
         }
         render(&scene, &DrawOptions::DEFAULT, &()).unwrap().color

@@ -111,7 +111,8 @@ pub use auto_uv::AutoUv;
 pub use bump::{UvFrame, keep_visible, slope_of_heights};
 pub use creases::{CornerNormals, corner_normals};
 pub use environment::{
-    CubeMap, Environment, Equirectangular, cube_direction, equirectangular_direction, equirectangular_uv,
+    CubeMap, Environment, Equirectangular, cube_direction, cube_place, equirectangular_direction,
+    equirectangular_uv,
 };
 pub use error::{LightError, ShadeError};
 pub use ggx_table::coat_albedo;

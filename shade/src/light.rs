@@ -67,6 +67,8 @@ pub enum Light {
         beam_rad: f64,
         /// Half-angle of the whole cone; where it is not beyond `beam_rad` the edge is sharp.
         cutoff_rad: f64,
+        /// The cosine of the angle from the axis to this power is a further factor, as in OpenGL; 0 for none.
+        exponent: f64,
         /// How it weakens with distance.
         falloff: Falloff,
     },
@@ -238,9 +240,11 @@ impl Light {
         let strength = match *self {
             Self::Directional { .. } => unreachable!("a directional light has no position"),
             Self::Point { falloff, .. } => falloff.at(d),
-            Self::Spot { direction, beam_rad, cutoff_rad, falloff, .. } => {
+            Self::Spot { direction, beam_rad, cutoff_rad, exponent, falloff, .. } => {
                 let (axis, _) = direction_and_length(direction);
-                falloff.at(d) * cone(axis, -to_light, beam_rad, cutoff_rad)
+                let towards_axis =
+                    if exponent > 0.0 { axis.dot(-to_light).max(0.0).powf(exponent) } else { 1.0 };
+                falloff.at(d) * cone(axis, -to_light, beam_rad, cutoff_rad) * towards_axis
             }
             Self::Rect { edge_u, edge_v, falloff, .. } => {
                 let (front, area) = direction_and_length(edge_u.cross(edge_v));
@@ -272,6 +276,20 @@ impl Light {
                 radiance
             }
         }
+    }
+
+    /// The same light with another quantity.
+    #[must_use]
+    pub fn with_color(mut self, color: Vec3) -> Self {
+        let own = match &mut self {
+            Self::Directional { irradiance, .. } => irradiance,
+            Self::Point { intensity, .. } | Self::Spot { intensity, .. } => intensity,
+            Self::Rect { radiance, .. } | Self::Polygon { radiance, .. } | Self::Line { radiance, .. } => {
+                radiance
+            }
+        };
+        *own = color;
+        self
     }
 
     fn parallel(&self, direction: DVec3, source: Source) -> Incident {

@@ -28,6 +28,19 @@ pub enum Model {
     /// a Lambert base that gets the light which the coat lets through. Conserves energy for `diffuse ≤ 1` and
     /// `specular ≤ 1`. Light that would bounce more than once between the facets is lost: up to half at roughness 1.
     Ggx,
+    /// OpenGL's formula \[5\], of what arrives: `E · (max(l·n,0) · diffuse + max(h·n,0)^m · specular)`, the highlight only where l·n > 0, with `h` half way
+    /// between light and eye. Not physical: not divided by π, and the highlight is not weighted by the cosine. [`crate::gl`] has the whole of it.
+    OpenGl,
+    /// The same with Phong's `max(r·v,0)^m` \[1\], with `r` the mirrored light.
+    OpenGlPhong,
+}
+
+impl Model {
+    /// Whether it is OpenGL's formula, with either highlight.
+    #[must_use]
+    pub const fn is_opengl(self) -> bool {
+        matches!(self, Self::OpenGl | Self::OpenGlPhong)
+    }
 }
 
 /// What a surface is made of, at one point (textures are looked up before).
@@ -40,6 +53,8 @@ pub struct Material {
     pub model: Model,
     /// Diffuse albedo.
     pub diffuse: Vec3,
+    /// How ambient light is reflected, if not as `diffuse`: OpenGL's Ma.
+    pub ambient: Option<Vec3>,
     /// Specular albedo; for [`Model::Ggx`] the reflectance at normal incidence. Not used by [`Model::Lambert`].
     pub specular: Vec3,
     /// The exponent `m` of the Phong models; negative counts as 0.
@@ -66,6 +81,7 @@ impl Material {
         Self {
             model: Model::Lambert,
             diffuse,
+            ambient: None,
             specular: Vec3::ZERO,
             shininess: 0.0,
             roughness: 1.0,
@@ -90,6 +106,33 @@ impl Material {
     pub const fn with_diffuse(mut self, diffuse: Vec3) -> Self {
         self.diffuse = diffuse;
         self
+    }
+
+    /// The same that reflects ambient light by an albedo of its own.
+    #[must_use]
+    pub const fn with_ambient(mut self, ambient: Vec3) -> Self {
+        self.ambient = Some(ambient);
+        self
+    }
+
+    /// The same with its colours multiplied, as by a texture: the diffuse and the ambient albedo.
+    #[must_use]
+    pub fn colored(mut self, factor: Vec3) -> Self {
+        self.diffuse *= factor;
+        self.ambient = self.ambient.map(|ambient| ambient * factor);
+        self
+    }
+
+    /// What ambient light is reflected by.
+    #[must_use]
+    pub fn ambient_albedo(&self) -> Vec3 {
+        self.ambient.unwrap_or(self.diffuse)
+    }
+
+    /// The albedo of the Lambert surface that reflects what this one's diffuse part reflects of light from lights: for OpenGL's formula, π times `diffuse`.
+    #[must_use]
+    pub fn lambert_albedo(&self) -> Vec3 {
+        if self.model.is_opengl() { self.diffuse * std::f32::consts::PI } else { self.diffuse }
     }
 
     /// The same with another model, specular albedo and exponent.
@@ -146,11 +189,11 @@ impl Material {
             }
             Model::NormalizedPhong => self.shininess = exponent(m, 4.0),
             Model::NormalizedBlinnPhong => self.shininess = exponent(m, 1.0),
-            Model::Phong => {
+            Model::Phong | Model::OpenGlPhong => {
                 self.shininess = exponent(m, 4.0);
                 self.specular *= brdf::phong_norm(self.shininess) / brdf::phong_norm(m);
             }
-            Model::BlinnPhong => {
+            Model::BlinnPhong | Model::OpenGl => {
                 self.shininess = exponent(m, 1.0);
                 self.specular *= brdf::blinn_norm(self.shininess) / brdf::blinn_norm(m);
             }
@@ -168,7 +211,7 @@ impl Material {
 
     /// The BRDF: radiance towards `to_eye` per irradiance from `to_light`; 0 where either is below the surface.
     ///
-    /// All three are unit vectors away from the surface. Reciprocal: exchanging light and eye gives the same.
+    /// All three are unit vectors away from the surface. Reciprocal: exchanging light and eye gives the same; OpenGL's formula is not.
     #[must_use]
     pub fn brdf(&self, normal: Vec3, to_light: Vec3, to_eye: Vec3) -> Vec3 {
         if normal.dot(to_light) <= 0.0 || normal.dot(to_eye) <= 0.0 {
@@ -176,6 +219,9 @@ impl Material {
         }
         let m = self.shininess;
         let lobe = match self.model {
+            Model::OpenGl | Model::OpenGlPhong => {
+                return self.opengl(normal, to_light, to_eye) / normal.dot(to_light);
+            }
             Model::Lambert => return brdf::lambert(self.diffuse),
             Model::Ggx => {
                 return ggx::brdf(self.diffuse, self.specular, self.roughness, normal, to_light, to_eye);
@@ -199,11 +245,24 @@ impl Material {
         if cos_light <= 0.0 || incident.is_dark() {
             return Vec3::ZERO;
         }
+        if self.model.is_opengl() {
+            return finite(self.opengl(normal, incident.to_light, to_eye) * incident.irradiance);
+        }
         let f = match self.model {
             Model::Lambert => brdf::lambert(self.diffuse),
             _ => self.brdf(normal, incident.to_light, to_eye),
         };
         finite(f * incident.irradiance * cos_light)
+    }
+
+    /// OpenGL's formula for light of irradiance 1 that comes from above the surface.
+    fn opengl(&self, normal: Vec3, to_light: Vec3, to_eye: Vec3) -> Vec3 {
+        let m = self.shininess;
+        let highlight = match self.model {
+            Model::OpenGlPhong => brdf::phong_lobe(normal, to_light, to_eye, m),
+            _ => brdf::blinn_lobe(normal, to_light, to_eye, m),
+        };
+        self.diffuse * normal.dot(to_light) + self.specular * highlight
     }
 
     /// The lobe of the specular part, for one direction to the eye.
@@ -216,8 +275,8 @@ impl Material {
             Model::Lambert => 1.0,
             // Seen from aside the lobe is narrower across, by the cosine.
             Model::Ggx => 2.0 * roughness::alpha(self.roughness) * normal.dot(to_eye).clamp(0.1, 1.0),
-            Model::Phong | Model::NormalizedPhong => by_power,
-            Model::BlinnPhong | Model::NormalizedBlinnPhong => 2.0 * by_power,
+            Model::Phong | Model::NormalizedPhong | Model::OpenGlPhong => by_power,
+            Model::BlinnPhong | Model::NormalizedBlinnPhong | Model::OpenGl => 2.0 * by_power,
         };
         Lobe { axis: 2.0 * normal.dot(to_eye) * normal - to_eye, width_rad }
     }

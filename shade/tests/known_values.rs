@@ -63,6 +63,7 @@ fn spot_falls_linearly_in_the_angle() {
         intensity: Vec3::ONE,
         beam_rad: 10f64.to_radians(),
         cutoff_rad: 20f64.to_radians(),
+        exponent: 0.0,
         falloff: Falloff::Polynomial([1.0, 0.0, 0.0]),
     };
     for (degrees, wanted) in [(0.0, 1.0), (9.99, 1.0), (12.5, 0.75), (15.0, 0.5), (20.0, 0.0), (120.0, 0.0)] {
@@ -320,4 +321,46 @@ fn no_variance_widens_nothing() {
     let matt = Material::lambert(Vec3::ONE);
     assert_eq!(matt.widened(1.0), matt);
     assert_eq!(Material::ggx(Vec3::ZERO, Vec3::ONE, 0.5).widened(f32::INFINITY).roughness, 1.0);
+}
+
+#[test]
+fn a_material_of_opengls_formula_has_the_values_of_the_formula() {
+    let spot = gl::Spot { direction: dvec3(0.3, -1.0, 0.1), cutoff_rad: 1.0, exponent: 3.0 };
+    let attenuation = [0.5, 0.25, 0.125];
+    let lamp = gl::Light { ambient: Vec3::ZERO, spot: Some(spot), attenuation, ..LAMP };
+    let lamp = gl::Light { diffuse: vec3(0.9, 0.6, 0.3), specular: vec3(0.9, 0.6, 0.3), ..lamp };
+    let gl::Placement::At(position) = lamp.placement else { panic!("a lamp in a place") };
+    let same = Light::Spot {
+        position,
+        direction: spot.direction,
+        intensity: lamp.diffuse,
+        beam_rad: spot.cutoff_rad,
+        cutoff_rad: spot.cutoff_rad,
+        exponent: 3.0,
+        falloff: Falloff::Polynomial(attenuation),
+    };
+    let material = gl::Material { ambient: Vec3::ZERO, emission: Vec3::ZERO, ..WHITE };
+    let surface = Material::lambert(material.diffuse).with_specular(
+        Model::OpenGl,
+        material.specular,
+        material.shininess,
+    );
+    for (x, z) in [(0.0, 0.0), (0.4, -0.2), (-0.7, 0.3), (3.0, 0.0)] {
+        let (point, normal) = (dvec3(x, 0.0, z), vec3(0.1, 0.9, 0.2).normalize());
+        let to_eye = vec3(0.5, 0.6, -0.3).normalize();
+        let wanted = gl::contribution(&lamp, &material, point, normal, to_eye);
+        let got = surface.reflect(&same.illuminate(0, point), normal, to_eye);
+        assert!((got - wanted).abs().max_element() < 1e-6, "{x} {z}: {got} {wanted}");
+    }
+    // Phong's highlight is the same where the eye is in the mirrored direction, and narrower aside.
+    let phong = surface.with_specular(Model::OpenGlPhong, surface.specular, surface.shininess);
+    let light = same.illuminate(0, DVec3::ZERO);
+    let mirrored = vec3(-light.to_light.x, light.to_light.y, -light.to_light.z);
+    let at = |material: &Material, to_eye: Vec3| material.reflect(&light, Vec3::Y, to_eye);
+    assert!((at(&phong, mirrored) - at(&surface, mirrored)).length() < 1e-5);
+    let aside = (mirrored + vec3(0.4, 0.0, 0.0)).normalize();
+    assert!(at(&phong, aside).x < at(&surface, aside).x);
+    // The BRDF is what is reflected of irradiance 1, by the cosine.
+    let brdf = surface.brdf(Vec3::Y, light.to_light, mirrored) * light.irradiance * light.to_light.y;
+    assert!((brdf - at(&surface, mirrored)).length() < 1e-5);
 }

@@ -60,13 +60,14 @@ fn light() -> BoxedStrategy<Light> {
         intensity,
         falloff,
     });
-    let spot = (point(), point(), color(), number(), number(), falloff()).prop_map(
-        |(position, direction, intensity, beam_rad, cutoff_rad, falloff)| Light::Spot {
+    let spot = (point(), point(), color(), number(), number(), number(), falloff()).prop_map(
+        |(position, direction, intensity, beam_rad, cutoff_rad, exponent, falloff)| Light::Spot {
             position,
             direction,
             intensity,
             beam_rad,
             cutoff_rad,
+            exponent,
             falloff,
         },
     );

@@ -135,10 +135,9 @@ fn normal(scene: &Scene, point: &SurfacePoint) -> DVec3 {
 fn color(scene: &Scene, point: &SurfacePoint) -> Vec3 {
     let triangle = point.triangle as usize;
     let material = &scene.materials[scene.mesh.material_of[triangle] as usize];
-    let corners = scene.mesh.uv_of[triangle];
-    match material.diffuse_map {
-        Some(map) if !corners.contains(&NONE) => {
-            let uv = point.interpolate(corners.map(|i| scene.mesh.uvs[i as usize]));
+    match (material.diffuse_map, scene.mesh.map_corners(triangle, &material.diffuse_place)) {
+        (Some(map), Some(corners)) => {
+            let uv = point.interpolate(corners);
             material.surface.diffuse * scene.textures[map].lookup(material.wrap, uv).truncate()
         }
         _ => material.surface.diffuse,

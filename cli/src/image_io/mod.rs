@@ -1,6 +1,7 @@
 //! Pictures in and out: EXR with layers, PNG, JPEG, and what is read for comparison.
 
 mod atomic;
+mod cube_faces;
 mod exr_check;
 mod exr_error;
 mod exr_file;
@@ -10,6 +11,7 @@ mod png;
 mod stamp;
 
 pub use atomic::{check_writable, leave, write_atomically};
+pub use cube_faces::{face_fault, faces_of_strip, strip_face};
 pub use exr_error::ExrError;
 pub use exr_file::{Channel, ExrFile, Precision};
 pub use jpeg::{JpegOptions, encode_jpeg};

@@ -4,6 +4,8 @@
 
 pub mod gltf;
 mod mtl;
+mod mtl_keys;
+mod mtl_map;
 mod names;
 mod obj;
 mod obj_index;
@@ -12,7 +14,9 @@ mod obj_plain;
 mod ply;
 mod triangulate;
 
-pub use mtl::{MtlMap, MtlMaterial, read_mtl};
+pub use mtl::{MtlMaterial, read_mtl};
+pub use mtl_keys::{Reading, mtl_keys, mtl_options};
+pub use mtl_map::MtlMap;
 pub use names::names_of;
 pub use obj::read_obj;
 pub use ply::read_ply;
@@ -35,6 +39,8 @@ pub struct FileMesh {
     pub uvs: Vec<DVec2>,
     /// For each triangle.
     pub uv_of: Vec<[u32; 3]>,
+    /// A second set of coordinates, among `uvs`: empty, or for each triangle.
+    pub second_uv_of: Vec<[u32; 3]>,
     /// For each triangle, an index into `material_names`.
     pub material_of: Vec<u32>,
     /// Names of materials in the order of their first use.

@@ -1,6 +1,7 @@
 //! MTL.
 
-use super::names::unquoted;
+use super::mtl_keys::{KEYS, Kind};
+use super::mtl_map::MtlMap;
 use crate::input_error::InputError;
 use glam::Vec3;
 use std::io::Cursor;
@@ -35,44 +36,6 @@ pub struct MtlMaterial {
     /// Keys that stand for something we do not draw, as they are written.
     pub ignored: Vec<String>,
 }
-
-/// A texture as a line names it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MtlMap {
-    /// `map_Kd`, `map_d`, … with `map_Bump` and `bump` both as `map_bump`.
-    pub keyword: &'static str,
-    /// The file, after the options.
-    pub file: String,
-    /// The line, from 1.
-    pub line: usize,
-    /// Whether it had `-clamp on`.
-    pub clamp: bool,
-    /// `-bm`: the factor on a bump map's heights.
-    pub bump_multiplier: Option<f32>,
-    /// `-type`: what kind of reflection map it is.
-    pub kind: Option<String>,
-}
-
-/// Maps that are understood, and what they are called here.
-const MAPS: [(&str, &str); 13] = [
-    ("map_Kd", "map_Kd"),
-    ("map_Ks", "map_Ks"),
-    ("map_Ns", "map_Ns"),
-    ("map_Ke", "map_Ke"),
-    ("map_d", "map_d"),
-    ("map_bump", "map_bump"),
-    ("map_Bump", "map_bump"),
-    ("bump", "map_bump"),
-    ("norm", "norm"),
-    ("refl", "refl"),
-    ("map_Pr", "map_Pr"),
-    ("map_Pm", "map_Pm"),
-    ("map_refl", "refl"),
-];
-
-/// Keys that change the picture where they are understood; here they are ignored with a warning.
-const NOT_YET: [&str; 10] =
-    ["map_Ka", "map_Tr", "disp", "decal", "map_disp", "map_aat", "Ps", "Pc", "aniso", "sharpness"];
 
 /// Reads an MTL; `name` is how messages call it.
 ///
@@ -118,59 +81,57 @@ fn check(name: &str, bytes: &[u8]) -> Result<(String, Vec<MtlMaterial>), InputEr
         let Some(extra) = extras.last_mut() else {
             return Err(fault(format!("`{keyword}` before any `newmtl`")).with_help("is this an MTL file?"));
         };
-        match keyword {
-            "Ka" | "Kd" | "Ks" | "Ke" => plain.push_str(&color_line(keyword, &values).map_err(fault)?),
-            "Tf" => extra.transmission = Some(color(keyword, &values).map_err(fault)?),
-            "Ns" | "Ni" | "d" | "Tr" => plain.push_str(&number_line(keyword, &values).map_err(fault)?),
-            "Pr" => extra.roughness = Some(share(keyword, &values).map_err(fault)?),
-            "Pm" => extra.metallic = Some(share(keyword, &values).map_err(fault)?),
-            "illum" => {
-                let value = values.first().and_then(|word| word.parse::<f64>().ok()).map(|n| n as u8);
-                let value = value.ok_or_else(|| fault("`illum` needs a number".to_owned()))?;
-                plain.push_str(&format!("illum {value}"));
-            }
-            keyword if NOT_YET.contains(&keyword) => extra.ignored.push(keyword.to_owned()),
-            keyword if keyword.starts_with("map_") || MAPS.iter().any(|(known, _)| *known == keyword) => {
-                if values.is_empty() {
-                    return Err(fault(format!("`{keyword}` without a file name")));
-                }
-                // Not cut at #, which may be part of a file name.
-                let text = trimmed[keyword.len()..].trim();
-                match MAPS.iter().find(|(known, _)| *known == keyword) {
-                    Some(&(_, as_known)) => {
-                        extra.maps.push(map(as_known, text, index + 1).map_err(fault)?);
-                    }
-                    None => extra.ignored.push(keyword.to_owned()),
-                }
-            }
-            "newmtl" => plain.push_str(&format!("newmtl {}", trimmed[keyword.len()..].trim())),
-            _ => plain.push_str(trimmed),
-        }
+        // Not cut at #, which may be part of a file name.
+        let text = trimmed[keyword.len()..].trim();
+        let read = Statement { keyword, values: &values, text, line: index + 1 }.read(extra);
+        plain.push_str(&read.map_err(fault)?);
         plain.push('\n');
     }
     Ok((plain, extras))
 }
 
-/// A map's line after its keyword.
-fn map(keyword: &'static str, text: &str, line: usize) -> Result<MtlMap, String> {
-    let name = file_name(text);
-    let options = &text[..text.len() - name.len()];
-    let file = unquoted(name).to_owned();
-    let mut words = options.split_whitespace();
-    let (mut bump_multiplier, mut kind) = (None, None);
-    while let Some(word) = words.next() {
-        match word {
-            "-bm" => {
-                let value = words.next().unwrap_or_default();
-                let number = value.parse::<f32>().ok().filter(|n| n.is_finite());
-                bump_multiplier =
-                    Some(number.ok_or_else(|| format!("`{keyword} -bm {value}`: not a number"))?);
+/// A line of a material.
+struct Statement<'a> {
+    keyword: &'a str,
+    /// Without comments.
+    values: &'a [&'a str],
+    /// All that follows the keyword.
+    text: &'a str,
+    line: usize,
+}
+
+impl Statement<'_> {
+    /// The line for the parser, or nothing if it is none of the parser's: then `extra` takes in what it says.
+    fn read(&self, extra: &mut MtlMaterial) -> Result<String, String> {
+        let Self { keyword, values, text, .. } = *self;
+        let kind =
+            KEYS.iter().find(|(name, ..)| *name == keyword).map_or(Kind::Nothing, |(_, kind, _)| *kind);
+        match kind {
+            Kind::Material => return Ok(format!("newmtl {text}")),
+            Kind::Color => return color_line(keyword, values),
+            Kind::Number => return number_line(keyword, values),
+            Kind::Illumination => {
+                let value = values.first().and_then(|word| word.parse::<f64>().ok()).map(|n| n as u8);
+                return value
+                    .map(|value| format!("illum {value}"))
+                    .ok_or_else(|| "`illum` needs a number".to_owned());
             }
-            "-type" => kind = words.next().map(str::to_owned),
-            _ => {}
+            Kind::Transmission => extra.transmission = Some(color(keyword, values)?),
+            Kind::Roughness => extra.roughness = Some(share(keyword, values)?),
+            Kind::Metallic => extra.metallic = Some(share(keyword, values)?),
+            Kind::Map(name) => {
+                if values.is_empty() {
+                    return Err(format!("`{keyword}` without a file name"));
+                }
+                let map = MtlMap::read(name, text, self.line)?;
+                extra.ignored.extend_from_slice(&map.ignored);
+                extra.maps.push(map);
+            }
+            Kind::Nothing if extra.ignored.iter().any(|known| known == keyword) => {}
+            Kind::Nothing => extra.ignored.push(keyword.to_owned()),
         }
+        Ok(String::new())
     }
-    Ok(MtlMap { keyword, file, line, clamp: options.contains("-clamp on"), bump_multiplier, kind })
 }
 
 /// A number from 0 to 1.
@@ -233,32 +194,4 @@ impl MtlMaterial {
     pub fn map(&self, keyword: &str) -> Option<&MtlMap> {
         self.maps.iter().rfind(|map| map.keyword == keyword)
     }
-}
-
-/// The file name after options like `-s 1 1 1` and `-clamp on`; names may hold spaces.
-fn file_name(text: &str) -> &str {
-    let mut rest = text.trim();
-    while let Some(option) = rest.strip_prefix('-') {
-        let (name, mut after) = option.split_once(char::is_whitespace).unwrap_or((option, ""));
-        let most = match name {
-            "o" | "s" | "t" => 3,
-            "mm" => 2,
-            _ => 1,
-        };
-        for taken in 0..most {
-            let next = after.trim_start();
-            let (word, following) = next.split_once(char::is_whitespace).unwrap_or((next, ""));
-            // The second and third number of `-s u v w` may be left out.
-            if following.is_empty() || (taken > 0 && word.parse::<f64>().is_err()) {
-                break;
-            }
-            after = following;
-        }
-        let next = after.trim_start();
-        if next.is_empty() || next.len() >= rest.len() {
-            break;
-        }
-        rest = next;
-    }
-    rest
 }

@@ -1,6 +1,6 @@
 //! From a glTF material to a material of the renderer.
 
-use super::textures::{Purpose, TextureTable};
+use super::textures::{Purpose, TextureTable, Tone};
 use super::{Channel, Details, Map, Material};
 use crate::input_error::InputError;
 use crate::mesh_io::gltf::{AlphaMode, GltfBytes, GltfMaterial, GltfModel, GltfTexture};
@@ -49,6 +49,9 @@ pub(super) fn build(
     let diffuse_map = base.filter(|_| !material.unlit);
     let mut made = Material::new(&material.name, surface).with_details(details);
     (made.diffuse_map, made.opacity_map, made.wrap) = (diffuse_map, opacity_map, wrap);
+    // Colour and alpha are of one picture.
+    let place = material.base_texture.map(|t| t.place).unwrap_or_default();
+    (made.diffuse_place, made.opacity_place) = (place, place);
     Ok(made)
 }
 
@@ -69,7 +72,7 @@ impl Pictures<'_> {
             InputError::of_file(name, message).with_help("PNG and JPEG pictures can be part of a glTF")
         };
         match &self.model.images[image] {
-            GltfBytes::File(name) => Ok(self.textures.load(&folder.join(name), purpose, fault)),
+            GltfBytes::File(name) => Ok(self.textures.load(&folder.join(name), purpose, Tone::PLAIN, fault)),
             GltfBytes::Embedded(bytes) => {
                 let place = format!("{}#image{image}", self.path.display());
                 self.textures.load_embedded(Path::new(&place), bytes, purpose).map_err(|reason| {
@@ -97,7 +100,7 @@ impl Pictures<'_> {
     ) -> Result<Option<Map>, InputError> {
         let Some(found) = texture else { return Ok(None) };
         let texture = self.load(found.image, purpose)?;
-        Ok(Some(Map { texture, wrap: found.wrap, channel }))
+        Ok(Some(Map { wrap: found.wrap, channel, place: found.place, ..Map::new(texture) }))
     }
 
     /// The alpha of the base colour, unless it hides nothing anywhere.

@@ -7,11 +7,10 @@ use super::description::{
 use super::measured::MeasuredTable;
 use super::mtl_library::{Library, read_libraries};
 use super::text::nearest;
-use super::texture_files::load_texture;
+use super::texture_files::{load_environment, load_texture};
 use super::textures::{Purpose, TextureTable};
 use super::{
-    Bump, BumpHeight, Channel, Details, Map, Material, MeasuredBrdf, NONE, Surroundings, gltf_materials,
-    mtl_materials,
+    Bump, BumpHeight, Details, Map, Material, MeasuredBrdf, NONE, Surroundings, gltf_materials, mtl_materials,
 };
 use crate::input_error::InputError;
 use crate::mesh_io::FileMesh;
@@ -185,51 +184,63 @@ impl<'a> MaterialTable<'a> {
         found: &MaterialDescription,
         textures: &mut TextureTable,
     ) -> Result<Material, InputError> {
-        let mut load = |reference: &TextureReference, purpose: Purpose| {
-            load_texture(textures, self.description, self.folder, reference, purpose)
-        };
-        let mut colored = |reference: &Option<TextureReference>| {
-            reference.as_ref().map(|r| load(r, Purpose::Color { srgb: r.srgb }))
-        };
-        let diffuse_map = colored(&found.diffuse_map);
-        let map = |texture| Map { texture, wrap: found.wrap, channel: Channel::Mean };
-        let specular_map = colored(&found.specular_map).map(map);
-        let emission_map = colored(&found.emission_map).map(map);
-        // Numbers, not colours: never decoded.
-        let mut plain = |reference: &Option<TextureReference>| {
-            reference.as_ref().map(|r| map(load(r, Purpose::Color { srgb: false })))
-        };
-        let mut details = Details::default();
-        details.specular_map = specular_map;
-        details.emission_map = emission_map;
-        details.shininess_map = plain(&found.shininess_map);
-        details.roughness_map = plain(&found.roughness_map);
-        details.metallic_map = plain(&found.metallic_map);
-        details.bump =
-            plain(&found.bump_map).map(|map| Bump { map, height: BumpHeight::World(found.bump_scale) });
-        details.normal = plain(&found.normal_map).map(|map| (map, 1.0));
-        details.metallic = found.metallic;
-        details.measured = found.merl.as_ref().map(|file| self.measured_of(file)).transpose()?;
-        details.reflection = found.reflection;
-        details.transmission = found.transmission;
-        details.surroundings = match &found.surroundings {
-            SurroundingsDescription::Scene => Surroundings::Scene,
-            SurroundingsDescription::Capture => Surroundings::Capture,
-            SurroundingsDescription::File(reference) => {
-                Surroundings::Texture(load(reference, Purpose::Color { srgb: true }))
-            }
-        };
-        details.uv = found.uv;
-        details.emits = found.emits;
-        let opacity_map = found.opacity_map.as_ref().map(|r| load(r, Purpose::Opacity));
+        let details = self.details(found, textures)?;
         let mut surface = found.surface;
         if let Some(measured) = &details.measured {
             // What stands for the table in ambient light.
             surface.diffuse = measured.table.albedo();
         }
+        let mut load = |map: &Option<TextureReference>, purpose: fn(&TextureReference) -> Purpose| {
+            let map = map.as_ref()?;
+            Some(load_texture(textures, self.description, self.folder, map, purpose(map)))
+        };
         let mut made = Material::new(name, surface).with_details(details);
-        (made.diffuse_map, made.opacity_map, made.wrap) = (diffuse_map, opacity_map, found.wrap);
+        made.diffuse_map = load(&found.diffuse_map, |map| Purpose::Color { srgb: map.srgb });
+        made.opacity_map = load(&found.opacity_map, |_| Purpose::Opacity);
+        let place = |map: &Option<TextureReference>| map.as_ref().map(|map| map.place).unwrap_or_default();
+        (made.diffuse_place, made.opacity_place) = (place(&found.diffuse_map), place(&found.opacity_map));
+        made.wrap = found.wrap;
         Ok(made)
+    }
+
+    fn details(
+        &mut self,
+        found: &MaterialDescription,
+        textures: &mut TextureTable,
+    ) -> Result<Details, InputError> {
+        let mut details = Details::default();
+        let mut map = |reference: &Option<TextureReference>, is_color: bool| {
+            let reference = reference.as_ref()?;
+            // Numbers are no colours, and never decoded.
+            let purpose = Purpose::Color { srgb: is_color && reference.srgb };
+            let texture = load_texture(textures, self.description, self.folder, reference, purpose);
+            Some(Map { wrap: found.wrap, place: reference.place, ..Map::new(texture) })
+        };
+        details.specular_map = map(&found.specular_map, true);
+        details.emission_map = map(&found.emission_map, true);
+        details.reflection_map = map(&found.reflection_map, true);
+        details.light_map = map(&found.light_map, true);
+        details.shininess_map = map(&found.shininess_map, false);
+        details.roughness_map = map(&found.roughness_map, false);
+        details.metallic_map = map(&found.metallic_map, false);
+        details.bump =
+            map(&found.bump_map, false).map(|map| Bump { map, height: BumpHeight::World(found.bump_scale) });
+        details.normal = map(&found.normal_map, false).map(|map| (map, 1.0));
+        details.surroundings = match &found.surroundings {
+            SurroundingsDescription::Scene => Surroundings::Scene,
+            SurroundingsDescription::Capture => Surroundings::Capture,
+            SurroundingsDescription::Files(files) => {
+                Surroundings::Texture(load_environment(textures, self.description, self.folder, files))
+            }
+        };
+        details.metallic = found.metallic;
+        details.measured = found.merl.as_ref().map(|file| self.measured_of(file)).transpose()?;
+        details.reflection = found.reflection;
+        details.transmission = found.transmission;
+        details.mirrors_by_normal = found.mirrors_by_normal;
+        details.uv = found.uv;
+        details.emits = found.emits;
+        Ok(details)
     }
 
     fn measured_of(&mut self, file: &FileReference) -> Result<MeasuredBrdf, InputError> {

@@ -21,14 +21,15 @@ mod plain_model;
 mod resolve;
 mod smooth;
 pub mod text;
+mod texture_decoding;
 mod texture_files;
 mod textures;
 pub mod weight;
 
 pub use pointillist_render::{
-    AmbientLight, Bump, BumpHeight, Camera, Channel, Details, LightSource, Map, Material, MeasuredBrdf, Mesh,
-    NONE, Object, Occlusion, Projection, Resolution, Scene, SkyLight, Surroundings, Texels, Texture,
-    Transmission, linear_from_srgb, srgb_from_linear,
+    AmbientLight, Bump, BumpHeight, Camera, Channel, Details, LightSource, Map, MapPlace, Material,
+    MeasuredBrdf, Mesh, NONE, Object, Occlusion, Projection, Resolution, Scene, SkyLight, Surroundings,
+    Texels, Texture, Transmission, UvSet, linear_from_srgb, srgb_from_linear,
 };
 
 pub use builtin::builtin;

@@ -5,13 +5,13 @@
 //! the surface GGX whatever `illum` says.
 
 use super::mtl_library::Library;
-use super::textures::{Purpose, TextureTable};
-use super::{Bump, BumpHeight, Channel, Details, Map, Material, Surroundings, Transmission};
+use super::textures::{Purpose, TextureTable, Tone};
+use super::{Bump, BumpHeight, Details, Map, MapPlace, Material, Surroundings, Transmission, UvSet};
 use crate::input_error::InputError;
 use crate::mesh_io::{MtlMap, MtlMaterial};
-use glam::Vec3;
+use glam::{DAffine2, Vec3};
 use pointillist_shade::{self as shade, DIELECTRIC_REFLECTANCE, Model, Wrap};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// `illum` of a material that does not say.
 const HIGHLIGHT: u8 = 2;
@@ -29,18 +29,16 @@ pub(super) fn build(
     textures: &mut TextureTable,
     warnings: &mut Vec<String>,
 ) -> Material {
-    let mut load = |keyword: &str, purpose: Purpose| {
-        material.map(keyword).map(|map| texture(library, map, purpose, textures))
-    };
     let color = Purpose::Color { srgb: true };
-    let diffuse_map = load("map_Kd", color);
-    let opacity_map = load("map_d", Purpose::Opacity);
-    let mut map = |keyword: &str, purpose: Purpose| {
-        let wrap = wrap(material.map(keyword));
-        load(keyword, purpose).map(|texture| Map { texture, wrap, channel: Channel::Mean })
-    };
     let number = Purpose::Color { srgb: false };
-    let bump = map("map_bump", number).map(|map| Bump { map, height: bump_height(material) });
+    let mut map = |keyword: &str, purpose: Purpose| {
+        let map = material.map(keyword)?;
+        let texture = texture(library, map, purpose, textures);
+        let wrap = if map.clamp { Wrap::Clamp } else { Wrap::Repeat };
+        Some(Map { texture, wrap, channel: map.channel, place: place(map) })
+    };
+    let diffuse = map("map_Kd", color);
+    let opacity = map("map_d", Purpose::Opacity);
     let mut details = Details::default();
     details.specular_map = map("map_Ks", color);
     details.shininess_map = map("map_Ns", number);
@@ -48,17 +46,21 @@ pub(super) fn build(
     details.roughness_map = map("map_Pr", number);
     details.metallic_map = map("map_Pm", number);
     details.normal = map("norm", number).map(|map| (map, 1.0));
-    details.bump = bump;
+    details.bump = map("map_bump", number).map(|map| Bump { map, height: bump_height(material) });
     let surface = surface(material, &mut details);
-    surroundings(library, material, &mut details, &mut load, warnings);
-    let wrap = wrap(material.map("map_Kd"));
+    surroundings(library, material, &mut details, textures, warnings);
     let mut made = Material::new(&material.name, surface).with_details(details);
-    (made.diffuse_map, made.opacity_map, made.wrap) = (diffuse_map, opacity_map, wrap);
+    made.diffuse_map = diffuse.map(|map| map.texture);
+    made.opacity_map = opacity.map(|map| map.texture);
+    made.wrap = diffuse.or(opacity).map_or(Wrap::Repeat, |map| map.wrap);
+    let place = |map: Option<Map>| map.map(|map| map.place).unwrap_or_default();
+    (made.diffuse_place, made.opacity_place) = (place(diffuse), place(opacity));
     made
 }
 
-fn wrap(map: Option<&MtlMap>) -> Wrap {
-    if map.is_some_and(|map| map.clamp) { Wrap::Clamp } else { Wrap::Repeat }
+fn place(map: &MtlMap) -> MapPlace {
+    let map_from_uv = DAffine2::from_scale_angle_translation(map.scale, 0.0, map.offset);
+    MapPlace { set: UvSet::First, map_from_uv }
 }
 
 fn bump_height(material: &MtlMaterial) -> BumpHeight {
@@ -122,33 +124,76 @@ fn surroundings(
     library: &Library,
     material: &MtlMaterial,
     details: &mut Details,
-    load: &mut impl FnMut(&str, Purpose) -> Option<usize>,
+    textures: &mut TextureTable,
     warnings: &mut Vec<String>,
 ) {
     let Some(map) = material.map("refl") else { return };
-    if map.kind.as_deref().is_some_and(|kind| kind != "sphere") {
-        let (file, name) = (library.path.display(), &material.name);
-        warnings.push(format!("{file}: `refl` of material `{name}` is not of -type sphere; ignored"));
-        return;
-    }
-    if let Some(texture) = load("refl", Purpose::Color { srgb: true }) {
-        details.surroundings = Surroundings::Texture(texture);
-        let own = material.specular.filter(|&s| s != Vec3::ZERO);
-        details.reflection = details.reflection.or(own).or(Some(Vec3::ONE));
-    }
+    let (file, name) = (library.path.display(), &material.name);
+    let texture = match map.kind.as_deref() {
+        None | Some("sphere") => texture(library, map, Purpose::Surroundings, textures),
+        Some(kind) if CUBE_FACES.contains(&kind) => match cube(library, material, textures) {
+            Ok(texture) => texture,
+            Err(missing) => {
+                warnings.push(format!(
+                    "{file}: `refl` of material `{name}` has faces of a cube, but no -type {missing}; ignored"
+                ));
+                return;
+            }
+        },
+        Some(kind) => {
+            warnings.push(format!(
+                "{file}: `refl` of material `{name}` is of -type {kind}, not sphere or cube_…; ignored"
+            ));
+            return;
+        }
+    };
+    details.surroundings = Surroundings::Texture(texture);
+    let own = material.specular.filter(|&s| s != Vec3::ZERO);
+    details.reflection = details.reflection.or(own).or(Some(Vec3::ONE));
+}
+
+/// Faces of a reflection map in the order +X −X +Y −Y +Z −Z. The format does not say which axis is which: as in a picture of the world, x runs to
+/// the right, y upward and z to the front.
+const CUBE_FACES: [&str; 6] =
+    ["cube_right", "cube_left", "cube_top", "cube_bottom", "cube_front", "cube_back"];
+
+/// The six `refl` of a material as one texture, or the kind that is missing.
+fn cube(
+    library: &Library,
+    material: &MtlMaterial,
+    textures: &mut TextureTable,
+) -> Result<usize, &'static str> {
+    let face = |kind: &'static str| {
+        let mut maps = material.maps.iter().filter(|map| map.keyword == "refl");
+        maps.rfind(|map| map.kind.as_deref() == Some(kind)).ok_or(kind)
+    };
+    let faces: Vec<&MtlMap> = CUBE_FACES.into_iter().map(face).collect::<Result<_, _>>()?;
+    let files = faces.iter().map(|map| located(library, map)).collect();
+    // One tone for all: a cube has no seams.
+    Ok(textures.load_cube(files, tone(faces[0])))
 }
 
 fn texture(library: &Library, map: &MtlMap, purpose: Purpose, textures: &mut TextureTable) -> usize {
+    let (path, fault) = located(library, map);
+    textures.load(&path, purpose, tone(map), || fault)
+}
+
+fn tone(map: &MtlMap) -> Tone {
+    let [base, gain] = map.base_and_gain;
+    Tone { base, gain }
+}
+
+/// A map's file, and the beginning of the error if it cannot be used.
+fn located(library: &Library, map: &MtlMap) -> (PathBuf, InputError) {
     let folder = library.path.parent().unwrap_or(Path::new(""));
     let mut path = folder.join(&map.file);
     if !path.exists() {
         // Written on Windows, as many are.
         path = folder.join(map.file.replace('\\', "/"));
     }
-    textures.load(&path, purpose, || {
-        let name = library.path.display().to_string();
-        let message = format!("texture `{}` ", path.display());
-        InputError::in_line(&name, &library.bytes, map.line, message)
-            .with_help("paths are relative to the MTL; PNG, JPEG, HDR and EXR can be read")
-    })
+    let name = library.path.display().to_string();
+    let message = format!("texture `{}` ", path.display());
+    let fault = InputError::in_line(&name, &library.bytes, map.line, message)
+        .with_help("paths are relative to the MTL; PNG, JPEG, HDR and EXR can be read");
+    (path, fault)
 }

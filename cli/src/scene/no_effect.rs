@@ -60,6 +60,7 @@ impl Finder<'_> {
     }
 
     fn light(&mut self, index: usize, light: &LightDescription) {
+        let has_opengl = self.description.materials.iter().any(|(_, m)| m.surface.model.is_opengl());
         let index = index.to_string();
         let mut report = |key: &str, why: &str| self.report(&["light", &index, key], why);
         if !light.shadow {
@@ -70,7 +71,12 @@ impl Finder<'_> {
                 "a light with an area or a length is exact; `samples = N` takes points on it",
             );
         }
-        if let Some((key, Vec3::ZERO)) = power(&light.light) {
+        if !has_opengl {
+            report("ambient", "no material has model = \"opengl\"");
+        }
+        if let Some((key, Vec3::ZERO)) = power(&light.light)
+            && light.ambient == Vec3::ZERO
+        {
             report(key, "the light is black");
         }
     }
@@ -86,6 +92,8 @@ impl Finder<'_> {
             &m.roughness_map,
             &m.metallic_map,
             &m.emission_map,
+            &m.reflection_map,
+            &m.light_map,
             &m.bump_map,
             &m.normal_map,
         ];
@@ -94,7 +102,8 @@ impl Finder<'_> {
                 report(key, "the material has no map");
             }
         }
-        if [&m.diffuse_map, &m.specular_map, &m.emission_map].iter().all(|map| map.is_none()) {
+        let colors = [&m.diffuse_map, &m.specular_map, &m.emission_map, &m.reflection_map, &m.light_map];
+        if colors.iter().all(|map| map.is_none()) {
             report("color_space", "the material has no map of colours");
         }
         let is_ggx = m.surface.model == Model::Ggx;
@@ -102,6 +111,12 @@ impl Finder<'_> {
         let mirrors = is_ggx || m.reflection.is_some() || refracts;
         if m.surroundings != SurroundingsDescription::Scene && !mirrors {
             report("environment", "the material neither mirrors nor refracts");
+        }
+        if !mirrors {
+            report("environment_lookup", "the material mirrors nothing");
+        }
+        if m.surface.diffuse == Vec3::ZERO {
+            report("lightmap", "its light is reflected by `diffuse`, which is 0");
         }
         if m.merl.is_some() {
             for key in ["diffuse", "specular", "shininess"] {

@@ -1,15 +1,16 @@
 //! From a parsed description to a [`Scene`]: opens the files that it names and puts everything together.
 
+use super::auto_uv::{self, Lacking};
 use super::description::{
-    AmbientDescription, Description, FileReference, ObjectDescription, RenderDescription, TextureReference,
+    AmbientDescription, Description, FileReference, ObjectDescription, RenderDescription,
 };
 use super::generated::Generated;
 use super::materials::MaterialTable;
 use super::motion::{Motion, MovingObject};
-use super::texture_files::load_texture;
-use super::textures::{Purpose, TextureTable};
+use super::texture_files::load_environment;
+use super::textures::TextureTable;
 use super::{AmbientLight, LightSource, LoadedScene, Mesh, NONE, Object, Scene, SkyLight};
-use super::{auto_uv, framing, gltf_scene, no_effect, plain_model, smooth};
+use super::{framing, gltf_scene, no_effect, plain_model, smooth};
 use crate::baked_file::read_baked;
 use crate::cloud_io::{self, DRAW_CLOUD};
 use crate::coordinate::{LARGEST, is_usable};
@@ -168,7 +169,7 @@ fn ambient(
 fn lights(description: &Description) -> Vec<LightSource> {
     let source = |light: &super::description::LightDescription| {
         let source = LightSource::new(&light.name, light.light);
-        source.with_shadow(light.shadow).with_resolution(light.resolution)
+        source.with_ambient(light.ambient).with_shadow(light.shadow).with_resolution(light.resolution)
     };
     description.lights.iter().map(source).collect()
 }
@@ -206,10 +207,8 @@ impl<'a> Builder<'a> {
     }
 
     fn environment(&mut self) -> Option<usize> {
-        let file = self.description.image.environment.clone()?;
-        let reference = TextureReference { file, srgb: true };
-        let purpose = Purpose::Color { srgb: true };
-        Some(load_texture(&mut self.textures, self.description, self.folder, &reference, purpose))
+        let reference = self.description.image.environment.as_ref()?;
+        Some(load_environment(&mut self.textures, self.description, self.folder, reference))
     }
 
     fn add(&mut self, object: &ObjectDescription) -> Result<(), InputError> {
@@ -298,6 +297,12 @@ impl<'a> Builder<'a> {
         let first_triangle = mesh.triangles.len();
         append_indices(&mut mesh.triangles, &file.triangles, first_position, order);
         append_indices(&mut mesh.uv_of, &file.uv_of, mesh.uvs.len(), order);
+        if !file.second_uv_of.is_empty() {
+            mesh.second_uv_of.resize(first_triangle, [NONE; 3]);
+            append_indices(&mut mesh.second_uv_of, &file.second_uv_of, mesh.uvs.len(), order);
+        } else if !mesh.second_uv_of.is_empty() {
+            mesh.second_uv_of.resize(mesh.triangles.len(), [NONE; 3]);
+        }
         mesh.uvs.extend_from_slice(&file.uvs);
         let RenderDescription { shading, normals, crease_rad, .. } = self.description.render;
         if shading == Some(Interpolation::Flat) {
@@ -316,12 +321,18 @@ impl<'a> Builder<'a> {
         mesh.object_of.resize(mesh.triangles.len(), index);
         mesh.material_of.extend(file.material_of.iter().map(|&m| materials[m as usize]));
         let warnings = &mut self.warnings;
-        auto_uv::fill(mesh, file, first_triangle, self.materials.list(), |material| {
-            warnings.push(format!(
-                "{}: material `{material}` has maps, but the mesh has no texture coordinates; those of a box are used \
-                 (uv = \"box\" in the material says so without this warning)",
-                object.mesh.path
-            ));
+        auto_uv::fill(mesh, file, first_triangle, self.materials.list(), |material, lacking| {
+            let path = &object.mesh.path;
+            warnings.push(match lacking {
+                Lacking::All => format!(
+                    "{path}: material `{material}` has maps, but the mesh has no texture coordinates; those of a box are used \
+                     (uv = \"box\" in the material says so without this warning)"
+                ),
+                Lacking::Second => format!(
+                    "{path}: a map of material `{material}` takes the second set of texture coordinates, which the mesh does not have; \
+                     the first is used (lightmap = {{ file = …, uv_set = 0 }} says so without this warning)"
+                ),
+            });
         });
         if let Some(path) = &object.path {
             let fault = self.description.document.error(path.span, "");

@@ -1,9 +1,8 @@
 //! Pictures from files as textures, each decoded once.
 
-use super::{Texels, Texture, linear_from_srgb};
-use crate::image_io;
+use super::Texture;
+use super::texture_decoding::{decode, joined_faces};
 use crate::input_error::InputError;
-use image::DynamicImage;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -22,13 +21,46 @@ pub(super) enum Purpose {
     Alpha,
     /// Opacity: all from this alpha on (of 255), none below.
     Mask(u16),
+    /// Light from all directions: a strip of the six faces of a cube is laid out as [`Texture::is_cube`] says, everything else is equirectangular.
+    Surroundings,
+}
+
+/// What is done to values once they are decoded: `base + gain · value`, not below 0, and for opacities not above 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tone {
+    pub(super) base: f32,
+    pub(super) gain: f32,
+}
+
+impl Tone {
+    /// Values as they are.
+    pub(super) const PLAIN: Self = Self { base: 0.0, gain: 1.0 };
+
+    pub(super) fn of(self, value: f32) -> f32 {
+        (self.base + self.gain * value).max(0.0)
+    }
+}
+
+/// A picture, or six of the faces of a cube, and how it is read: the same again is the same texture.
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Source {
+    files: Vec<PathBuf>,
+    purpose: Purpose,
+    /// Bits of [`Tone`].
+    tone: [u32; 2],
+}
+
+impl Source {
+    fn new(files: Vec<PathBuf>, purpose: Purpose, tone: Tone) -> Self {
+        Self { files, purpose, tone: [tone.base, tone.gain].map(f32::to_bits) }
+    }
 }
 
 /// The textures of a scene. Those in files of their own are read and decoded all at once, on all cores, when the table is complete.
 #[derive(Default)]
 pub(super) struct TextureTable {
     list: Vec<Entry>,
-    known: HashMap<(PathBuf, Purpose), usize>,
+    known: HashMap<Source, usize>,
 }
 
 enum Entry {
@@ -38,10 +70,10 @@ enum Entry {
 
 /// A texture that is not yet decoded.
 struct TextureFile {
-    path: PathBuf,
+    /// Each with the message if it cannot be used, without its end, which says why.
+    files: Vec<(PathBuf, InputError)>,
     purpose: Purpose,
-    /// The message if it cannot be used, without its end, which says why.
-    fault: InputError,
+    tone: Tone,
 }
 
 impl TextureTable {
@@ -51,14 +83,25 @@ impl TextureTable {
         &mut self,
         path: &Path,
         purpose: Purpose,
+        tone: Tone,
         fault: impl FnOnce() -> InputError,
     ) -> usize {
-        let key = (path.to_path_buf(), purpose);
-        if let Some(&number) = self.known.get(&key) {
+        let source = Source::new(vec![path.to_path_buf()], purpose, tone);
+        if let Some(&number) = self.known.get(&source) {
             return number;
         }
-        let path = path.to_path_buf();
-        self.add(key, Entry::File(TextureFile { path, purpose, fault: fault() }))
+        let files = vec![(path.to_path_buf(), fault())];
+        self.add(source, Entry::File(TextureFile { files, purpose, tone }))
+    }
+
+    /// The number of the texture of the six faces of a cube, each in a file of its own, with its error as for [`TextureTable::load`].
+    pub(super) fn load_cube(&mut self, faces: Vec<(PathBuf, InputError)>, tone: Tone) -> usize {
+        let purpose = Purpose::Surroundings;
+        let source = Source::new(faces.iter().map(|(path, _)| path.clone()).collect(), purpose, tone);
+        match self.known.get(&source) {
+            Some(&number) => number,
+            None => self.add(source, Entry::File(TextureFile { files: faces, purpose, tone })),
+        }
     }
 
     /// The number of a picture that is part of another file, decoded if it is new; `path` stands for it.
@@ -72,19 +115,19 @@ impl TextureTable {
         bytes: &[u8],
         purpose: Purpose,
     ) -> Result<usize, String> {
-        let key = (path.to_path_buf(), purpose);
-        match self.known.get(&key) {
+        let source = Source::new(vec![path.to_path_buf()], purpose, Tone::PLAIN);
+        match self.known.get(&source) {
             Some(&number) => Ok(number),
             None => {
-                let texture = decode(path, bytes, purpose)?;
-                Ok(self.add(key, Entry::Decoded(texture)))
+                let texture = decode(path, bytes, purpose, Tone::PLAIN)?;
+                Ok(self.add(source, Entry::Decoded(texture)))
             }
         }
     }
 
-    fn add(&mut self, key: (PathBuf, Purpose), entry: Entry) -> usize {
+    fn add(&mut self, source: Source, entry: Entry) -> usize {
         self.list.push(entry);
-        self.known.insert(key, self.list.len() - 1);
+        self.known.insert(source, self.list.len() - 1);
         self.list.len() - 1
     }
 
@@ -105,7 +148,7 @@ impl TextureTable {
 
     /// Adds a texture that is not read from a file, under the path that stands for it.
     pub(super) fn insert(&mut self, path: PathBuf, purpose: Purpose, texture: Texture) {
-        self.add((path, purpose), Entry::Decoded(texture));
+        self.add(Source::new(vec![path], purpose, Tone::PLAIN), Entry::Decoded(texture));
     }
 
     /// All textures by their numbers.
@@ -125,79 +168,22 @@ impl TextureTable {
 
 impl TextureFile {
     fn decode(&self) -> Result<Texture, InputError> {
-        let bytes = crate::memory::read(&self.path).map_err(|error| format!("cannot be read: {error}"));
-        bytes.and_then(|bytes| decode(&self.path, &bytes, self.purpose)).map_err(|reason| {
-            let mut fault = self.fault.clone();
-            fault.message.push_str(&reason);
+        let fault = |file: usize, reason: &str| {
+            let mut fault = self.files[file].1.clone();
+            fault.message.push_str(reason);
             fault
-        })
-    }
-}
-
-fn decode(path: &Path, bytes: &[u8], purpose: Purpose) -> Result<Texture, String> {
-    let image = if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
-        let picture =
-            image_io::read_exr_picture(bytes).map_err(|error| format!("cannot be decoded: {error}"))?;
-        let [width, height] = picture.size;
-        let flat = picture.color.into_iter().flatten().collect();
-        let buffer = image::ImageBuffer::from_raw(width, height, flat);
-        DynamicImage::ImageRgba32F(buffer.ok_or("has an impossible size")?)
-    } else {
-        image_io::decode_image(bytes).map_err(|error| format!("cannot be decoded: {error}"))?
-    };
-    let (width, height) = (image.width(), image.height());
-    if width == 0 || height == 0 {
-        return Err("has no pixels".to_owned());
-    }
-    Ok(Texture::new(path.display().to_string(), [width, height], texels(image, purpose)))
-}
-
-fn texels(image: DynamicImage, purpose: Purpose) -> Texels {
-    let is_byte = image.color().bytes_per_pixel() == image.color().channel_count();
-    let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
-    match purpose {
-        Purpose::Opacity => opacity(&image),
-        Purpose::Alpha => Texels::from_opacities(alpha(&image)),
-        Purpose::Mask(from) => {
-            let mask = |a| if u16::from(a) >= from { u8::MAX } else { 0 };
-            Texels::from_opacities(alpha(&image).into_iter().map(mask).collect())
-        }
-        Purpose::Color { srgb } if is_byte => bytes(image, srgb),
-        Purpose::Color { srgb } => {
-            let decode = |c: f32| if srgb && !is_float { linear_from_srgb(c) } else { c };
-            let finite = |c: f32| if c.is_finite() { c } else { 0.0 };
-            let texel = |[r, g, b, a]: [f32; 4]| [decode(r), decode(g), decode(b), a].map(finite);
-            let texels: Vec<_> = image.into_rgba32f().pixels().map(|p| texel(p.0)).collect();
-            Texels::Float(texels.into())
+        };
+        let texture = |(file, (path, _)): (usize, &(PathBuf, InputError))| {
+            let bytes = crate::memory::read(path).map_err(|error| format!("cannot be read: {error}"));
+            bytes
+                .and_then(|bytes| decode(path, &bytes, self.purpose, self.tone))
+                .map_err(|reason| fault(file, &reason))
+        };
+        let mut textures =
+            self.files.iter().enumerate().map(texture).collect::<Result<Vec<Texture>, InputError>>()?;
+        match textures.len() {
+            1 => Ok(textures.swap_remove(0)),
+            _ => joined_faces(&textures).map_err(|(file, reason)| fault(file, &reason)),
         }
     }
-}
-
-/// The texels of a picture with 8 bits for each channel.
-fn bytes(image: DynamicImage, srgb: bool) -> Texels {
-    if image.color().has_alpha() {
-        let texels: Vec<_> = image.into_rgba8().pixels().map(|p| p.0).collect();
-        return if srgb { Texels::Srgb8(texels.into()) } else { Texels::Linear8(texels.into()) };
-    }
-    let is_gray = |image: &image::RgbImage| image.pixels().all(|p| p.0 == [p.0[0]; 3]);
-    let image = image.into_rgb8();
-    if !srgb && is_gray(&image) {
-        return Texels::from_grays(image.pixels().map(|p| p.0[0]).collect());
-    }
-    let texels: Vec<_> = image.pixels().map(|p| p.0).collect();
-    if srgb { Texels::OpaqueSrgb8(texels.into()) } else { Texels::OpaqueLinear8(texels.into()) }
-}
-
-fn alpha(image: &DynamicImage) -> Vec<u8> {
-    image.to_rgba8().pixels().map(|p| p.0[3]).collect()
-}
-
-fn opacity(image: &DynamicImage) -> Texels {
-    if image.color().has_alpha() {
-        let alpha = alpha(image);
-        if alpha.iter().any(|&a| a != u8::MAX) {
-            return Texels::from_opacities(alpha);
-        }
-    }
-    Texels::from_opacities(image.to_luma8().into_raw())
 }

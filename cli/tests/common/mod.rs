@@ -1,6 +1,8 @@
 //! What the command-line tests share.
 #![allow(dead_code, reason = "each test file uses its share")]
 
+pub(crate) mod square;
+
 use assert_cmd::Command;
 use std::path::PathBuf;
 use tempfile::TempDir;

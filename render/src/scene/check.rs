@@ -2,8 +2,8 @@
 
 use super::error::SceneError;
 use super::{
-    AmbientLight, Bump, BumpHeight, Details, LightSource, Map, Material, Mesh, NONE, Scene, Surroundings,
-    Transmission,
+    AmbientLight, Bump, BumpHeight, Details, LightSource, MapPlace, Material, Mesh, NONE, Scene,
+    Surroundings, Transmission,
 };
 use glam::Vec3;
 use pointillist_shade::Light;
@@ -52,12 +52,16 @@ impl Mesh {
         if !self.uv_of.is_empty() {
             needed("uv_of", self.uv_of.len(), count)?;
         }
+        if !self.second_uv_of.is_empty() {
+            needed("second_uv_of", self.second_uv_of.len(), count)?;
+        }
         if !self.colors.is_empty() {
             needed("colors", self.colors.len(), self.positions.len())?;
         }
         check_corners("triangles", &self.triangles, self.positions.len(), false)?;
         check_corners("normal_of", &self.normal_of, self.normals.len(), true)?;
         check_corners("uv_of", &self.uv_of, self.uvs.len(), true)?;
+        check_corners("second_uv_of", &self.second_uv_of, self.uvs.len(), true)?;
         check_indices("material_of", &self.material_of, materials)?;
         check_indices("object_of", &self.object_of, self.objects.len())?;
         let all_finite = |list: &'static str, wrong: Option<usize>| match wrong {
@@ -78,11 +82,15 @@ impl Material {
         let numbers = Vec3::new(s.shininess, s.roughness, s.opacity);
         for (name, value) in [
             ("diffuse", s.diffuse),
+            ("ambient", s.ambient_albedo()),
             ("specular", s.specular),
             ("emission", s.emission),
             ("a constant", numbers),
         ] {
             finite(value.is_finite(), || format!("{user}: {name}"))?;
+        }
+        for place in self.places() {
+            finite(place.map_from_uv.is_finite(), || format!("{user}: the place of a map"))?;
         }
         self.details
             .numbers()
@@ -101,26 +109,20 @@ impl Material {
         }
     }
 
+    /// Where its maps lie.
+    fn places(&self) -> impl Iterator<Item = MapPlace> {
+        let own = [self.diffuse_place, self.opacity_place];
+        self.details.maps().map(|map| map.place).chain(own)
+    }
+
     /// All textures that it refers to.
     fn textures(&self) -> impl Iterator<Item = usize> {
-        let Details { occlusion, bump, normal, surroundings, .. } = &self.details;
-        let d = &self.details;
-        let maps = [
-            d.specular_map,
-            d.shininess_map,
-            d.roughness_map,
-            d.metallic_map,
-            d.emission_map,
-            occlusion.map(|(map, _)| map),
-            bump.map(|bump| bump.map),
-            normal.map(|(map, _)| map),
-        ];
-        let own = match surroundings {
-            Surroundings::Texture(texture) => Some(*texture),
+        let own = match self.details.surroundings {
+            Surroundings::Texture(texture) => Some(texture),
             Surroundings::Scene | Surroundings::Capture => None,
         };
-        let texture = |map: Map| map.texture;
-        maps.into_iter().flatten().map(texture).chain(own).chain(self.diffuse_map).chain(self.opacity_map)
+        let maps = self.details.maps().map(|map| map.texture);
+        maps.chain(own).chain(self.diffuse_map).chain(self.opacity_map)
     }
 }
 
@@ -178,8 +180,8 @@ fn finite(is_finite: bool, what: impl FnOnce() -> String) -> Result<(), SceneErr
 }
 
 fn check_light(source: &LightSource) -> Result<(), SceneError> {
-    let LightSource { name, light, .. } = source;
-    finite(is_finite(light), || format!("light `{name}`"))?;
+    let LightSource { name, light, ambient, .. } = source;
+    finite(is_finite(light) && ambient.is_finite(), || format!("light `{name}`"))?;
     let (Light::Polygon { radiance, .. } | Light::Line { radiance, .. }) = light else { return Ok(()) };
     if radiance.min_element() < 0.0 {
         return Err(SceneError::NegativeLight { name: name.clone() });
@@ -198,9 +200,10 @@ fn is_finite(light: &Light) -> bool {
         && match *light {
             Light::Directional { direction, .. } => direction.is_finite(),
             Light::Point { position, .. } => position.is_finite(),
-            Light::Spot { position, direction, beam_rad, cutoff_rad, .. } => {
+            Light::Spot { position, direction, beam_rad, cutoff_rad, exponent, .. } => {
                 position.is_finite()
                     && direction.is_finite()
+                    && exponent.is_finite()
                     && beam_rad.is_finite()
                     && cutoff_rad.is_finite()
             }

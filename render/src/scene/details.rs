@@ -1,5 +1,6 @@
 //! What a material has beyond its constants: further maps, mirrored surroundings, measured reflection.
 
+use super::map_place::MapPlace;
 use glam::{Vec3, Vec4};
 use pointillist_shade::{AutoUv, MerlTable, Wrap};
 use std::fmt;
@@ -19,6 +20,11 @@ pub struct Details {
     pub metallic_map: Option<Map>,
     /// Multiplies the emission.
     pub emission_map: Option<Map>,
+    /// Multiplies `reflection`; for GGX and where light is transmitted, what is mirrored.
+    pub reflection_map: Option<Map>,
+    /// Light that arrives on the surface besides that of the lights, in the place of ambient light: reflected as albedo · texel. What it lights is seen
+    /// by probes, as that which emits; to `radiosity` the map is nothing.
+    pub light_map: Option<Map>,
     /// The share of ambient and mirrored light that arrives, and how much of the map counts.
     pub occlusion: Option<(Map, f32)>,
     /// Heights.
@@ -36,6 +42,8 @@ pub struct Details {
     pub transmission: Option<Transmission>,
     /// What is mirrored and seen through the surface.
     pub surroundings: Surroundings,
+    /// The surroundings are looked up along the normal, not along the mirrored view: as a map of what arrives from each side, and not as a mirror.
+    pub mirrors_by_normal: bool,
     /// Texture coordinates made from positions instead of those of the mesh.
     pub uv: Option<AutoUv>,
     /// Whether the back is not drawn.
@@ -49,7 +57,7 @@ pub struct Details {
 }
 
 /// One number or colour per texel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
     /// Index into [`super::Scene::textures`].
     pub texture: usize,
@@ -57,6 +65,16 @@ pub struct Map {
     pub wrap: Wrap,
     /// What of the texel counts where a number is wanted.
     pub channel: Channel,
+    /// Where it lies on the surface.
+    pub place: MapPlace,
+}
+
+impl Map {
+    /// A texture that repeats, by the first texture coordinates; where a number is wanted, the mean of red, green and blue counts.
+    #[must_use]
+    pub fn new(texture: usize) -> Self {
+        Self { texture, wrap: Wrap::Repeat, channel: Channel::Mean, place: MapPlace::default() }
+    }
 }
 
 /// What of a texel is taken as a number.
@@ -136,7 +154,7 @@ pub enum Surroundings {
     /// The scene's environment map.
     #[default]
     Scene,
-    /// An equirectangular map of its own: index into [`super::Scene::textures`].
+    /// A map of its own, as [`super::ImageSettings::environment`] has one: index into [`super::Scene::textures`].
     Texture(usize),
     /// Six pictures of the scene from the middle of the object, without the object.
     Capture,
@@ -168,18 +186,24 @@ impl Details {
     /// Whether any map needs texture coordinates.
     #[must_use]
     pub fn has_maps(&self) -> bool {
-        self.maps().any(|map| map.is_some()) || self.bump.is_some() || self.normal.is_some()
+        self.maps().next().is_some()
     }
 
-    fn maps(&self) -> impl Iterator<Item = Option<Map>> {
+    /// All maps that lie on the surface.
+    pub(super) fn maps(&self) -> impl Iterator<Item = Map> {
         [
             self.specular_map,
             self.shininess_map,
             self.roughness_map,
             self.metallic_map,
             self.emission_map,
+            self.reflection_map,
+            self.light_map,
             self.occlusion.map(|(map, _)| map),
+            self.bump.map(|bump| bump.map),
+            self.normal.map(|(map, _)| map),
         ]
         .into_iter()
+        .flatten()
     }
 }

@@ -1,5 +1,6 @@
 //! The lights of a scene.
 
+use glam::Vec3;
 use pointillist_shade::Light;
 use pointillist_shadow::Resolution;
 
@@ -11,6 +12,9 @@ pub struct LightSource {
     pub name: String,
     /// What it sends out.
     pub light: Light,
+    /// What it adds to ambient light, weakened as its light is, but not by shadows and wherever a surface faces: OpenGL's La. Only surfaces of
+    /// OpenGL's formula see it. Default: nothing.
+    pub ambient: Vec3,
     /// Whether it casts shadows. Default: it does.
     pub shadow: bool,
     /// Cells of its shadow grid; only the paper's rule ([`crate::Occlusion::Paper`]) has one. Default: as fine as its receivers.
@@ -21,7 +25,14 @@ impl LightSource {
     /// A light that casts shadows.
     #[must_use]
     pub fn new(name: impl Into<String>, light: Light) -> Self {
-        Self { name: name.into(), light, shadow: true, resolution: Resolution::Auto }
+        Self { name: name.into(), light, ambient: Vec3::ZERO, shadow: true, resolution: Resolution::Auto }
+    }
+
+    /// The same light with ambient light of its own.
+    #[must_use]
+    pub fn with_ambient(mut self, ambient: Vec3) -> Self {
+        self.ambient = ambient;
+        self
     }
 
     /// The same light with or without shadows.

@@ -1,6 +1,7 @@
 //! What surfaces are made of.
 
 use super::details::Details;
+use super::map_place::{MapPlace, UvSet};
 use pointillist_shade as shade;
 use pointillist_shade::Wrap;
 
@@ -18,6 +19,10 @@ pub struct Material {
     pub opacity_map: Option<usize>,
     /// What these two textures are outside the unit square. Default: they repeat.
     pub wrap: Wrap,
+    /// Where the first of these textures lies on the surface.
+    pub diffuse_place: MapPlace,
+    /// Where the second of them lies. If that is elsewhere, colours are averaged without regard to holes: those in a hole count.
+    pub opacity_place: MapPlace,
     /// Everything else. Default: nothing.
     pub details: Details,
 }
@@ -32,6 +37,8 @@ impl Material {
             diffuse_map: None,
             opacity_map: None,
             wrap: Wrap::Repeat,
+            diffuse_place: MapPlace::default(),
+            opacity_place: MapPlace::default(),
             details: Details::default(),
         }
     }
@@ -55,6 +62,15 @@ impl Material {
     pub fn with_details(mut self, details: Details) -> Self {
         self.details = details;
         self
+    }
+
+    /// Whether any of its maps asks for these texture coordinates.
+    #[must_use]
+    pub fn uses(&self, set: UvSet) -> bool {
+        let color = self.diffuse_map.map(|_| self.diffuse_place);
+        let opacity = self.opacity_map.map(|_| self.opacity_place);
+        let mut places = self.details.maps().map(|map| map.place).chain(color).chain(opacity);
+        places.any(|place| place.set == set)
     }
 
     /// Whether any texture is looked up, so that texture coordinates matter.

@@ -8,8 +8,8 @@ pub const NONE: u32 = u32::MAX;
 
 /// Triangles of all objects, concatenated, in world space. [`Mesh::add`] puts one together part by part.
 ///
-/// `material_of` and `object_of` are as long as `triangles`; `normal_of` and `uv_of` too, or empty. The latter two hold
-/// [`NONE`] at all three corners of a triangle that has no normals or coordinates.
+/// `material_of` and `object_of` are as long as `triangles`; `normal_of`, `uv_of` and `second_uv_of` too, or empty. The latter three
+/// hold [`NONE`] at all three corners of a triangle that has no normals or coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Mesh {
@@ -27,6 +27,8 @@ pub struct Mesh {
     pub uvs: Vec<DVec2>,
     /// Indices into `uvs`, corner by corner.
     pub uv_of: Vec<[u32; 3]>,
+    /// Further indices into `uvs`, for maps that lie on the surface in another way, as light maps do.
+    pub second_uv_of: Vec<[u32; 3]>,
     /// Index into [`super::Scene::materials`].
     pub material_of: Vec<u32>,
     /// Index into `objects`.
@@ -122,6 +124,9 @@ impl Mesh {
             part.normals.is_empty(),
         );
         append(&mut self.uv_of, self.triangles.len(), part.triangles, self.uvs.len(), part.uvs.is_empty());
+        if !self.second_uv_of.is_empty() {
+            self.second_uv_of.resize(self.uv_of.len(), [NONE; 3]);
+        }
         let first = self.positions.len() as u32;
         self.triangles.extend(part.triangles.iter().map(|t| t.map(|v| v + first)));
         self.positions.extend_from_slice(part.positions);

@@ -6,6 +6,7 @@ mod check;
 mod details;
 mod error;
 mod light;
+mod map_place;
 mod material;
 mod mesh;
 mod texture;
@@ -15,6 +16,7 @@ pub use camera::Camera;
 pub use details::{Bump, BumpHeight, Channel, Details, Map, MeasuredBrdf, Surroundings, Transmission};
 pub use error::SceneError;
 pub use light::LightSource;
+pub use map_place::{MapPlace, UvSet};
 pub use material::Material;
 pub use mesh::{Mesh, NONE, Object, Part};
 pub(crate) use texture::{LINEAR_OF_SRGB, unit_of_byte};
@@ -59,7 +61,8 @@ pub struct ImageSettings {
     pub height: u32,
     /// Linear radiance where no surface is; alpha is 0 there. Default: black.
     pub background: Vec3,
-    /// Index of an equirectangular texture in place of the colour: row 0 is +Y, its centre is −Z, columns run towards +X.
+    /// Index of a texture of all directions in place of the colour: equirectangular (row 0 is +Y, its centre is −Z, columns run towards +X)
+    /// or the faces of a cube ([`Texture::is_cube`]).
     pub environment: Option<usize>,
     /// The picture shows [`ImageSettings::background`] although there is an environment, which then only lights and is mirrored. Probes
     /// see the environment. Default: `false`.

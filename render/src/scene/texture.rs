@@ -146,6 +146,13 @@ impl Texture {
         self.texel(column, row)
     }
 
+    /// Whether it shows all directions as the faces of a cube: six squares one below another, in the order and orientation of
+    /// [`pointillist_shade::cube_direction`]. Other pictures of all directions are equirectangular.
+    #[must_use]
+    pub fn is_cube(&self) -> bool {
+        u64::from(self.height) == 6 * u64::from(self.width)
+    }
+
     /// Whether all texels are equal, so that there is nothing to dice.
     #[must_use]
     pub fn is_constant(&self) -> bool {

@@ -1,12 +1,12 @@
 //! Scenes of any kind: triangles, textures, materials, lights and cameras.
 
-use glam::{DVec3, Vec3, dvec2, dvec3};
+use glam::{DAffine2, DVec2, DVec3, Vec3, dvec2, dvec3};
 use pointillist_render::sh::Sh;
 use pointillist_render::shade::{self, Falloff, Light, LightOutline, MerlTable};
 use pointillist_render::shprobe::Field;
 use pointillist_render::{
-    AmbientLight, BakedLight, BakedSide, Bump, BumpHeight, Camera, Channel, Details, LightSource, Lightmap,
-    Map, Material, MeasuredBrdf, Part, Scene, SkyLight, Surroundings, Texels, Texture, Transmission,
+    AmbientLight, BakedLight, BakedSide, Bump, BumpHeight, Camera, Details, LightSource, Lightmap, Map,
+    MapPlace, Material, MeasuredBrdf, Part, Scene, SkyLight, Surroundings, Texels, Texture, Transmission,
 };
 use proptest::prelude::*;
 use std::num::NonZeroU32;
@@ -23,9 +23,14 @@ fn color(most: f32) -> impl Strategy<Value = Vec3> {
 }
 
 fn surface() -> impl Strategy<Value = shade::Material> {
-    use shade::Model::{BlinnPhong, Ggx, Lambert, NormalizedPhong};
-    let model =
-        prop_oneof![3 => Just(Lambert), 1 => Just(NormalizedPhong), 1 => Just(BlinnPhong), 1 => Just(Ggx)];
+    use shade::Model::{BlinnPhong, Ggx, Lambert, NormalizedPhong, OpenGl};
+    let model = prop_oneof![
+        3 => Just(Lambert),
+        1 => Just(NormalizedPhong),
+        1 => Just(BlinnPhong),
+        1 => Just(OpenGl),
+        1 => Just(Ggx),
+    ];
     let opacity = prop_oneof![2 => Just(1.0f32), 1 => 0.0..=1.0f32];
     (model, color(1.0), color(0.5), color(0.3), opacity, 1.0..60.0f32, 0.05..1.0f32).prop_map(
         |(model, diffuse, specular, emission, opacity, shininess, roughness)| {
@@ -101,8 +106,10 @@ fn details() -> impl Strategy<Value = Details> {
             (metal, mirror, glass, measured, one_sided, own),
             n,
         )| {
-            let map = Map { texture: 0, wrap: shade::Wrap::Repeat, channel: Channel::Mean };
             let (share, reflection, color, index) = n;
+            let turned = DAffine2::from_angle_translation(f64::from(index), DVec2::splat(f64::from(share)));
+            let place = MapPlace { map_from_uv: turned, ..MapPlace::default() };
+            let map = if mirror { Map { place, ..Map::new(0) } } else { Map::new(0) };
             let mut details = Details::default();
             details.bump = bump.then_some(Bump { map, height: BumpHeight::OfTexture(0.1) });
             details.roughness_map = rough.then_some(map);
@@ -112,6 +119,9 @@ fn details() -> impl Strategy<Value = Details> {
             details.metallic = metal.then_some(share);
             details.metallic_map = metal.then_some(map);
             details.reflection = mirror.then_some(reflection);
+            details.reflection_map = (mirror && rough).then_some(map);
+            details.mirrors_by_normal = mirror && one_sided;
+            details.light_map = (glass || occlusion).then_some(map);
             details.transmission = glass.then_some(Transmission { color, index });
             details.surroundings = if own { Surroundings::Texture(0) } else { Surroundings::Scene };
             details.measured = measured.then(|| MEASURED.clone());
@@ -131,6 +141,10 @@ fn material() -> impl Strategy<Value = Material> {
             let mut material = Material::new("any", surface);
             material.diffuse_map = diffuse.then_some(0);
             material.opacity_map = opacity.then_some(0);
+            // Holes elsewhere than colours, by a condition that is as good as chance.
+            if material.surface.diffuse.x < 0.3 {
+                material.opacity_place.map_from_uv = DAffine2::from_scale(DVec2::new(1.5, 0.5));
+            }
             material.details = details;
             material
         },

@@ -22,8 +22,9 @@ pub fn cube_direction(face: usize, s: f64, t: f64) -> DVec3 {
     }
 }
 
-/// Face, s and t of a direction; directions without one count as +X.
-fn face_point(d: DVec3) -> (usize, f64, f64) {
+/// Face, s and t of a direction of any length, the inverse of [`cube_direction`]; the middle of +X for what is no direction.
+#[must_use]
+pub fn cube_place(d: DVec3) -> (usize, f64, f64) {
     let a = d.abs();
     let (face, s, t, major) = if a.x >= a.y && a.x >= a.z {
         if d.x >= 0.0 { (0, -d.z, -d.y, a.x) } else { (1, d.z, -d.y, a.x) }
@@ -114,7 +115,7 @@ impl CubeMap {
         // A hair across the edge: there it is the neighbour's outermost texel, in the same place along the edge.
         let hair = 1.0 + 1e-3 / self.size as f64;
         let out = |c: f64| if c.abs() == 1.0 { c * hair } else { c };
-        let (other, s, t) = face_point(cube_direction(face, out(s), out(t)));
+        let (other, s, t) = cube_place(cube_direction(face, out(s), out(t)));
         let texel = |c: f64| (((c + 1.0) * 0.5 * self.size as f64) as usize).min(self.size - 1) + 1;
         self.texels[self.index(other, texel(s), texel(t))]
     }
@@ -146,7 +147,7 @@ impl CubeMap {
     /// Radiance from a direction of any length, interpolated between four texels; continuous everywhere.
     #[must_use]
     pub fn sample(&self, direction: DVec3) -> Vec3 {
-        let (face, s, t) = face_point(direction);
+        let (face, s, t) = cube_place(direction);
         let n = self.size as f64;
         // In texels from the middle of the border's.
         let at = |c: f64| ((c + 1.0) * 0.5 * n + 0.5).clamp(0.0, n + 0.999_999);

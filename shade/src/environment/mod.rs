@@ -4,6 +4,6 @@ mod cube;
 mod equirectangular;
 mod prefilter;
 
-pub use cube::{CubeMap, cube_direction};
+pub use cube::{CubeMap, cube_direction, cube_place};
 pub use equirectangular::{Equirectangular, equirectangular_direction, equirectangular_uv};
 pub use prefilter::Environment;

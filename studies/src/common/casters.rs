@@ -112,6 +112,7 @@ pub(crate) fn cage(size: u32) -> Scene {
         intensity: Vec3::splat(64.0),
         beam_rad: 0.25,
         cutoff_rad: 0.45,
+        exponent: 0.0,
         falloff: Falloff::InverseSquare,
     });
     s.scene

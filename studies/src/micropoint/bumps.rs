@@ -89,7 +89,7 @@ fn scene() -> Scene {
     let heights = (0..TEXELS * TEXELS).map(|i| height(i % TEXELS, i / TEXELS)).collect();
     let texture = scene.add_texture(Texture::new("bumps", [TEXELS, TEXELS], Texels::from_grays(heights)));
     let mut material = Material::new("metal", shade::Material::ggx(Vec3::ZERO, Vec3::splat(0.9), ROUGHNESS));
-    let map = Map { texture, wrap: Wrap::Repeat, channel: Channel::Mean };
+    let map = Map::new(texture);
     material.details.bump = Some(Bump { map, height: BumpHeight::World(HEIGHT) });
     let material = scene.add_material(material);
     let corners = corners();

@@ -1,7 +1,7 @@
 //! Pictures of all directions, from files to harmonics.
 
 use crate::error::CliError;
-use crate::image_io::{Levels, read_levels, read_picture};
+use crate::image_io::{Levels, faces_of_strip, read_levels, read_picture, strip_face};
 use crate::input_error::InputError;
 use crate::options::ResponseCurve;
 use crate::probe_io::read_rows;
@@ -93,8 +93,8 @@ pub(super) fn response(curve: &ResponseCurve) -> Result<Response, CliError> {
 /// The harmonics of one picture of all directions: an equirectangular one, or a strip of the faces of a cube.
 pub(super) fn project_one(image: &Image, order: usize, weights: Weights) -> Result<Sh, ShError> {
     let Image { width, height, ref pixels } = *image;
-    if width == 6 * height || height == 6 * width {
-        return project_faces(&strip(image), order, weights);
+    if let Some(face) = strip_face([width, height]) {
+        return project_faces(&faces_of_strip(face, width, pixels), order, weights);
     }
     let map = Panorama::new(width, height, pixels)?;
     PanoramaProjector::new(width, height, order, weights)?.project(&map)
@@ -104,17 +104,4 @@ pub(super) fn project_one(image: &Image, order: usize, weights: Weights) -> Resu
 pub(super) fn project_faces(faces: &[[f32; 3]], order: usize, weights: Weights) -> Result<Sh, ShError> {
     let size = ((faces.len() / 6) as f64).sqrt() as usize;
     CubeProjector::new(size, order, weights)?.project(&CubeMap::from_texels(size, faces)?)
-}
-
-/// The faces of a strip, one after the other.
-fn strip(image: &Image) -> Vec<[f32; 3]> {
-    if image.height == 6 * image.width {
-        return image.pixels.clone();
-    }
-    let n = image.height;
-    let texel = |i: usize| {
-        let (face, y, x) = (i / (n * n), i / n % n, i % n);
-        image.pixels[y * image.width + face * n + x]
-    };
-    (0..6 * n * n).map(texel).collect()
 }

@@ -4,6 +4,7 @@ use super::photographs::{Exposed, Image, merged, overexposed, project_faces, pro
 use crate::commands::Report;
 use crate::commands::report::write_text;
 use crate::error::CliError;
+use crate::image_io::face_fault;
 use crate::input_error::InputError;
 use crate::options::ProjectOptions;
 use pointillist_sh::{Brackets, Response, Sh, ShError};
@@ -58,11 +59,9 @@ fn project(
 }
 
 fn six(images: &[Image], options: &ProjectOptions) -> Result<Vec<[f32; 3]>, CliError> {
-    let n = images[0].width;
+    let size = |image: &Image| [image.width, image.height];
     for (image, path) in images.iter().zip(&options.images) {
-        if [image.width, image.height] != [n, n] {
-            let message =
-                format!("is {}×{}; all six faces of a cube must be {n}×{n}", image.width, image.height);
+        if let Some(message) = face_fault(size(image), size(&images[0])) {
             return Err(InputError::of_file(path.display().to_string(), message).into());
         }
     }

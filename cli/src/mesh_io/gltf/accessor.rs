@@ -1,7 +1,9 @@
 //! Reads accessors: numbers in buffers.
 
 use super::bytes::Buffers;
+use ::gltf::accessor::sparse::{IndexType, Sparse};
 use ::gltf::accessor::{Accessor, DataType, Dimensions};
+use ::gltf::buffer::View;
 
 /// The elements of an accessor as `N` numbers each; whole numbers that stand for 0 to 1 (or −1 to 1) are made so.
 pub(super) fn numbers<const N: usize>(
@@ -49,26 +51,96 @@ pub(super) fn indices(accessor: &Accessor<'_>, buffers: &Buffers) -> Result<Vec<
 /// Calls `element` with the bytes of each element.
 fn each(accessor: &Accessor<'_>, buffers: &Buffers, mut element: impl FnMut(&[u8])) -> Result<(), String> {
     let at = accessor.index();
-    if accessor.sparse().is_some() {
-        return Err(format!("accessor {at} is sparse, which is not in this version yet"));
-    }
-    let view = accessor.view().ok_or_else(|| format!("accessor {at} has no bufferView"))?;
-    let bytes = buffers.view(&view)?;
-    let size = accessor.size();
-    let stride = view.stride().unwrap_or(size);
-    let last = accessor.count().saturating_sub(1);
-    let end = last
-        .checked_mul(stride)
-        .and_then(|n| n.checked_add(accessor.offset()))
-        .and_then(|n| n.checked_add(size));
-    if accessor.count() > 0 && end.is_none_or(|end| end > bytes.len()) {
-        return Err(format!("accessor {at} goes beyond its bufferView"));
-    }
-    for i in 0..accessor.count() {
-        let start = accessor.offset() + i * stride;
-        element(&bytes[start..start + size]);
+    let (count, size) = (accessor.count(), accessor.size());
+    let replaced = accessor.sparse().map(|sparse| replaced(accessor, &sparse, buffers)).transpose()?;
+    let Some(view) = accessor.view() else {
+        let Some(replaced) = replaced else { return Err(format!("accessor {at} has no bufferView")) };
+        return only_replaced(at, count, size, &replaced, element);
+    };
+    let what = || format!("accessor {at}");
+    let elements = elements(&view, accessor.offset(), count, size, buffers, &what)?;
+    let mut next = replaced.as_deref().unwrap_or_default().iter().peekable();
+    for (i, own) in elements.enumerate() {
+        match next.next_if(|(index, _)| *index == i) {
+            Some((_, bytes)) => element(bytes),
+            None => element(own),
+        }
     }
     Ok(())
+}
+
+/// The elements that a sparse accessor replaces, with their numbers, which rise.
+fn replaced<'b>(
+    accessor: &Accessor<'_>,
+    sparse: &Sparse<'_>,
+    buffers: &'b Buffers,
+) -> Result<Vec<(usize, &'b [u8])>, String> {
+    let at = accessor.index();
+    let (indices, values) = (sparse.indices(), sparse.values());
+    let kind = match indices.index_type() {
+        IndexType::U8 => DataType::U8,
+        IndexType::U16 => DataType::U16,
+        IndexType::U32 => DataType::U32,
+    };
+    let what = |part: &str| format!("the sparse {part} of accessor {at}");
+    let of_indices = || what("indices");
+    let of_values = || what("values");
+    let (count, size) = (sparse.count(), accessor.size());
+    let numbers = elements(&indices.view(), indices.offset(), count, kind.size(), buffers, &of_indices)?;
+    let values = elements(&values.view(), values.offset(), count, size, buffers, &of_values)?;
+    let list: Vec<(usize, &[u8])> = numbers.map(|bytes| decode(kind, bytes) as usize).zip(values).collect();
+    if let Some(&(beyond, _)) = list.iter().find(|(index, _)| *index >= accessor.count()) {
+        let elements = accessor.count();
+        return Err(format!("{} name element {beyond}, but there are {elements}", of_indices()));
+    }
+    if list.windows(2).any(|pair| pair[0].0 >= pair[1].0) {
+        return Err(format!("{} do not rise", of_indices()));
+    }
+    Ok(list)
+}
+
+/// The elements of a sparse accessor without a bufferView: zeros, but for those that are replaced.
+fn only_replaced(
+    at: usize,
+    count: usize,
+    size: usize,
+    replaced: &[(usize, &[u8])],
+    mut element: impl FnMut(&[u8]),
+) -> Result<(), String> {
+    // Nothing in the file bounds the number of zeros.
+    if count > MOST_ZEROS {
+        return Err(format!(
+            "accessor {at} is sparse and has {count} elements; at most {MOST_ZEROS} can be read"
+        ));
+    }
+    let zeros = vec![0; size];
+    let mut next = replaced.iter().peekable();
+    for i in 0..count {
+        element(next.next_if(|(index, _)| *index == i).map_or(&zeros, |(_, bytes)| bytes));
+    }
+    Ok(())
+}
+
+/// Most elements of an accessor that has no bytes for them: 2²⁴ positions take 400 MB.
+const MOST_ZEROS: usize = 1 << 24;
+
+/// The bytes of each of `count` elements of `size` bytes in a view; `what` names them in messages.
+fn elements<'b>(
+    view: &View<'_>,
+    offset: usize,
+    count: usize,
+    size: usize,
+    buffers: &'b Buffers,
+    what: &dyn Fn() -> String,
+) -> Result<impl Iterator<Item = &'b [u8]> + use<'b>, String> {
+    let bytes = buffers.view(view)?;
+    let stride = view.stride().unwrap_or(size);
+    let last = count.saturating_sub(1);
+    let end = last.checked_mul(stride).and_then(|n| n.checked_add(offset)).and_then(|n| n.checked_add(size));
+    if count > 0 && end.is_none_or(|end| end > bytes.len()) {
+        return Err(format!("{} goes beyond its bufferView", what()));
+    }
+    Ok((0..count).map(move |i| &bytes[offset + i * stride..][..size]))
 }
 
 fn decode(kind: DataType, bytes: &[u8]) -> f64 {

@@ -2,9 +2,15 @@
 
 use super::GltfModel;
 use ::gltf::Gltf;
+use ::gltf::json::extensions::texture::TextureTransform;
 use ::gltf::texture::{Info, Texture, WrappingMode};
-use glam::Vec3;
+use glam::{DAffine2, DMat2, Vec2, Vec3, dvec2};
+use pointillist_render::{MapPlace, UvSet};
 use pointillist_shade::Wrap;
+use serde_json::Value;
+
+/// The extension that says where textures lie.
+pub(super) const TRANSFORM: &str = "KHR_texture_transform";
 
 /// A texture as a material refers to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +19,8 @@ pub struct GltfTexture {
     pub image: usize,
     /// Outside the unit square.
     pub wrap: Wrap,
+    /// Where it lies on the surface.
+    pub place: MapPlace,
 }
 
 /// What the alpha of the base colour means.
@@ -85,13 +93,19 @@ fn read(material: &::gltf::Material<'_>, file: &str, model: &mut GltfModel) -> G
     let [r, g, b, alpha] = pbr.base_color_factor();
     let name = material.name().map(str::to_owned);
     let name = name.unwrap_or_else(|| format!("material{}", material.index().unwrap_or_default()));
-    let mut of =
-        |info: Option<Info<'_>>| info.map(|i| texture(&i.texture(), i.tex_coord(), file, &name, model));
+    let mut reader = TextureReader { file, material: &name, model };
+    let mut of = |info: Option<Info<'_>>| info.map(|i| reader.of_info(&i));
     let (base_texture, metallic_roughness_texture) =
         (of(pbr.base_color_texture()), of(pbr.metallic_roughness_texture()));
     let emissive_texture = of(material.emissive_texture());
-    let normal = material.normal_texture();
-    let occlusion = material.occlusion_texture();
+    let normal_texture = material.normal_texture().map(|n| {
+        let transform = reader.transform_of_value(n.extension_value(TRANSFORM));
+        (reader.read(&n.texture(), n.tex_coord(), transform), n.scale())
+    });
+    let occlusion_texture = material.occlusion_texture().map(|o| {
+        let transform = reader.transform_of_value(o.extension_value(TRANSFORM));
+        (reader.read(&o.texture(), o.tex_coord(), transform), o.strength())
+    });
     let ior = material.ior().unwrap_or(1.5);
     GltfMaterial {
         base_color: Vec3::new(r, g, b),
@@ -105,9 +119,8 @@ fn read(material: &::gltf::Material<'_>, file: &str, model: &mut GltfModel) -> G
         metallic: pbr.metallic_factor(),
         roughness: pbr.roughness_factor(),
         metallic_roughness_texture,
-        normal_texture: normal.map(|n| (texture(&n.texture(), n.tex_coord(), file, &name, model), n.scale())),
-        occlusion_texture: occlusion
-            .map(|o| (texture(&o.texture(), o.tex_coord(), file, &name, model), o.strength())),
+        normal_texture,
+        occlusion_texture,
         emissive: Vec3::from_array(material.emissive_factor()) * material.emissive_strength().unwrap_or(1.0),
         emissive_texture,
         reflectance: ((ior - 1.0) / (ior + 1.0)).powi(2),
@@ -117,30 +130,91 @@ fn read(material: &::gltf::Material<'_>, file: &str, model: &mut GltfModel) -> G
     }
 }
 
-fn texture(
-    texture: &Texture<'_>,
-    coordinates: u32,
-    file: &str,
-    material: &str,
-    model: &mut GltfModel,
-) -> GltfTexture {
-    if coordinates != 0 {
-        model.warnings.push(format!(
-            "{file}: material `{material}` uses texture coordinates {coordinates}; those of set 0 are used"
-        ));
+/// Reads what a material says of its textures.
+struct TextureReader<'a> {
+    file: &'a str,
+    material: &'a str,
+    model: &'a mut GltfModel,
+}
+
+impl TextureReader<'_> {
+    fn warn(&mut self, what: &str) {
+        self.model.warnings.push(format!("{}: material `{}` {what}", self.file, self.material));
     }
-    let sampler = texture.sampler();
-    if sampler.wrap_s() != sampler.wrap_t() {
-        model.warnings.push(format!(
-            "{file}: a texture of material `{material}` wraps in two ways; that of u is used for both"
-        ));
+
+    fn of_info(&mut self, info: &Info<'_>) -> GltfTexture {
+        let transform = info.texture_transform().map(|t| UvTransform {
+            offset: t.offset(),
+            rotation: t.rotation(),
+            scale: t.scale(),
+            tex_coord: t.tex_coord(),
+        });
+        self.read(&info.texture(), info.tex_coord(), transform)
     }
-    let wrap = match sampler.wrap_s() {
-        WrappingMode::ClampToEdge => Wrap::Clamp,
-        WrappingMode::MirroredRepeat => Wrap::Mirror,
-        WrappingMode::Repeat => Wrap::Repeat,
-    };
-    GltfTexture { image: texture.source().index(), wrap }
+
+    /// The transform of a normal or an occlusion texture, of which the `gltf` crate only gives the JSON.
+    fn transform_of_value(&mut self, value: Option<&Value>) -> Option<UvTransform> {
+        let found: TextureTransform = match serde_json::from_value(value?.clone()) {
+            Ok(found) => found,
+            Err(_) => {
+                self.warn("has a KHR_texture_transform that cannot be read; ignored");
+                return None;
+            }
+        };
+        let TextureTransform { offset, rotation, scale, tex_coord, .. } = found;
+        Some(UvTransform { offset: offset.0, rotation: rotation.0, scale: scale.0, tex_coord })
+    }
+
+    fn read(&mut self, texture: &Texture<'_>, tex_coord: u32, transform: Option<UvTransform>) -> GltfTexture {
+        let sampler = texture.sampler();
+        if sampler.wrap_s() != sampler.wrap_t() {
+            self.warn("has a texture that wraps in two ways; that of u is used for both");
+        }
+        let wrap = match sampler.wrap_s() {
+            WrappingMode::ClampToEdge => Wrap::Clamp,
+            WrappingMode::MirroredRepeat => Wrap::Mirror,
+            WrappingMode::Repeat => Wrap::Repeat,
+        };
+        let tex_coord = transform.and_then(|t| t.tex_coord).unwrap_or(tex_coord);
+        let set = match tex_coord {
+            0 => UvSet::First,
+            1 => UvSet::Second,
+            beyond => {
+                self.warn(&format!("uses texture coordinates {beyond}; those of set 0 are used"));
+                UvSet::First
+            }
+        };
+        let mut map_from_uv = transform.map_or(DAffine2::IDENTITY, UvTransform::upward);
+        if !map_from_uv.is_finite() {
+            self.warn("has a KHR_texture_transform out of the range of numbers; ignored");
+            map_from_uv = DAffine2::IDENTITY;
+        }
+        GltfTexture { image: texture.source().index(), wrap, place: MapPlace { set, map_from_uv } }
+    }
+}
+
+/// What `KHR_texture_transform` says.
+#[derive(Clone, Copy)]
+struct UvTransform {
+    offset: [f32; 2],
+    rotation: f32,
+    scale: [f32; 2],
+    tex_coord: Option<u32>,
+}
+
+impl UvTransform {
+    /// Scale, then rotation, then offset, from coordinates with v upward to such: the file's v runs downward.
+    ///
+    /// The rotation is counter-clockwise as seen on the picture: u' = u cos + v sin, v' = v cos − u sin in the file's coordinates. The
+    /// matrix that the extension prints turns the other way; its words and its sample model say this.
+    fn upward(self) -> DAffine2 {
+        let (offset, scale) =
+            (Vec2::from_array(self.offset).as_dvec2(), Vec2::from_array(self.scale).as_dvec2());
+        let turn = DMat2::from_angle(-f64::from(self.rotation));
+        let downward = DAffine2::from_mat2_translation(turn * DMat2::from_diagonal(scale), offset);
+        let flip = DAffine2::from_mat2_translation(DMat2::from_diagonal(dvec2(1.0, -1.0)), dvec2(0.0, 1.0));
+        flip * downward * flip
+    }
 }
 
 /// Scene files name materials, so no two may have one name.

@@ -37,8 +37,13 @@ pub struct GltfModel {
 }
 
 /// Extensions that change the picture and are understood.
-const KNOWN: [&str; 4] =
-    ["KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_materials_ior"];
+const KNOWN: [&str; 5] = [
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",
+    "KHR_materials_ior",
+    material::TRANSFORM,
+];
 
 /// Reads a glTF; `name` is how messages call it, and `open` gives the bytes of a file that it names.
 ///

@@ -29,7 +29,8 @@ pub(super) fn append(
     }
     let Some(triangles) = triangles(primitive.mode(), &order) else { return Ok(false) };
     let base = [mesh.positions.len(), mesh.normals.len(), mesh.uvs.len()];
-    if base.iter().any(|b| b + count >= NONE as usize) {
+    // Two sets of coordinates may come from here.
+    if base.iter().any(|b| b + 2 * count >= NONE as usize) {
         return Err("more vertices than can be numbered in 32 bits".to_owned());
     }
     mesh.positions.extend(positions.into_iter().map(|p| world.transform_point3(DVec3::from_array(p))));
@@ -37,7 +38,14 @@ pub(super) fn append(
         return Err(format!("a vertex is beyond ±{LARGEST:e} where its node puts it"));
     }
     let has_normals = append_normals(primitive, world.matrix3, count, buffers, mesh)?;
-    let has_uvs = append_uvs(primitive, count, buffers, mesh)?;
+    let has_uvs = append_uvs(primitive, 0, count, buffers, mesh)?;
+    let second_base = mesh.uvs.len();
+    let has_second = append_uvs(primitive, 1, count, buffers, mesh)?;
+    if has_second {
+        // Triangles before had none.
+        mesh.second_uv_of.resize(mesh.triangles.len(), [NONE; 3]);
+    }
+    let lists_second = !mesh.second_uv_of.is_empty() || has_second;
     append_colors(primitive, base[0], count, buffers, mesh)?;
     let mirrored = world.matrix3.determinant() < 0.0;
     for [a, b, c] in triangles {
@@ -46,6 +54,9 @@ pub(super) fn append(
         mesh.triangles.push(from(base[0], true));
         mesh.normal_of.push(from(base[1], has_normals));
         mesh.uv_of.push(from(base[2], has_uvs));
+        if lists_second {
+            mesh.second_uv_of.push(from(second_base, has_second));
+        }
         mesh.material_of.push(material);
     }
     Ok(true)
@@ -102,11 +113,12 @@ fn append_normals(
 
 fn append_uvs(
     primitive: &Primitive<'_>,
+    set: u32,
     count: usize,
     buffers: &Buffers,
     mesh: &mut FileMesh,
 ) -> Result<bool, String> {
-    let Some(uvs) = attribute::<2>(primitive, Semantic::TexCoords(0), count, buffers)? else {
+    let Some(uvs) = attribute::<2>(primitive, Semantic::TexCoords(set), count, buffers)? else {
         return Ok(false);
     };
     // glTF's v runs downward.

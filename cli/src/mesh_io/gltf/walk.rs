@@ -140,6 +140,7 @@ fn light_in_world(light: &::gltf::khr_lights_punctual::Light<'_>, world: DAffine
             intensity: color,
             beam_rad: f64::from(inner_cone_angle),
             cutoff_rad: f64::from(outer_cone_angle),
+            exponent: 0.0,
             falloff,
         },
     }

@@ -1,6 +1,7 @@
 //! `[image]`.
 
-use super::{FileReference, LARGEST_SIDE, file};
+use super::LARGEST_SIDE;
+use super::maps::{EnvironmentReference, environment};
 use crate::input_error::InputError;
 use crate::scene::text::Table;
 use glam::Vec3;
@@ -16,7 +17,7 @@ pub struct ImageDescription {
     /// Linear colour behind everything.
     pub background: Vec3,
     /// Picture around everything.
-    pub environment: Option<FileReference>,
+    pub environment: Option<EnvironmentReference>,
     /// The colour is seen behind everything although there is a picture, which then only lights and is mirrored.
     pub hides_environment: bool,
 }
@@ -28,7 +29,7 @@ impl ImageDescription {
         let Some(mut table) = root.table("image")? else { return Ok(nothing) };
         let size = size(&mut table)?;
         let background = table.color("background")?.unwrap_or(Vec3::ZERO);
-        let environment = file(&mut table, "environment")?;
+        let environment = environment(&mut table, "environment")?;
         let backdrops = [("environment", false), ("background", true)];
         let hides_environment = table.choice("backdrop", &backdrops)?.unwrap_or(false);
         table.finish()?;

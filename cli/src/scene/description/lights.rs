@@ -20,6 +20,8 @@ pub struct LightDescription {
     pub name: String,
     /// What it sends out.
     pub light: Light,
+    /// OpenGL's ambient light of a light.
+    pub ambient: Vec3,
     /// Whether it casts shadows.
     pub shadow: bool,
     /// Cells of the shadow grid.
@@ -84,10 +86,15 @@ fn read(mut table: Table<'_>, name: String) -> Result<LightDescription, InputErr
         Kind::Polygon => read_polygon(&mut table)?,
         Kind::Line => read_line(&mut table)?,
     };
+    let ambient = if matches!(kind, Kind::Point | Kind::Spot | Kind::Directional) {
+        table.color("ambient")?.unwrap_or(Vec3::ZERO)
+    } else {
+        Vec3::ZERO
+    };
     let shadow = table.boolean("shadow")?.unwrap_or(true);
     let resolution = read_resolution(&mut table)?;
     table.finish()?;
-    Ok(LightDescription { name, light, shadow, resolution })
+    Ok(LightDescription { name, light, ambient, shadow, resolution })
 }
 
 fn read_spot(table: &mut Table<'_>) -> Result<Light, InputError> {
@@ -99,12 +106,14 @@ fn read_spot(table: &mut Table<'_>) -> Result<Light, InputError> {
         let message = format!("`{}` is {beam}, beyond the cutoff of {cutoff}", table.name_of("beam"));
         return Err(table.error("beam", message));
     }
+    let exponent = table.number_where("exponent", "0 or more", |n| n >= 0.0)?.unwrap_or(0.0);
     Ok(Light::Spot {
         position: needed_vector(table, "position")?,
         direction: needed_direction(table)?,
         intensity: needed_color(table, "intensity")?,
         beam_rad: beam.to_radians(),
         cutoff_rad: cutoff.to_radians(),
+        exponent,
         falloff: read_falloff(table)?,
     })
 }

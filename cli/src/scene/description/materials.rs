@@ -1,23 +1,15 @@
 //! `[material.NAME]`.
 
+use super::maps::{EnvironmentReference, TextureReference, environment, texture};
 use super::{FileReference, file};
 use crate::input_error::InputError;
-use crate::scene::Transmission;
 use crate::scene::text::{Span, Table};
+use crate::scene::{Transmission, UvSet};
 use glam::Vec3;
 use pointillist_shade::{AutoUv, DIELECTRIC_REFLECTANCE, Material, Model, Wrap};
 
 /// Diffuse albedo of a surface that nothing is said about.
 pub const DEFAULT_ALBEDO: f32 = 0.8;
-
-/// A texture's file and how its values are meant.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TextureReference {
-    /// The file.
-    pub file: FileReference,
-    /// Whether 8-bit colours are sRGB-encoded.
-    pub srgb: bool,
-}
 
 /// A material of the scene file.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +32,10 @@ pub struct MaterialDescription {
     pub metallic_map: Option<TextureReference>,
     /// Multiplies the emission.
     pub emission_map: Option<TextureReference>,
+    /// Multiplies what is mirrored.
+    pub reflection_map: Option<TextureReference>,
+    /// Light that arrives.
+    pub light_map: Option<TextureReference>,
     /// Heights.
     pub bump_map: Option<TextureReference>,
     /// Height of white, in world units.
@@ -58,6 +54,8 @@ pub struct MaterialDescription {
     pub transmission: Option<Transmission>,
     /// Where mirrored light comes from.
     pub surroundings: SurroundingsDescription,
+    /// It is looked up along the normal.
+    pub mirrors_by_normal: bool,
     /// Coordinates made from positions.
     pub uv: Option<AutoUv>,
     /// Its polygons are lights.
@@ -72,7 +70,7 @@ pub enum SurroundingsDescription {
     /// Six pictures of the scene.
     Capture,
     /// A map of its own.
-    File(TextureReference),
+    Files(EnvironmentReference),
 }
 
 /// What `model` may say.
@@ -83,12 +81,13 @@ enum ModelName {
 }
 
 /// The models by name: the normalised forms, because lights are in physical units.
-const MODELS: [(&str, ModelName); 5] = [
+const MODELS: [(&str, ModelName); 6] = [
     ("lambert", ModelName::Formula(Model::Lambert)),
     ("phong", ModelName::Formula(Model::NormalizedPhong)),
     ("blinn-phong", ModelName::Formula(Model::NormalizedBlinnPhong)),
     ("ggx", ModelName::Formula(Model::Ggx)),
     ("merl", ModelName::Measured),
+    ("opengl", ModelName::Formula(Model::OpenGl)),
 ];
 
 const KINDS_OF_UV: [(&str, AutoUv); 4] = [
@@ -110,14 +109,14 @@ pub(super) fn read_all(root: &mut Table<'_>) -> Result<Vec<(String, MaterialDesc
 
 fn read(span: Span, mut table: Table<'_>) -> Result<MaterialDescription, InputError> {
     let model = table.choice("model", &MODELS)?.unwrap_or(ModelName::Formula(Model::Lambert));
+    let model = with_highlight(&mut table, model)?;
     let srgb = table.choice("color_space", &[("srgb", true), ("linear", false)])?.unwrap_or(true);
     table.choice("filter", &[("texel", ())])?;
     let wrap = table
         .choice("wrap", &[("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)])?
         .unwrap_or_default();
-    let mut texture = |key| -> Result<Option<TextureReference>, InputError> {
-        Ok(file(&mut table, key)?.map(|file| TextureReference { file, srgb }))
-    };
+    let light_map = texture(&mut table, "lightmap", srgb, UvSet::Second)?;
+    let mut texture = |key| texture(&mut table, key, srgb, UvSet::First);
     let mut found = MaterialDescription {
         span,
         surface: Material::default(),
@@ -128,6 +127,8 @@ fn read(span: Span, mut table: Table<'_>) -> Result<MaterialDescription, InputEr
         roughness_map: texture("roughness_map")?,
         metallic_map: texture("metallic_map")?,
         emission_map: texture("emission_map")?,
+        reflection_map: texture("reflection_map")?,
+        light_map,
         bump_map: texture("bump_map")?,
         normal_map: texture("normal_map")?,
         bump_scale: 1.0,
@@ -137,12 +138,19 @@ fn read(span: Span, mut table: Table<'_>) -> Result<MaterialDescription, InputEr
         reflection: color_or_number(&mut table, "reflection")?,
         transmission: read_transmission(&mut table)?,
         surroundings: read_surroundings(&mut table)?,
+        mirrors_by_normal: table
+            .choice("environment_lookup", &[("reflection", false), ("normal", true)])?
+            .unwrap_or(false),
         uv: table.choice("uv", &KINDS_OF_UV)?,
         emits: table.boolean("emits")?.unwrap_or(false),
     };
     let bump_scale = table.number_where("bump_scale", "a number (world units)", f64::is_finite)?;
     found.bump_scale = bump_scale.unwrap_or(1.0) as f32;
     found.surface = read_surface(&mut table, model, &found)?;
+    let is_ggx = model == ModelName::Formula(Model::Ggx);
+    if found.reflection_map.is_some() && !is_ggx && found.transmission.is_none() {
+        found.reflection = found.reflection.or(Some(Vec3::ONE));
+    }
     if found.metallic_map.is_some() {
         found.metallic = found.metallic.or(Some(1.0));
     }
@@ -159,6 +167,16 @@ fn read(span: Span, mut table: Table<'_>) -> Result<MaterialDescription, InputEr
     }
     table.finish()?;
     Ok(found)
+}
+
+/// `highlight`: which one OpenGL's formula has.
+fn with_highlight(table: &mut Table<'_>, model: ModelName) -> Result<ModelName, InputError> {
+    let highlight = table.choice("highlight", &[("blinn", Model::OpenGl), ("phong", Model::OpenGlPhong)])?;
+    match highlight {
+        None => Ok(model),
+        Some(highlight) if model == ModelName::Formula(Model::OpenGl) => Ok(ModelName::Formula(highlight)),
+        Some(_) => Err(unused(table, "highlight", "it is for model = \"opengl\"")),
+    }
 }
 
 fn is_share(n: f64) -> bool {
@@ -205,9 +223,19 @@ fn read_surface(
     }
     let model = if let ModelName::Formula(model) = model { model } else { Model::Lambert };
     let diffuse = table.color("diffuse")?.unwrap_or(Vec3::splat(default_albedo));
+    let ambient = color_or_number(table, "ambient")?;
+    if ambient.is_some() && !model.is_opengl() {
+        return Err(unused(
+            table,
+            "ambient",
+            "it is for model = \"opengl\"; others reflect ambient light by `diffuse`",
+        ));
+    }
     let emission = table.color("emission")?.unwrap_or(default_emission);
     let opacity = table.number_where("opacity", "from 0 to 1", is_share)?.unwrap_or(1.0);
-    Ok(Material::lambert(diffuse)
+    let surface = Material::lambert(diffuse);
+    Ok(ambient
+        .map_or(surface, |ambient| surface.with_ambient(ambient))
         .with_specular(model, specular, shininess.unwrap_or(default_shininess) as f32)
         .with_roughness(roughness.unwrap_or(default_roughness) as f32)
         .with_emission(emission)
@@ -235,12 +263,22 @@ fn check_unused(table: &Table<'_>, model: ModelName, found: &MaterialDescription
     }
     let for_ggx = "it is for model = \"ggx\"";
     let rough = is_ggx || found.reflection.is_some();
-    let shiny = matches!(model, ModelName::Formula(Model::NormalizedPhong | Model::NormalizedBlinnPhong));
+    let shiny = matches!(
+        model,
+        ModelName::Formula(
+            Model::NormalizedPhong | Model::NormalizedBlinnPhong | Model::OpenGl | Model::OpenGlPhong
+        )
+    );
     let needs = [
         ("metallic", found.metallic.is_some(), is_ggx, for_ggx),
         ("metallic_map", found.metallic_map.is_some(), is_ggx, for_ggx),
         ("roughness_map", found.roughness_map.is_some(), rough, for_ggx),
-        ("shininess_map", found.shininess_map.is_some(), shiny, "it is for \"phong\" and \"blinn-phong\""),
+        (
+            "shininess_map",
+            found.shininess_map.is_some(),
+            shiny,
+            "it is for \"phong\", \"blinn-phong\" and \"opengl\"",
+        ),
         ("specular_map", found.specular_map.is_some(), shiny || is_ggx, "\"lambert\" has no highlight"),
     ];
     match needs.into_iter().find(|&(_, given, used, _)| given && !used) {
@@ -276,9 +314,11 @@ fn read_transmission(table: &mut Table<'_>) -> Result<Option<Transmission>, Inpu
 }
 
 fn read_surroundings(table: &mut Table<'_>) -> Result<SurroundingsDescription, InputError> {
-    Ok(match file(table, "environment")? {
+    Ok(match environment(table, "environment")? {
         None => SurroundingsDescription::Scene,
-        Some(reference) if reference.path == "capture" => SurroundingsDescription::Capture,
-        Some(file) => SurroundingsDescription::File(TextureReference { file, srgb: true }),
+        Some(found) if found.files.len() == 1 && found.files[0].path == "capture" => {
+            SurroundingsDescription::Capture
+        }
+        Some(found) => SurroundingsDescription::Files(found),
     })
 }

@@ -3,6 +3,7 @@
 mod camera;
 mod image;
 mod lights;
+mod maps;
 mod materials;
 mod objects;
 mod path;
@@ -12,7 +13,8 @@ pub(crate) use camera::view_fault;
 pub use camera::{CameraDescription, DEFAULT_FOV_DEG};
 pub use image::{DEFAULT_SIZE, ImageDescription};
 pub use lights::LightDescription;
-pub use materials::{DEFAULT_ALBEDO, MaterialDescription, SurroundingsDescription, TextureReference};
+pub use maps::{EnvironmentReference, TextureReference};
+pub use materials::{DEFAULT_ALBEDO, MaterialDescription, SurroundingsDescription};
 pub use objects::ObjectDescription;
 pub use path::{CameraPath, Interpolation, ObjectPath};
 pub use render::RenderDescription;

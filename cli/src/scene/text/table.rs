@@ -53,6 +53,11 @@ impl<'a> Table<'a> {
         self.entries.iter().any(|(found, node)| found.name == key && matches!(node.value, Value::Number(_)))
     }
 
+    /// Whether the value of `key` is there and a table.
+    pub fn is_table(&self, key: &str) -> bool {
+        self.entries.iter().any(|(found, node)| found.name == key && matches!(node.value, Value::Table(_)))
+    }
+
     /// An error about the value of `key`, or about the table if it is not there.
     pub fn error(&self, key: &str, message: impl Into<String>) -> InputError {
         self.document.error(self.span_of(key), message)
@@ -138,6 +143,21 @@ impl<'a> Table<'a> {
             Some(Node { value: Value::Text(text), .. }) => Ok(Some(text)),
             Some(node) => Err(self.wrong(key, node, "a string")),
         }
+    }
+
+    /// Text, or a list of texts; each with its place.
+    ///
+    /// # Errors
+    ///
+    /// See above.
+    pub fn text_or_texts(&mut self, key: &'static str) -> Read<Vec<(&'a str, Span)>> {
+        let Some(node) = self.get(key) else { return Ok(None) };
+        let items = if let Value::Array(items) = &node.value { items } else { std::slice::from_ref(node) };
+        let text = |item: &'a Node| match &item.value {
+            Value::Text(text) => Ok((text.as_str(), item.span)),
+            _ => Err(self.wrong(key, item, "a string or a list of strings")),
+        };
+        items.iter().map(text).collect::<Result<_, _>>().map(Some)
     }
 
     /// One of some words.

@@ -1,0 +1,149 @@
+//! From the bytes of a picture to texels, as their purpose wants them.
+
+use super::textures::{Purpose, Tone};
+use super::{Texels, Texture, linear_from_srgb};
+use crate::image_io::{self, face_fault, faces_of_strip, strip_face};
+use image::DynamicImage;
+use std::path::Path;
+
+/// The texture of a picture.
+///
+/// # Errors
+///
+/// What is wrong, as the end of a sentence that begins with the picture's name.
+pub(super) fn decode(path: &Path, bytes: &[u8], purpose: Purpose, tone: Tone) -> Result<Texture, String> {
+    let image = if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
+        let picture =
+            image_io::read_exr_picture(bytes).map_err(|error| format!("cannot be decoded: {error}"))?;
+        let [width, height] = picture.size;
+        let flat = picture.color.into_iter().flatten().collect();
+        let buffer = image::ImageBuffer::from_raw(width, height, flat);
+        DynamicImage::ImageRgba32F(buffer.ok_or("has an impossible size")?)
+    } else {
+        image_io::decode_image(bytes).map_err(|error| format!("cannot be decoded: {error}"))?
+    };
+    let (width, height) = (image.width(), image.height());
+    if width == 0 || height == 0 {
+        return Err("has no pixels".to_owned());
+    }
+    let texture = Texture::new(path.display().to_string(), [width, height], texels(image, purpose));
+    let texture = toned(texture, tone);
+    Ok(if purpose == Purpose::Surroundings { upright(texture) } else { texture })
+}
+
+/// A strip of six faces side by side as one of six below another; other pictures as they are.
+fn upright(mut texture: Texture) -> Texture {
+    let size = [texture.width, texture.height].map(|n| n as usize);
+    if let Some(face) = strip_face(size) {
+        let width = size[0];
+        texture.texels = match &texture.texels {
+            Texels::Srgb8(texels) => Texels::Srgb8(faces_of_strip(face, width, texels).into()),
+            Texels::OpaqueSrgb8(texels) => Texels::OpaqueSrgb8(faces_of_strip(face, width, texels).into()),
+            Texels::Float(texels) => Texels::Float(faces_of_strip(face, width, texels).into()),
+            _ => Texels::Float(faces_of_strip(face, width, &floats(&texture)).into()),
+        };
+        (texture.width, texture.height) = (face as u32, 6 * face as u32);
+    }
+    texture
+}
+
+/// Six squares as the faces of one cube.
+///
+/// # Errors
+///
+/// The number of the first that does not fit, and what is wrong with it, as the end of a sentence.
+pub(super) fn joined_faces(faces: &[Texture]) -> Result<Texture, (usize, String)> {
+    let size = |t: &Texture| [t.width, t.height].map(|n| n as usize);
+    for (number, face) in faces.iter().enumerate() {
+        if let Some(fault) = face_fault(size(face), size(&faces[0])) {
+            return Err((number, fault));
+        }
+    }
+    let bytes = |t: &Texture| match &t.texels {
+        Texels::OpaqueSrgb8(texels) => Some(texels.clone()),
+        _ => None,
+    };
+    let texels = match faces.iter().map(bytes).collect::<Option<Vec<_>>>() {
+        Some(lists) => {
+            Texels::OpaqueSrgb8(lists.iter().flat_map(|list| list.iter().copied()).collect::<Vec<_>>().into())
+        }
+        None => Texels::Float(faces.iter().flat_map(floats).collect::<Vec<_>>().into()),
+    };
+    let side = faces[0].width;
+    Ok(Texture::new(faces[0].name.clone(), [side, 6 * side], texels))
+}
+
+fn floats(t: &Texture) -> Vec<[f32; 4]> {
+    (0..t.height).flat_map(|y| (0..t.width).map(move |x| t.texel(x, y).to_array())).collect()
+}
+
+/// Texels with another tone.
+fn toned(texture: Texture, tone: Tone) -> Texture {
+    if tone == Tone::PLAIN {
+        return texture;
+    }
+    let Texture { width, height, .. } = texture;
+    let texels = match &texture.texels {
+        Texels::Opacity8(bytes) => {
+            let toned = |&[byte]: &[u8; 1]| (255.0 * tone.of(f32::from(byte) / 255.0)).round() as u8;
+            Texels::from_opacities(bytes.iter().map(toned).collect())
+        }
+        // Not as bytes, which would round a second time.
+        _ => {
+            let toned = |[r, g, b, a]: [f32; 4]| [tone.of(r), tone.of(g), tone.of(b), a];
+            Texels::Float(floats(&texture).into_iter().map(toned).collect::<Vec<_>>().into())
+        }
+    };
+    Texture::new(texture.name, [width, height], texels)
+}
+
+fn texels(image: DynamicImage, purpose: Purpose) -> Texels {
+    let is_byte = image.color().bytes_per_pixel() == image.color().channel_count();
+    let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+    let srgb = purpose != Purpose::Color { srgb: false };
+    match purpose {
+        Purpose::Opacity => opacity(&image),
+        Purpose::Alpha => Texels::from_opacities(alpha(&image)),
+        Purpose::Mask(from) => {
+            let mask = |a| if u16::from(a) >= from { u8::MAX } else { 0 };
+            Texels::from_opacities(alpha(&image).into_iter().map(mask).collect())
+        }
+        Purpose::Color { .. } | Purpose::Surroundings if is_byte => bytes(image, srgb),
+        Purpose::Color { .. } | Purpose::Surroundings => {
+            let decode = |c: f32| if srgb && !is_float { linear_from_srgb(c) } else { c };
+            let finite = |c: f32| if c.is_finite() { c } else { 0.0 };
+            let texel = |[r, g, b, a]: [f32; 4]| [decode(r), decode(g), decode(b), a].map(finite);
+            let texels: Vec<_> = image.into_rgba32f().pixels().map(|p| texel(p.0)).collect();
+            Texels::Float(texels.into())
+        }
+    }
+}
+
+/// The texels of a picture with 8 bits for each channel.
+fn bytes(image: DynamicImage, srgb: bool) -> Texels {
+    if image.color().has_alpha() {
+        let texels: Vec<_> = image.into_rgba8().pixels().map(|p| p.0).collect();
+        return if srgb { Texels::Srgb8(texels.into()) } else { Texels::Linear8(texels.into()) };
+    }
+    let is_gray = |image: &image::RgbImage| image.pixels().all(|p| p.0 == [p.0[0]; 3]);
+    let image = image.into_rgb8();
+    if !srgb && is_gray(&image) {
+        return Texels::from_grays(image.pixels().map(|p| p.0[0]).collect());
+    }
+    let texels: Vec<_> = image.pixels().map(|p| p.0).collect();
+    if srgb { Texels::OpaqueSrgb8(texels.into()) } else { Texels::OpaqueLinear8(texels.into()) }
+}
+
+fn alpha(image: &DynamicImage) -> Vec<u8> {
+    image.to_rgba8().pixels().map(|p| p.0[3]).collect()
+}
+
+fn opacity(image: &DynamicImage) -> Texels {
+    if image.color().has_alpha() {
+        let alpha = alpha(image);
+        if alpha.iter().any(|&a| a != u8::MAX) {
+            return Texels::from_opacities(alpha);
+        }
+    }
+    Texels::from_opacities(image.to_luma8().into_raw())
+}
