@@ -23,7 +23,7 @@
 //!
 //! * [`Light`], [`Incident`]: directional, point, spot, rectangular and polygonal lights in physical units, with inverse-square
 //!   or constant/linear/quadratic attenuation.
-//! * [`Material`], [`Model`]: Lambert, Phong and Blinn-Phong (plain and energy-conserving), and GGX; [`MerlTable`]:
+//! * [`Material`], [`Model`]: Lambert, Phong and Blinn-Phong (plain, energy-conserving, and as in OpenGL's formula), and GGX; [`MerlTable`]:
 //!   measured BRDFs; [`directional_albedo`]: how much any of them returns.
 //! * [`gl`]: the fixed-function OpenGL formula with its own light and material.
 //! * [`vertex_normals`], [`corner_normals`], [`interpolate_normal`], [`interpolate_color`], [`Interpolation`]: flat, Gouraud and

@@ -5,7 +5,7 @@ use crate::common::picture::Picture;
 use crate::common::report::{on_one_thread, timed};
 use glam::{DVec2, DVec3, Vec2, Vec3, dvec2, dvec3};
 use pointillist_render::{
-    Bump, BumpHeight, Camera, Channel, LightSource, Map, Material, Part, Scene, Texels, Texture,
+    Bump, BumpHeight, Camera, LightSource, Map, Material, Part, Scene, Texels, Texture,
 };
 use pointillist_shade::{self as shade, Light, UvFrame, Wrap, keep_visible, slope_of_heights};
 use std::f64::consts::{PI, TAU};

@@ -121,8 +121,8 @@ fn only_replaced(
     Ok(())
 }
 
-/// Most elements of an accessor that has no bytes for them: 2²⁴ positions take 400 MB.
-const MOST_ZEROS: usize = 1 << 24;
+/// Most elements of an accessor that has no bytes for them: 2²² positions take 100 MB.
+const MOST_ZEROS: usize = 1 << 22;
 
 /// The bytes of each of `count` elements of `size` bytes in a view; `what` names them in messages.
 fn elements<'b>(
