@@ -13,7 +13,8 @@ pub use camera::{CameraDescription, DEFAULT_FOV_DEG};
 pub use image::{DEFAULT_SIZE, ImageDescription};
 pub use lights::LightDescription;
 pub use materials::{DEFAULT_ALBEDO, MaterialDescription, SurroundingsDescription, TextureReference};
-pub use objects::ObjectDescription;
+pub use objects::{Copies, ObjectDescription};
+pub(super) use objects::{affine_of, placed};
 pub use path::{CameraPath, Interpolation, ObjectPath};
 pub use render::RenderDescription;
 
