@@ -77,6 +77,7 @@ impl Shader<'_> {
                     let back = |i: usize| self.shows_back(&tile.faces()[tile.points()[i].face as usize]);
                     mean(&|i, _| Vec3::splat(f32::from(u8::from(back(i)))), 1)
                 }
+                LayerKind::Cryptomatte(matte) => self.matte_planes(tile, *matte),
                 LayerKind::Lit(light) => mean(&|i, _| Vec3::splat(lit[light][i] as f32), 1),
                 LayerKind::Normal | LayerKind::Position | LayerKind::Id => {
                     let value = |i: usize| self.geometry_value(*layer, tile, &points[i], &tile.points()[i]);
