@@ -19,6 +19,7 @@ mod json_words;
 pub mod memory;
 pub mod mesh_io;
 mod name_pattern;
+mod number_lines;
 pub mod options;
 pub mod points;
 pub mod probe_io;

@@ -30,6 +30,7 @@ fn refused(name: &str, bytes: &[u8], pieces: &[&str]) {
 
 #[cfg(feature = "las")]
 mod las_files {
+    use super::common::Folder;
     use super::*;
     use las::point::Format;
     use las::{Builder, Color, Point, Writer};
@@ -57,6 +58,34 @@ mod las_files {
             assert_eq!(summary.format, CloudFormat::Las);
             assert_eq!(colours, [[1.0, 0.0, 0.0]; 3]);
             assert!(positions[2].distance(dvec3(2_000_000.002, -2.5, 0.0)) < 1e-6, "{positions:?}");
+        }
+    }
+
+    #[test]
+    fn the_program_draws_las_and_laz_and_tells_what_they_hold() {
+        let folder = Folder::new();
+        for (name, is_compressed) in [("sheet.las", false), ("sheet.laz", true)] {
+            let mut builder = Builder::from((1, 2));
+            builder.point_format = Format::new(2).unwrap();
+            builder.point_format.is_compressed = is_compressed;
+            let mut writer = Writer::new(Cursor::new(Vec::new()), builder.into_header().unwrap()).unwrap();
+            for (x, y) in (0..41).flat_map(|y| (0..41).map(move |x| (x, y))) {
+                let (x, y) = (0.05 * f64::from(x) - 1.0, 0.05 * f64::from(y) - 1.0);
+                let color = Some(Color { red: 0, green: 65_535, blue: 0 });
+                writer.write_point(Point { x, y, color, ..Point::default() }).unwrap();
+            }
+            folder.write(name, writer.into_inner().unwrap().into_inner());
+            let info: serde_json::Value = serde_json::from_str(&folder.prints(&["info", name])).unwrap();
+            assert_eq!(info["points"], 41 * 41, "{info}");
+            let view = ["--eye", "0,0,3", "--target", "0,0,0", "--fov", "30", "--size", "24x24"];
+            for command in ["scan", "surfel"] {
+                folder.prints(&[&[command, name, "-o", "a.png"][..], &view].concat());
+                let middle = image::open(folder.path("a.png")).unwrap().into_rgba8().get_pixel(12, 12).0;
+                assert!(
+                    middle[1] > 200 && middle[0] < 10 && middle[3] == 255,
+                    "{command} {name}: {middle:?}"
+                );
+            }
         }
     }
 

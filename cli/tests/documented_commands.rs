@@ -120,7 +120,7 @@ fn cheaply(command: &str) -> String {
 fn outputs(command: &str) -> Vec<String> {
     let words: Vec<&str> = command.split_whitespace().collect();
     let named = |option: &str| words.iter().position(|w| *w == option).map(|i| words[i + 1].to_owned());
-    ["-o", "--diff", "--factors", "--stats"]
+    ["-o", "--diff", "--factors", "--html", "--stats"]
         .into_iter()
         .filter_map(named)
         .filter(|name| name != "-" && !name.starts_with('~'))

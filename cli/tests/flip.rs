@@ -48,8 +48,8 @@ fn a_single_pixel_is_a_picture() {
         window: PixelRect::of_picture(1, 1),
         color: vec![[value, value, value, 1.0]],
     };
-    let differences = compare(&pixel(0.0), &pixel(1.0));
+    let differences = compare(&pixel(0.0), &pixel(1.0)).differences;
     assert_eq!((differences.rmse, differences.max, differences.bias), (1.0, 1.0, -1.0));
     assert!(differences.flip > 0.9);
-    assert_eq!(compare(&pixel(f32::NAN), &pixel(0.0)).nonfinite, 3);
+    assert_eq!(compare(&pixel(f32::NAN), &pixel(0.0)).differences.nonfinite, 3);
 }

@@ -108,6 +108,27 @@ fn tiles_join_to_the_whole_picture() {
 }
 
 #[test]
+fn a_crop_is_a_part_of_the_whole_picture_and_may_be_empty() {
+    let folder = Folder::new();
+    folder.write("sheet.xyz", sheet(0.0));
+    for more in [&["--edl"][..], &["--alpha", "0.5"], &["--passes", "2"]] {
+        run(&folder, &scan(&["sheet.xyz"], &[&["-o", "whole.png"], more].concat()));
+        run(&folder, &scan(&["sheet.xyz"], &[&["-o", "part.png", "--crop", "9,20,31,37"], more].concat()));
+        let [whole, part] =
+            ["whole.png", "part.png"].map(|n| image::open(folder.path(n)).unwrap().into_rgba8());
+        assert_eq!(part.dimensions(), (22, 17));
+        assert!(part.pixels().any(|p| p.0[3] > 0));
+        assert!(part == image::imageops::crop_imm(&whole, 9, 20, 22, 17).to_image(), "{more:?}");
+    }
+    for (command, crop) in [("scan", "0,0,2,2"), ("surfel", "0,0,2,2")] {
+        let line = [&[command, "sheet.xyz"], &VIEW[..], &["-o", "corner.png", "--crop", crop]].concat();
+        let output = folder.command(&line).output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && !told.contains("nothing was drawn"), "{command}: {told}");
+    }
+}
+
+#[test]
 fn repeat_reports_the_frames() {
     let folder = Folder::new();
     folder.write("sheet.xyz", sheet(0.0));

@@ -6,7 +6,7 @@ use glam::{DVec3, dvec3};
 use libfuzzer_sys::fuzz_target;
 use pointillist_ibpr::invariants::{self, OwnedScan};
 use pointillist_ibpr::{
-    Culling, EyeDome, Light, Normals, Options, Passes, Projection, Scale, Translucency, View, Weighting,
+    Culling, EyeDome, Light, Normals, Options, Passes, PixelRect, Projection, Scale, Translucency, View, Weighting,
 };
 
 /// Points in steps of 1/64, often repeated, on a line or on a plane.
@@ -135,7 +135,13 @@ fuzz_target!(|input: (Vec<Part>, Picture, Rules, u64)| {
     let scans: Vec<OwnedScan> = parts.iter().take(4).map(resized).collect();
     let options = options(&rules);
     let facts = invariants::frames_are_sound(&scans, &view, &options)
-        .and_then(|()| invariants::order_does_not_matter(&scans, &view, &options, seed));
+        .and_then(|()| invariants::order_does_not_matter(&scans, &view, &options, seed))
+        .and_then(|()| {
+            let [x0, y0, w, h] = seed.to_le_bytes()[..4] else { return Ok(()) };
+            let (x0, y0) = (u32::from(x0 % 80), u32::from(y0 % 80));
+            let window = PixelRect { x0, y0, x1: x0 + u32::from(w % 40), y1: y0 + u32::from(h % 40) };
+            invariants::a_window_is_a_part_of_the_picture(&scans, &view, &options, window)
+        });
     if let Err(broken) = facts {
         panic!("{broken}");
     }

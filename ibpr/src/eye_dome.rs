@@ -6,6 +6,7 @@
 use crate::frame::Frame;
 use crate::options::EyeDome;
 use crate::parallel::*;
+use crate::wanted::Wanted;
 
 /// Factor in the exponent of the formula above: with it, a usual strength is 1.
 const GAIN: f32 = 300.0;
@@ -13,14 +14,17 @@ const GAIN: f32 = 300.0;
 /// Bound on the difference of log₂ z: larger than for any two depths above 0. Without it a depth of 0 would give 0 · ∞.
 const MOST: f32 = 300.0;
 
-/// Darkens the colors of a finished frame.
-pub(crate) fn apply(frame: &mut Frame, dome: &EyeDome) {
+/// Darkens the wanted colors of a frame, whose depth is known around them, too.
+pub(crate) fn apply(frame: &mut Frame, dome: &EyeDome, wanted: &Wanted) {
     let (width, height) = (frame.width, frame.height);
     let depth = &frame.depth;
     let r = dome.radius as isize;
     let around = [(r, 0), (r, r), (0, r), (-r, r), (-r, 0), (-r, -r), (0, -r), (r, -r)];
     chunks(&mut frame.color, width).enumerate().for_each(|(y, row)| {
-        for (x, pixel) in row.iter_mut().enumerate() {
+        if !wanted.rows.contains(&y) {
+            return;
+        }
+        for (x, pixel) in row.iter_mut().enumerate().take(wanted.columns.end).skip(wanted.columns.start) {
             let here = depth[y * width + x];
             if here == f32::INFINITY {
                 continue;

@@ -8,6 +8,7 @@ use crate::buffer::STEP;
 use crate::buffer::{Buffer, Corner, DepthScale, SUBPIXEL};
 use crate::outline::Outline;
 use crate::raster::{Paint, Pixels, Strip, Vertex};
+use std::ops::Range;
 
 /// How faces are made.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +58,16 @@ fn inside_whole_px(outlines: &[Outline], rules: &FaceRules, at: usize) -> f32 {
     outlines.get(at).map_or(f32::INFINITY, |o| o.inside * rules.pixel + rules.outline_px)
 }
 
+/// Rows (or columns) of quads that may touch these rows (or columns) of the picture, each numbered by its first corner, from −1 on; `size`
+/// is the buffer's.
+pub(crate) fn quads_about(picture: &Range<usize>, pixel: f32, size: usize) -> Range<isize> {
+    // A corner lies in its own pixel, and faces reach up to `UNDER` beyond.
+    let reach = UNDER + 0.5 + 0.5 / pixel;
+    let first = picture.start as f32 / pixel;
+    let last = picture.end as f32 / pixel;
+    (first - reach - 1.0).max(-1.0) as isize..(last + reach).min(size as f32) as isize
+}
+
 /// Draws all faces of `buffer` that touch `strip`.
 pub(crate) fn draw<P: Pixels>(
     buffer: &Buffer,
@@ -64,15 +75,13 @@ pub(crate) fn draw<P: Pixels>(
     rules: &FaceRules,
     strip: &mut Strip<P>,
 ) {
-    // A corner lies in its own pixel, and faces reach up to `UNDER` beyond.
-    let reach = UNDER + 0.5 + 0.5 / rules.pixel;
-    let first = strip.first_row as f32 / rules.pixel;
-    let last = (strip.first_row + strip.rows) as f32 / rules.pixel;
-    let top = (first - reach - 1.0).max(-1.0) as isize;
-    let bottom = (last + reach).min(buffer.height as f32) as isize;
-    for row in top..bottom {
+    let rows = strip.first_row..strip.first_row + strip.rows;
+    let columns = quads_about(&strip.columns, rules.pixel, buffer.width);
+    for row in quads_about(&rows, rules.pixel, buffer.height) {
         let upper = buffer.at(0, 0).wrapping_add_signed(row * buffer.pitch as isize - 1);
-        for at in occupied(buffer, upper) {
+        let near = upper.wrapping_add_signed(columns.start + 1)..upper.wrapping_add_signed(columns.end + 1);
+        let occupied = occupied(buffer, upper);
+        for at in occupied.start.max(near.start)..occupied.end.min(near.end) {
             let quad = [at, at + 1, at + 1 + buffer.pitch, at + buffer.pitch];
             if buffer.layers == 1 {
                 draw_quad(buffer, outlines, rules, quad, strip);

@@ -15,7 +15,7 @@
 //! # Ok::<(), String>(())
 //! ```
 
-use crate::{Cloud, Frame, IbprError, Options, Renderer, Scan, View};
+use crate::{Cloud, Frame, IbprError, Options, PixelRect, Renderer, Scan, View};
 use glam::{DVec2, DVec3, Vec3};
 
 /// Rounding allowed to opacities, to lengths of unit normals, and to a color that all points share.
@@ -114,6 +114,45 @@ pub fn frame(scans: &[OwnedScan], view: &View, options: &Options) -> Option<Fram
     let mut frame = Frame::default();
     Renderer::new().draw(&cloud(scans).ok()?, view, options, &mut frame).ok()?;
     Some(frame)
+}
+
+/// Pixels of a window are those of the whole picture, bit for bit, also after another frame.
+///
+/// # Errors
+/// The first pixel that differs.
+pub fn a_window_is_a_part_of_the_picture(
+    scans: &[OwnedScan],
+    view: &View,
+    options: &Options,
+    window: PixelRect,
+) -> Result<(), String> {
+    let whole = frame(scans, view, options);
+    let windowed = options.with_window(window);
+    let Ok(cloud) = cloud(scans) else { return Ok(()) };
+    let (mut renderer, mut part) = (Renderer::new(), Frame::default());
+    for options in [&windowed.with_ambient(0.5), &windowed] {
+        let drawn = renderer.draw(&cloud, view, options, &mut part);
+        let Some(_) = &whole else {
+            return if drawn.is_err() { Ok(()) } else { Err("only the window was drawn".to_owned()) };
+        };
+        drawn.map_err(|error| error.to_string())?;
+    }
+    let Some(whole) = whole else { return Ok(()) };
+    for y in window.y0..window.y1.min(view.height()) {
+        for x in window.x0..window.x1.min(view.width()) {
+            let i = (y * view.width() + x) as usize;
+            let bits = |f: &Frame| {
+                let surface = f.normal.get(i).map(|n| n.map(f32::to_bits));
+                let count = f.count.get(i).map(|c| c.to_bits());
+                (f.color[i].map(f32::to_bits), f.depth[i].to_bits(), surface, count)
+            };
+            if bits(&whole) != bits(&part) {
+                let found = (whole.color[i], whole.depth[i], part.color[i], part.depth[i]);
+                return Err(format!("pixel {x}, {y} of window {window:?}: {found:?}"));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The same scans and points in another order.

@@ -79,6 +79,7 @@ mod rules;
 mod scan;
 mod shade;
 mod spacing;
+mod wanted;
 
 pub use cloud::Cloud;
 pub use error::IbprError;

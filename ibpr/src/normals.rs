@@ -8,16 +8,18 @@ use crate::options::Normals;
 use crate::parallel::*;
 use glam::Vec3;
 use pulp::Arch;
+use std::ops::Range;
 
 /// Rows per task.
 const BAND_ROWS: usize = 16;
 
-/// Fits planes (or makes triangles), and writes the corners of `buffer`.
+/// Fits planes (or makes triangles), and writes the corners of `buffer` in these rows of pixels, and perhaps in others.
 pub(crate) fn make_corners(
     buffer: &mut Buffer,
     map: &BufferMap,
     scale: &DepthScale,
     rule: Normals,
+    wanted: Range<usize>,
     histogram: &mut Histogram,
 ) {
     let inner = buffer.inner();
@@ -32,6 +34,9 @@ pub(crate) fn make_corners(
     };
     let fitting = Fitting { arch, scale: *scale, radius };
     chunks(&mut corners[inner], n).enumerate().for_each(|(i, rows)| {
+        if (i + 1) * BAND_ROWS <= wanted.start || i * BAND_ROWS >= wanted.end {
+            return;
+        }
         for (r, row) in rows.chunks_mut(shared.stride).enumerate() {
             // Rows of entries: all layers of a row of pixels, then those of the next.
             let start = shared.at(0, i * BAND_ROWS) + r * shared.stride;

@@ -3,7 +3,7 @@
 use crate::error::IbprError;
 use crate::scan::Scan;
 use glam::Vec3;
-use pointillist_view::Light;
+use pointillist_view::{Light, PixelRect};
 
 /// Size of a buffer pixel in picture pixels (the paper's S).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -161,6 +161,10 @@ pub struct Options {
     pub eye_dome: Option<EyeDome>,
     /// Whether the frame has normals and counts besides color and depth. Default: false.
     pub surface_layers: bool,
+    /// The part of the picture that is wanted; `None`, the default, is all of it. Pixels in it are what they are in the whole picture, bit
+    /// for bit; others are undefined. Points are averaged for the whole picture all the same: what fills gaps and how wide normals are
+    /// fitted depends on all of them.
+    pub window: Option<PixelRect>,
 }
 
 impl Default for Options {
@@ -186,6 +190,7 @@ impl Options {
         base: Vec3::splat(0.8),
         eye_dome: None,
         surface_layers: false,
+        window: None,
     };
 
     /// Sets the size of buffer pixels.
@@ -283,6 +288,13 @@ impl Options {
     #[must_use]
     pub const fn with_surface_layers(mut self, surface_layers: bool) -> Self {
         self.surface_layers = surface_layers;
+        self
+    }
+
+    /// Sets the part of the picture that is wanted.
+    #[must_use]
+    pub const fn with_window(mut self, window: PixelRect) -> Self {
+        self.window = Some(window);
         self
     }
 

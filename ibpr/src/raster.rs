@@ -1,6 +1,7 @@
 //! Draws small triangles into a strip of the picture.
 
 use crate::buffer::SUBPIXEL;
+use std::ops::Range;
 
 /// What a picture pixel keeps of a face besides its surface: linear RGB and the number of points.
 pub(crate) type Paint = [f32; 4];
@@ -29,13 +30,16 @@ pub(crate) struct Strip<P> {
     pub(crate) width: usize,
     pub(crate) first_row: usize,
     pub(crate) rows: usize,
+    /// The columns that are drawn.
+    pub(crate) columns: Range<usize>,
     pub(crate) pixels: P,
 }
 
 impl<P: Pixels> Strip<P> {
     /// Assigns rows of the picture to it.
-    pub(crate) fn set_rows(&mut self, width: usize, first_row: usize, rows: usize) {
+    pub(crate) fn set_rows(&mut self, width: usize, first_row: usize, rows: usize, columns: Range<usize>) {
         (self.width, self.first_row, self.rows) = (width, first_row, rows);
+        self.columns = columns;
     }
 
     /// Draws a triangle, of either orientation. `paints` are the paints of its vertices.
@@ -58,8 +62,8 @@ impl<P: Pixels> Strip<P> {
         // Pixels whose centres lie in the bounding box.
         let first = |v: i32| (v + HALF - 1).div_euclid(STEP as i32);
         let last = |v: i32| (v - HALF).div_euclid(STEP as i32);
-        let left = first(a.x.min(b.x).min(c.x)).max(0);
-        let right = last(a.x.max(b.x).max(c.x)).min(self.width as i32 - 1);
+        let left = first(a.x.min(b.x).min(c.x)).max(self.columns.start as i32);
+        let right = last(a.x.max(b.x).max(c.x)).min(self.columns.end as i32 - 1);
         let top = first(a.y.min(b.y).min(c.y)).max(self.first_row as i32);
         let bottom = last(a.y.max(b.y).max(c.y)).min((self.first_row + self.rows) as i32 - 1);
         if left > right || top > bottom {

@@ -20,8 +20,10 @@ use crate::pixels::{Nearest, Stack};
 use crate::raster::{Pixels, Strip};
 use crate::rules::Rules;
 use crate::shade::{RowsOut, Shaded, Shader};
+use crate::wanted::Wanted;
 use pointillist_parallel::{Pool, threads};
 use pointillist_view::{Projection, View};
+use std::ops::Range;
 
 /// Rows of the picture that are drawn together: their surfaces fit into the second-level cache.
 const STRIP_ROWS: usize = 32;
@@ -39,8 +41,14 @@ pub struct Renderer {
     visible: Vec<u32>,
     depths: Vec<(f64, usize)>,
     passes: [Pass; 2],
-    bands: Pool<BandScratch>,
+    memory: PassScratch,
     strips: Pool<StripScratch>,
+}
+
+/// Working memory of a pass.
+#[derive(Debug, Default)]
+struct PassScratch {
+    bands: Pool<BandScratch>,
     fill: FillScratch,
 }
 
@@ -86,7 +94,7 @@ impl Renderer {
         let culling = if options.translucency.is_some() { Culling::None } else { options.culling };
         cull::visible(cloud, view, culling, &mut self.visible, &mut self.depths, &mut counts);
         counts.scale = self.scale(cloud, view, options);
-        self.bands.fill(threads());
+        self.memory.bands.fill(threads());
         self.strips.fill(threads());
         let reference = reference_depth(cloud, view);
         let normal = BufferMap::new(view, counts.scale, reference, cloud.unit);
@@ -97,15 +105,18 @@ impl Renderer {
                 [Some(BufferMap::new(view, scale, reference, cloud.unit)), Some(normal)]
             }
         };
+        let wanted = Wanted::new(options, [width, height]);
+        let strip_rows = if options.translucency.is_some() { STACK_ROWS } else { STRIP_ROWS };
+        let drawn = wanted.with_surroundings(options, [width, height]).in_strips(strip_rows, height as usize);
         for (pass, map) in self.passes.iter_mut().zip(&maps) {
             let Some(map) = map else { continue };
-            pass.make(cloud, &self.visible, map, options, &self.bands, &mut self.fill);
+            pass.make(cloud, &self.visible, map, options, &drawn, &mut self.memory);
         }
         frame.reshape(width as usize, height as usize, options.surface_layers);
         frame.counts = counts;
-        self.draw_faces(cloud, &maps, options, frame);
+        self.draw_faces(cloud, &maps, options, &drawn, frame);
         if let Some(dome) = &options.eye_dome {
-            eye_dome::apply(frame, dome);
+            eye_dome::apply(frame, dome, &wanted);
         }
         Ok(())
     }
@@ -132,7 +143,14 @@ impl Renderer {
         (factor * spacing_px).clamp(1.0, f64::from(view.width().max(view.height())))
     }
 
-    fn draw_faces(&self, cloud: &Cloud, maps: &[Option<BufferMap>; 2], options: &Options, frame: &mut Frame) {
+    fn draw_faces(
+        &self,
+        cloud: &Cloud,
+        maps: &[Option<BufferMap>; 2],
+        options: &Options,
+        drawn: &Wanted,
+        frame: &mut Frame,
+    ) {
         let [Some(map), _] = maps else { return };
         let drawing = Drawing {
             passes: &self.passes,
@@ -140,11 +158,15 @@ impl Renderer {
             shader: Shader::new(map, options),
             colored: cloud.has_colors(),
             width: frame.width,
+            columns: drawn.columns.clone(),
             alpha: options.translucency.map(|t| t.alpha),
         };
         let rows = if drawing.alpha.is_some() { STACK_ROWS } else { STRIP_ROWS };
         let n = rows * frame.width;
         let draw = |i: usize, out: &mut RowsOut<'_>| {
+            if !drawn.rows.contains(&(i * rows)) {
+                return;
+            }
             self.strips.with(|scratch| drawing.strip(scratch, i * rows, out));
         };
         let base = chunks(&mut frame.color, n).zip(chunks(&mut frame.depth, n));
@@ -176,6 +198,8 @@ struct Drawing<'a> {
     shader: Shader,
     colored: bool,
     width: usize,
+    /// Columns that are drawn.
+    columns: Range<usize>,
     /// Opacity of translucent surfaces.
     alpha: Option<f32>,
 }
@@ -219,7 +243,7 @@ impl Drawing<'_> {
         shade: impl Fn(usize, (usize, usize)) -> Option<Shaded>,
     ) {
         for row in 0..out.depth.len() / self.width {
-            for column in 0..self.width {
+            for column in self.columns.clone() {
                 let i = row * self.width + column;
                 let shaded = shade(i, (column, first_row + row)).unwrap_or(Shaded::NOTHING);
                 self.shader.write(&shaded, out, i);
@@ -236,7 +260,7 @@ impl Drawing<'_> {
     ) {
         for (k, strip) in strips.into_iter().enumerate() {
             if let Some(rules) = &self.rules[k] {
-                strip.set_rows(self.width, first_row, n / self.width);
+                strip.set_rows(self.width, first_row, n / self.width, self.columns.clone());
                 begin(&mut strip.pixels);
                 faces::draw(&self.passes[k].buffer, &self.passes[k].outlines.list, rules, strip);
             }
@@ -251,17 +275,20 @@ impl Pass {
         visible: &[u32],
         map: &BufferMap,
         options: &Options,
-        bands: &Pool<BandScratch>,
-        fill: &mut FillScratch,
+        drawn: &Wanted,
+        memory: &mut PassScratch,
     ) {
         block_view::view_blocks(cloud, visible, map, &mut self.views);
         let layers = options.translucency;
         self.buffer.reshape(map.width, map.height, layers.map_or(1, |t| t.layers));
         let scale = DepthScale::new(map, cloud.spacing());
         let rules = Rules { gamma: options.gamma, weighting: options.weighting, scale, layers };
-        accumulate::accumulate(cloud, &self.views, map, rules, &mut self.buffer, bands);
-        fill::pull_push(&mut self.buffer, &scale, options.fill, fill);
-        normals::make_corners(&mut self.buffer, map, &scale, options.normals, &mut self.noise);
+        accumulate::accumulate(cloud, &self.views, map, rules, &mut self.buffer, &memory.bands);
+        fill::pull_push(&mut self.buffer, &scale, options.fill, &mut memory.fill);
+        // A quad's last corners are in the row after that which it is numbered by.
+        let quads = faces::quads_about(&drawn.rows, map.scale as f32, map.height);
+        let rows = quads.start.max(0) as usize..(quads.end.max(0) + 1) as usize;
+        normals::make_corners(&mut self.buffer, map, &scale, options.normals, rows, &mut self.noise);
         if options.outline > 0.0 && self.buffer.layers == 1 {
             self.outlines.find(&self.buffer, &scale);
         } else {

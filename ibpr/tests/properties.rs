@@ -7,8 +7,8 @@ use pointillist_ibpr::invariants::{
     self, OwnedScan, cloud, frame, frames_are_identical, frames_are_identical_but_for_size,
 };
 use pointillist_ibpr::{
-    Culling, EyeDome, Frame, Light, Normals, Options, Passes, Projection, Renderer, Scale, Translucency,
-    View, Weighting,
+    Culling, EyeDome, Frame, Light, Normals, Options, Passes, PixelRect, Projection, Renderer, Scale,
+    Translucency, View, Weighting,
 };
 use proptest::prelude::*;
 use testkit::holds;
@@ -75,6 +75,16 @@ fn view() -> BoxedStrategy<View> {
     prop_oneof![3 => perspective, 1 => orthographic].boxed()
 }
 
+/// Also beyond the picture, and without a pixel.
+fn window() -> impl Strategy<Value = PixelRect> {
+    (0..80u32, 0..80u32, 0..50u32, 0..50u32).prop_map(|(x0, y0, w, h)| PixelRect {
+        x0,
+        y0,
+        x1: x0 + w,
+        y1: y0 + h,
+    })
+}
+
 fn passes() -> impl Strategy<Value = Passes> {
     prop_oneof![2 => Just(Passes::One), 1 => (0.3..=1.0f32).prop_map(|finer| Passes::Two { finer })]
 }
@@ -139,6 +149,11 @@ proptest! {
         s in scans(), v in view(), o in options(), before_v in view(), before_o in options(),
     ) {
         holds!(invariants::use_before_does_not_matter(&s, (&before_v, &before_o), (&v, &o)));
+    }
+
+    #[test]
+    fn a_window_is_a_part_of_the_picture(s in scans(), v in view(), o in options(), w in window()) {
+        holds!(invariants::a_window_is_a_part_of_the_picture(&s, &v, &o, w));
     }
 
     #[test]

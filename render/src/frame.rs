@@ -1,5 +1,6 @@
 //! A rendered picture, or a part of one, in memory.
 
+use crate::cryptomatte::Matte;
 use pointillist_view::PixelRect;
 
 /// What can be asked for beside colour and depth.
@@ -24,6 +25,8 @@ pub enum LayerKind {
     Id,
     /// `back`: the share of the pixel that shows backs of surfaces, 0 to 1.
     Back,
+    /// `CryptoObject00.R G B A`, …: which objects or materials are seen, and how much of the pixel each covers.
+    Cryptomatte(Matte),
 }
 
 /// One layer's planes, each row-major over the frame's window.
@@ -33,6 +36,8 @@ pub struct Layer {
     pub channels: Vec<String>,
     /// A plane for each channel.
     pub planes: Vec<Vec<f32>>,
+    /// The names that [`cryptomatte_id`](crate::cryptomatte_id) makes ids of; empty for all other layers.
+    pub names: Vec<String>,
 }
 
 /// A rendered picture, or the part of it that `window` says.
@@ -66,6 +71,7 @@ impl LayerKind {
             Self::Lit(light) => vec![format!("lit.{}", lights.get(light).copied().unwrap_or("light"))],
             Self::Id => vec!["id".to_owned()],
             Self::Back => vec!["back".to_owned()],
+            Self::Cryptomatte(matte) => matte.channels(),
         }
     }
 
@@ -78,6 +84,7 @@ impl LayerKind {
         match self {
             Self::Normal | Self::Position | Self::Albedo | Self::Direct | Self::Indirect => 3,
             Self::Lit(_) | Self::Id | Self::Back => 1,
+            Self::Cryptomatte(matte) => matte.channels().len(),
         }
     }
 }

@@ -80,6 +80,7 @@ impl Shader<'_> {
                     let back = |i: usize| self.shows_back(&tile.faces()[tile.points()[i].face as usize]);
                     share(&|i| f32::from(u8::from(back(i))))
                 }
+                LayerKind::Cryptomatte(matte) => self.matte_planes(tile, *matte),
                 LayerKind::Lit(light) => share(&|i| lit[light][i] as f32),
                 LayerKind::Normal | LayerKind::Position | LayerKind::Id => {
                     let value = |i: usize| self.geometry_value(*layer, tile, &points[i], &tile.points()[i]);

@@ -37,7 +37,11 @@ impl PartialFrame {
         let layer = |kind: &LayerKind| {
             let channels = kind.channels(&lights);
             let planes = vec![vec![0.0; pixels]; channels.len()];
-            Layer { channels, planes }
+            let names = match kind {
+                LayerKind::Cryptomatte(matte) => matte.names(scene),
+                _ => vec![],
+            };
+            Layer { channels, planes, names }
         };
         let frame = Frame {
             size: [view.width(), view.height()],

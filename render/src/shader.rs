@@ -2,6 +2,7 @@
 
 use crate::ambient::{Ambient, Spot};
 use crate::casters::{ClearBoxes, Occasion, Origin};
+use crate::cryptomatte::MatteIds;
 use crate::lights::SceneLights;
 use crate::prepared::Prepared;
 use crate::reflections::Reflections;
@@ -61,6 +62,7 @@ pub(crate) struct Shader<'a> {
     pub(crate) economy: Option<Economy>,
     pub(crate) ambient: Ambient<'a>,
     pub(crate) glow: Glow,
+    pub(crate) mattes: MatteIds,
     pub(crate) eye: DVec3,
     pub(crate) forward: DVec3,
     /// 1 for the channels that are shaded, 0 for the others.
@@ -145,6 +147,7 @@ impl<'a> Shader<'a> {
             economy,
             ambient,
             glow,
+            mattes: MatteIds::default(),
             eye: view.eye(),
             forward: view.forward(),
             channels,
@@ -171,6 +174,14 @@ impl<'a> Shader<'a> {
         };
         let of = mesh.normal_of.get(triangle as usize)?;
         (!of.contains(&NONE)).then(|| corners.map(|k| mesh.normals[of[k] as usize]))
+    }
+
+    /// The triangle whose front or back is seen: of two that coincide, the one that is turned this way.
+    pub(crate) fn seen_triangle(&self, face: &Face) -> u32 {
+        match self.surfaces.other_side(face.id) {
+            Some(side) if !face.front => side.triangle,
+            _ => face.id,
+        }
     }
 
     /// Whether a surface's back is seen, which is not the front of another one.

@@ -52,7 +52,7 @@ pub(crate) const DRAW_CLOUD: &str = "`pointillist scan FILE` draws points as clo
 ///   `range_grid`, which gives [`CloudSummary::grid`].
 /// * XYZ text (`.xyz`, `.txt`, `.asc`, `.pts`, `.csv`): three to seven numbers a line; which of them are colours is
 ///   described in the module that reads it and in the messages.
-/// * LAS and LAZ with the feature `las`; E57 with the feature `e57`.
+/// * LAS and LAZ with the feature `las`, which is on by default; E57 with the feature `e57`.
 /// * Any PLY or text compressed with gzip.
 ///
 /// Colours are stored sRGB-encoded in all of these and come out linear. Points that are not finite (NaN or infinite, in

@@ -177,6 +177,7 @@ fn join(parts: &[Part]) -> ExrFile {
         window: first.stamp.region,
         channels: channels.collect(),
         stamp: Some(stamp),
+        texts: first.file.texts.clone(),
     }
 }
 

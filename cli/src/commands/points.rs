@@ -45,6 +45,11 @@ pub(super) fn check_view(options: &CameraOptions) -> Result<(PixelRect, PixelRec
     options.windows(width, height)
 }
 
+/// Whether a run draws all of a picture.
+pub(super) fn is_whole(window: PixelRect, [width, height]: [u32; 2]) -> bool {
+    window == PixelRect::of_picture(width, height)
+}
+
 /// `-o`, or the name of the first file: `bun.ply.gz` gives `bun.png`, and standard input `pointillist.png`.
 pub(super) fn output_path(given: Option<&Path>, first: &Path) -> PathBuf {
     let own = || {

@@ -40,8 +40,10 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     }
     let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
     let mut frame = ibpr::Frame::default();
-    report.stats.stage("draw", || draw(options, &cloud, &view, &mut frame, &report))?;
-    tell_counts(&report, &cloud, &frame);
+    // Not part of what tiles know one another by.
+    let frame_options = frame_options.with_window(window);
+    report.stats.stage("draw", || draw(options, &cloud, &view, &frame_options, &mut frame, &report))?;
+    tell_counts(&report, &cloud, &frame, points::is_whole(window, size));
     let picture = window_of(&as_drawn(&frame), window, &layers, &view);
     report.stats.stage("write", || target.write(picture, stamp))?;
     let seconds = report.stats.elapsed().as_secs_f64();
@@ -64,19 +66,17 @@ fn draw(
     options: &ScanOptions,
     cloud: &ibpr::Cloud,
     view: &ibpr::View,
+    frame_options: &ibpr::Options,
     frame: &mut ibpr::Frame,
     report: &Report<'_>,
 ) -> Result<(), CliError> {
     // All that the renderer can refuse now is a value of an option.
     let usage = |error: ibpr::IbprError| CliError::Usage(error.to_string());
-    let frame_options = options.frame_options();
     let mut renderer = ibpr::Renderer::new();
-    points::repeat(report, options.repeat, || {
-        renderer.draw(cloud, view, &frame_options, frame).map_err(usage)
-    })
+    points::repeat(report, options.repeat, || renderer.draw(cloud, view, frame_options, frame).map_err(usage))
 }
 
-fn tell_counts(report: &Report<'_>, cloud: &ibpr::Cloud, frame: &ibpr::Frame) {
+fn tell_counts(report: &Report<'_>, cloud: &ibpr::Cloud, frame: &ibpr::Frame, is_whole: bool) {
     let counts = frame.counts();
     let stats = &report.stats;
     stats.count("points", cloud.len() as u64);
@@ -91,7 +91,8 @@ fn tell_counts(report: &Report<'_>, cloud: &ibpr::Cloud, frame: &ibpr::Frame) {
         cloud.density_spacing(),
         counts.scale
     ));
-    if frame.depth().iter().all(|d| d.is_infinite()) {
+    // A part of the picture may well be empty.
+    if is_whole && frame.depth().iter().all(|d| d.is_infinite()) {
         report.warn(if counts.points > 0 {
             "nothing was drawn: too few points are near one another; try a larger --scale or --spacing"
         } else if counts.blocks_facing_away > 0 {

@@ -43,7 +43,7 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
             renderer.draw(&cloud, &view, &frame_options, &mut frame).map_err(usage)
         })
     })?;
-    tell_counts(&report, &cloud, &frame);
+    tell_counts(&report, &cloud, &frame, points::is_whole(window, size));
     let picture = window_of(&as_drawn(&frame), window, &layers, &view);
     report.stats.stage("write", || target.write(picture, stamp))?;
     let seconds = report.stats.elapsed().as_secs_f64();
@@ -62,7 +62,7 @@ fn as_drawn(frame: &surfel::Frame) -> Drawn<'_> {
     }
 }
 
-fn tell_counts(report: &Report<'_>, cloud: &surfel::Cloud, frame: &surfel::Frame) {
+fn tell_counts(report: &Report<'_>, cloud: &surfel::Cloud, frame: &surfel::Frame, is_whole: bool) {
     let counts = frame.counts();
     let stats = &report.stats;
     stats.count("points", cloud.len() as u64);
@@ -83,7 +83,8 @@ fn tell_counts(report: &Report<'_>, cloud: &surfel::Cloud, frame: &surfel::Frame
         report.detail(&format!(
             "seen from {nearest:.4} to {farthest:.4} along the view axis: --focus goes there"
         ));
-    } else {
+    } else if is_whole {
+        // A part of the picture may well be empty.
         report.warn(if counts.points > 0 {
             "nothing was drawn: points are too far apart to cover a pixel, or blurred too much"
         } else if counts.nodes_facing_away > 0 {

@@ -1,9 +1,13 @@
 //! Metrics of the difference of two pictures.
 
 mod flip;
+mod flip_colors;
 mod lab;
+mod page;
+mod worst;
 
 pub use flip::{PIXELS_PER_DEGREE, flip_map};
+pub use page::Page;
 
 use crate::image_io::Picture;
 use serde::Serialize;
@@ -33,12 +37,21 @@ pub struct Differences {
     pub nonfinite: u64,
 }
 
+/// Two pictures of the same size, compared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// The numbers.
+    pub differences: Differences,
+    /// FLIP at every pixel, 0 to 1.
+    pub flip: Vec<f32>,
+}
+
 /// Compares two pictures of the same size.
 ///
 /// # Panics
 ///
 /// The sizes differ.
-pub fn compare(a: &Picture, b: &Picture) -> Differences {
+pub fn compare(a: &Picture, b: &Picture) -> Comparison {
     assert_eq!(a.size, b.size, "the caller compares sizes first");
     let [width, height] = a.size;
     let mut nonfinite = 0;
@@ -71,7 +84,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Differences {
     let rmse = (squares / n).sqrt();
     let map = flip_map(&a, &b, width as usize, PIXELS_PER_DEGREE);
     let flip = map.iter().map(|&e| f64::from(e)).sum::<f64>() / map.len() as f64;
-    Differences {
+    let differences = Differences {
         width,
         height,
         rmse,
@@ -82,7 +95,8 @@ pub fn compare(a: &Picture, b: &Picture) -> Differences {
         psnr: (rmse > 0.0).then(|| -20.0 * rmse.log10()),
         flip,
         nonfinite,
-    }
+    };
+    Comparison { differences, flip: map }
 }
 
 /// The absolute difference as RGB bytes, brightened so that the largest is white.

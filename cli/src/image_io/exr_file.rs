@@ -1,12 +1,13 @@
 //! EXR files: one part, any channels, data window within the display window.
 
-use super::{ExrError, Frame, PixelRect, Stamp, exr_check};
+use super::{ExrError, Frame, PixelRect, Stamp, cryptomatte, exr_check, exr_header};
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{
     self as exr_lib, AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image,
     ImageAttributes, IntegerBounds, LayerAttributes, LineOrder, ReadChannels as _, ReadLayers as _, Text,
     WritableImage as _, f16,
 };
+use std::collections::BTreeMap;
 use std::io::{Cursor, Seek, Write};
 
 /// Name of the header attribute that holds the [`Stamp`].
@@ -33,6 +34,8 @@ pub struct ExrFile {
     pub stamp: Option<Stamp>,
     /// In the order of their names.
     pub channels: Vec<Channel>,
+    /// Further texts of the header by their names: what Cryptomatte layers are and which names they show.
+    pub texts: BTreeMap<String, String>,
 }
 
 /// A plane of an EXR.
@@ -58,14 +61,15 @@ impl ExrFile {
         for layer in &frame.layers {
             for (name, plane) in layer.channels.iter().zip(&layer.planes) {
                 // Half has eleven bits: too few for a place or a number.
-                let exact = name.starts_with("P.") || name == "id";
+                let exact = name.starts_with("P.") || name == "id" || !layer.names.is_empty();
                 let precision = if exact { Precision::Float } else { precision };
                 channels
                     .push(Channel { name: name.clone(), samples: stored(plane.iter().copied(), precision) });
             }
         }
         channels.sort_by(|a, b| a.name.cmp(&b.name));
-        Self { size: frame.size, window: frame.window, stamp: Some(stamp), channels }
+        let texts = frame.layers.iter().flat_map(cryptomatte::texts_of).collect();
+        Self { size: frame.size, window: frame.window, stamp: Some(stamp), channels, texts }
     }
 
     /// Decodes a file.
@@ -100,6 +104,13 @@ impl ExrFile {
             Some(AttributeValue::Text(text)) => Stamp::from_text(&text.to_string()),
             _ => None,
         };
+        let text = |(name, value): (&Text, &AttributeValue)| match (name.to_string(), value) {
+            (name, AttributeValue::Text(text)) if name.starts_with(cryptomatte::PREFIX) => {
+                Some((name, text.to_string()))
+            }
+            _ => None,
+        };
+        let texts = layer.attributes.other.iter().filter_map(text).collect();
         let mut channels = Vec::with_capacity(layer.channel_data.list.len());
         for AnyChannel { name, sample_data, .. } in layer.channel_data.list {
             let name = name.to_string();
@@ -108,7 +119,7 @@ impl ExrFile {
             }
             channels.push(Channel { name, samples: sample_data });
         }
-        Ok(Self { size, window, stamp, channels })
+        Ok(Self { size, window, stamp, channels, texts })
     }
 
     /// Encodes the file.
@@ -116,7 +127,17 @@ impl ExrFile {
     /// # Errors
     ///
     /// What the output says.
-    pub fn write(self, output: impl Write + Seek) -> std::io::Result<()> {
+    pub fn write(self, mut output: impl Write + Seek) -> std::io::Result<()> {
+        if self.texts.is_empty() {
+            return self.encode(output);
+        }
+        let mut bytes = vec![];
+        self.encode(Cursor::new(&mut bytes))?;
+        exr_header::sort_attributes(&mut bytes);
+        output.write_all(&bytes)
+    }
+
+    fn encode(self, output: impl Write + Seek) -> std::io::Result<()> {
         let [width, height] = self.size.map(|n| n as usize);
         let mut attributes = LayerAttributes {
             layer_position: exr_lib::Vec2(self.window.x0 as i32, self.window.y0 as i32),
@@ -124,9 +145,13 @@ impl ExrFile {
             ..LayerAttributes::default()
         };
         if let Some(stamp) = &self.stamp {
-            // One attribute for everything: several would be written in the random order of a hash map.
+            // One attribute for everything: several are written in the random order of a hash map.
             let text = AttributeValue::Text(Text::from(stamp.to_text().as_str()));
             attributes.other.insert(Text::from(STAMP), text);
+        }
+        for (name, text) in &self.texts {
+            let text = AttributeValue::Text(Text::from(text.as_str()));
+            attributes.other.insert(Text::from(name.as_str()), text);
         }
         let channels = self.channels.into_iter().map(|c| AnyChannel::new(c.name.as_str(), c.samples));
         let encoding = Encoding {

@@ -1,10 +1,12 @@
 //! Pictures in and out: EXR with layers, PNG, JPEG, and what is read for comparison.
 
 mod atomic;
+mod cryptomatte;
 mod cube_faces;
 mod exr_check;
 mod exr_error;
 mod exr_file;
+mod exr_header;
 mod jpeg;
 mod picture;
 mod png;

@@ -168,7 +168,8 @@ pub enum Command {
         pointillist render examples/house.toml -o a.exr\n  \
         pointillist render examples/house.toml --set render.subpixel=2 -o b.exr\n  \
         pointillist compare a.exr b.exr\n  \
-        pointillist compare a.exr b.exr --diff difference.png --max-rmse 0.1")]
+        pointillist compare a.exr b.exr --diff difference.png --max-rmse 0.1\n  \
+        pointillist compare a.exr b.exr --html compare.html")]
     Compare(CompareOptions),
     /// Print what a scene, mesh, cloud, picture or baked file holds, as JSON
     #[command(after_help = "Examples:\n  \
@@ -257,6 +258,14 @@ pub struct CompareOptions {
     /// Write the absolute difference as a picture, brightened so that the largest is white.
     #[arg(long, value_name = "OUT.png")]
     pub diff: Option<PathBuf>,
+    /// Write a page with both pictures under a slider, their difference, where it is largest, and the numbers
+    ///
+    /// All is in this one file: it opens from disk, and loads nothing.
+    #[arg(long, value_name = "OUT.html")]
+    pub html: Option<PathBuf>,
+    /// For --html: brighten both pictures by this many stops. Numbers stay as they are
+    #[arg(long, value_name = "EV", default_value_t = 0.0, requires = "html", allow_negative_numbers = true, value_parser = values::exposure)]
+    pub exposure: f32,
     /// Exit with code 5 if the RMSE is larger.
     #[arg(long, value_name = "X", value_parser = values::not_negative)]
     pub max_rmse: Option<f64>,

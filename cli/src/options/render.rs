@@ -7,6 +7,7 @@ use crate::image_io::{Bits, PixelRect};
 use crate::scene::Overrides;
 use crate::scene::description::view_fault;
 use glam::DVec3;
+use pointillist_render::Matte;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -35,7 +36,8 @@ pub struct RenderOptions {
     /// seen behind them, in a PNG and EXR under alpha 0 (with --bg the colour is)
     #[arg(long, value_name = "MAP")]
     pub env: Option<PathBuf>,
-    /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.NAME, id
+    /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.NAME, id, and cryptomatte, which `all` leaves
+    /// out (objects and materials by name with their coverage; cryptomatte.object and cryptomatte.material are one of the two)
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub layers: Vec<LayerRequest>,
     /// Choose the cells per pixel so that an RMSE of at most E is expected (linear colours), and tell what is believed to be reached
@@ -221,6 +223,8 @@ pub enum LayerRequest {
     Lit(Option<String>),
     /// `id`.
     Id,
+    /// `cryptomatte`: objects and materials; `cryptomatte.object`, `cryptomatte.material`: one of the two.
+    Cryptomatte(Option<Matte>),
 }
 
 impl FromStr for LayerRequest {
@@ -236,11 +240,14 @@ impl FromStr for LayerRequest {
             "indirect" => Self::Indirect,
             "lit" => Self::Lit(None),
             "id" => Self::Id,
+            "cryptomatte" => Self::Cryptomatte(None),
+            "cryptomatte.object" => Self::Cryptomatte(Some(Matte::Object)),
+            "cryptomatte.material" => Self::Cryptomatte(Some(Matte::Material)),
             _ => match text.strip_prefix("lit.") {
                 Some(light) => Self::Lit(Some(light.to_owned())),
                 None => {
                     return Err(
-                        "layers are all, N, P, albedo, direct, indirect, lit, lit.NAME and id".to_owned()
+                        "layers are all, N, P, albedo, direct, indirect, lit, lit.NAME, id, cryptomatte, cryptomatte.object and cryptomatte.material".to_owned()
                     );
                 }
             },

@@ -10,7 +10,7 @@ use std::str::FromStr;
 /// `scan`.
 #[derive(Debug, clap::Args)]
 pub struct ScanOptions {
-    /// Scans (.ply, .ply.gz, .xyz, with features .las, .laz, .e57), lists of scans (.conf) and meshes (.obj, .ply with faces)
+    /// Scans (.ply, .ply.gz, .xyz, .las, .laz, with a feature .e57), lists of scans (.conf) and meshes (.obj, .ply with faces)
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// The picture: .png or .exr (default: the first FILE's name with .png)

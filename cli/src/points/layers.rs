@@ -43,13 +43,16 @@ pub fn window_of(frame: &Drawn<'_>, window: PixelRect, layers: &[PointLayer], vi
     let named = |name: &str, value: &dyn Fn(usize) -> [f32; 3]| Layer {
         channels: ["X", "Y", "Z"].map(|axis| format!("{name}.{axis}")).to_vec(),
         planes: [0, 1, 2].map(|axis| plane(&|i| value(i)[axis])).to_vec(),
+        names: vec![],
     };
     let layer = |layer: &PointLayer| match layer {
         PointLayer::Normal => named("N", &|i| frame.normal[i]),
         PointLayer::Position => named("P", &|i| position(frame, i, view)),
-        PointLayer::Count => {
-            Layer { channels: vec!["count".to_owned()], planes: vec![plane(&|i| frame.count[i])] }
-        }
+        PointLayer::Count => Layer {
+            channels: vec!["count".to_owned()],
+            planes: vec![plane(&|i| frame.count[i])],
+            names: vec![],
+        },
     };
     Frame {
         size: [frame.width as u32, frame.height as u32],

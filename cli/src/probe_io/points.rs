@@ -1,9 +1,9 @@
 //! Lists of positions, and of cells between them, as text or raw binary.
 
 use super::read_probes;
-use crate::coordinate::LARGEST;
 use crate::input;
 use crate::input_error::InputError;
+use crate::number_lines;
 use glam::DVec3;
 use pointillist_delaunay::Partition;
 use std::io::{self, Write};
@@ -49,35 +49,14 @@ pub fn read_rows<const N: usize>(
     names: &str,
     check: impl Fn(&[f64; N]) -> Result<(), String>,
 ) -> Result<Vec<[f64; N]>, InputError> {
-    let (name, bytes) = (input::name_of(path), input::read(path)?);
-    let mut rows = vec![];
-    for (i, line) in bytes.split(|&b| b == b'\n').enumerate() {
-        let text = String::from_utf8_lossy(line);
-        let text = text.trim();
-        if text.is_empty() || text.starts_with('#') {
-            continue;
-        }
-        let wrong = |what: String| {
-            let help = format!("each line is `{names}`, numbers with spaces between them");
-            InputError::in_line(&name, &bytes, i + 1, what).with_help(help)
-        };
-        let mut row = [0.0; N];
-        let mut words = text.split([' ', '\t', ',']).filter(|w| !w.is_empty());
-        for (k, value) in row.iter_mut().enumerate() {
-            let word = words.next().ok_or_else(|| wrong(format!("only {k} numbers of {N}")))?;
-            let number: f64 = word.parse().map_err(|_| wrong(format!("`{word}` is not a number")))?;
-            if !number.is_finite() || number.abs() > LARGEST {
-                return Err(wrong(format!("`{word}` is not finite, or beyond ±{LARGEST:e}")));
-            }
-            *value = number;
-        }
-        if let Some(word) = words.next() {
-            return Err(wrong(format!("`{word}` is one too many: {N} numbers are needed")));
-        }
-        check(&row).map_err(wrong)?;
-        rows.push(row);
-    }
-    Ok(rows)
+    number_lines::read(path, &format!("each line is `{names}`"), |numbers| {
+        let row = <[f64; N]>::try_from(numbers).map_err(|_| match numbers.len() {
+            few if few < N => format!("only {few} numbers of {N}"),
+            many => format!("{many} numbers are {} too many: {N} are needed", many - N),
+        })?;
+        check(&row)?;
+        Ok(row)
+    })
 }
 
 /// Writes cells: `# tetrahedra N` and their corners, or `# dimension D` and what there is; raw 32-bit integers if `binary`.

@@ -5,6 +5,7 @@
 
 mod auto_uv;
 mod builtin;
+mod copies;
 pub mod description;
 mod framing;
 mod generated;

@@ -1,13 +1,14 @@
 //! What moves in a scene from frame to frame.
 
 use super::description::{CameraPath, Description, ObjectPath, view_fault};
+use super::resolve::normal_matrix;
 use super::{Camera, Mesh, Scene};
 use crate::coordinate::{LARGEST, is_usable};
 use crate::input_error::InputError;
-use crate::mesh_io::FileMesh;
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DAffine3, DQuat, DVec3, Vec3};
 use std::f64::consts::TAU;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What moves in a scene from frame to frame; nothing by default.
 #[derive(Clone, Debug, Default)]
@@ -30,9 +31,11 @@ enum CameraMotion {
 #[derive(Clone, Debug)]
 pub(super) struct MovingObject {
     path: ObjectPath,
+    /// What moves all of it, wherever it is on its path.
+    placement: DAffine3,
     positions: Range<usize>,
-    /// As in the file.
-    at_home: Vec<DVec3>,
+    /// As in the file, shared by all copies.
+    at_home: Arc<[DVec3]>,
     normals: Range<usize>,
     /// At frame 0.
     normals_at_start: Vec<Vec3>,
@@ -44,15 +47,17 @@ impl MovingObject {
     /// The object that was added to a mesh last, from these positions and normals on.
     pub(super) fn new(
         path: &ObjectPath,
-        file: &FileMesh,
+        placement: DAffine3,
+        home: &Arc<[DVec3]>,
         mesh: &Mesh,
         [position, normal]: [usize; 2],
         fault: InputError,
     ) -> Self {
         Self {
             path: path.clone(),
+            placement,
             positions: position..mesh.positions.len(),
-            at_home: file.positions.clone(),
+            at_home: home.clone(),
             normals: normal..mesh.normals.len(),
             normals_at_start: mesh.normals[normal..].to_vec(),
             fault,
@@ -60,8 +65,8 @@ impl MovingObject {
     }
 
     fn pose(&self, mesh: &mut Mesh, frame: u32) -> Result<(), InputError> {
-        let world = self.path.world_from_mesh(frame);
-        for (position, &home) in mesh.positions[self.positions.clone()].iter_mut().zip(&self.at_home) {
+        let world = self.placement * self.path.world_from_mesh(frame);
+        for (position, &home) in mesh.positions[self.positions.clone()].iter_mut().zip(&*self.at_home) {
             *position = world.transform_point3(home);
         }
         if let Some(index) = mesh.positions[self.positions.clone()].iter().position(|p| !is_usable(*p)) {
@@ -70,7 +75,9 @@ impl MovingObject {
             return Err(InputError { message, ..self.fault.clone() });
         }
         let (turn, start) = (self.path.turn(frame), self.path.turn(0));
-        let relative = turn * start.transpose();
+        // Normals at the start stand in the world, and turn as the object does before it is placed there.
+        let placed = normal_matrix(self.placement.matrix3);
+        let relative = placed * (turn * start.transpose()) * placed.inverse();
         // Where both are the same, their product is not quite the identity: normals stay those of the scene that was loaded.
         let turned =
             |n: Vec3| if turn == start { n } else { (relative * n.as_dvec3()).normalize_or_zero().as_vec3() };

@@ -10,7 +10,7 @@ use super::motion::{Motion, MovingObject};
 use super::texture_files::load_environment;
 use super::textures::TextureTable;
 use super::{AmbientLight, LightSource, LoadedScene, Mesh, NONE, Object, Scene, SkyLight};
-use super::{framing, gltf_scene, no_effect, plain_model, smooth};
+use super::{copies, framing, gltf_scene, no_effect, plain_model, smooth};
 use crate::baked_file::read_baked;
 use crate::cloud_io::{self, DRAW_CLOUD};
 use crate::coordinate::{LARGEST, is_usable};
@@ -18,12 +18,13 @@ use crate::input;
 use crate::input_error::InputError;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
 use crate::probe_io::read_probes;
-use glam::{DMat3, Vec3};
+use glam::{DAffine3, DMat3, DVec3, Vec3};
 use pointillist_render::fingerprint;
 use pointillist_shade::Interpolation;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// Builds the scene of a description whose paths are relative to `folder`. `is_plain_model`: a model alone, which
 /// gets light and smooth normals if it brings none.
@@ -179,6 +180,8 @@ struct Builder<'a> {
     folder: &'a Path,
     is_plain_model: bool,
     meshes: HashMap<PathBuf, Rc<FileMesh>>,
+    /// Where the texture coordinates of each mesh begin.
+    first_uvs: HashMap<*const FileMesh, usize>,
     mesh: Mesh,
     materials: MaterialTable<'a>,
     textures: TextureTable,
@@ -189,6 +192,16 @@ struct Builder<'a> {
     has_made_normals: bool,
 }
 
+/// An object in one of its places.
+struct Copy<'a> {
+    object: &'a ObjectDescription,
+    placement: DAffine3,
+    /// If there are copies: which, from 0.
+    number: Option<usize>,
+    /// If it moves: the positions of its file.
+    home: Option<Arc<[DVec3]>>,
+}
+
 impl<'a> Builder<'a> {
     fn new(description: &'a Description, folder: &'a Path, is_plain_model: bool) -> Self {
         Self {
@@ -196,6 +209,7 @@ impl<'a> Builder<'a> {
             folder,
             is_plain_model,
             meshes: HashMap::new(),
+            first_uvs: HashMap::new(),
             mesh: Mesh::default(),
             materials: MaterialTable::new(description, folder),
             textures: TextureTable::default(),
@@ -216,7 +230,17 @@ impl<'a> Builder<'a> {
         let file = self.file_mesh(&path, &object.mesh)?;
         let materials =
             self.materials.resolve(object, &file, &path, &mut self.textures, &mut self.warnings)?;
-        self.append(object, &file, &materials)
+        let placements = copies::placements(object, self.description, self.folder)?;
+        let count = placements.len();
+        copies::check_memory(object, self.description, file.triangles.len(), count)?;
+        self.mesh.positions.reserve(count * file.positions.len());
+        self.mesh.triangles.reserve(count * file.triangles.len());
+        let home = object.path.is_some().then(|| Arc::from(file.positions.as_slice()));
+        for (number, placement) in placements.into_iter().enumerate() {
+            let number = object.copies.is_some().then_some(number);
+            self.append(&Copy { object, placement, number, home: home.clone() }, &file, &materials)?;
+        }
+        Ok(())
     }
 
     fn file_mesh(&mut self, path: &Path, reference: &FileReference) -> Result<Rc<FileMesh>, InputError> {
@@ -224,7 +248,9 @@ impl<'a> Builder<'a> {
             return Ok(Rc::clone(mesh));
         }
         if let Some(mesh) = (self.generated_mesh)(&reference.path) {
-            return Ok(Rc::new(mesh));
+            let mesh = Rc::new(mesh);
+            self.meshes.insert(path.to_path_buf(), Rc::clone(&mesh));
+            return Ok(mesh);
         }
         let document = &self.description.document;
         let name = input::name_of(path);
@@ -265,12 +291,8 @@ impl<'a> Builder<'a> {
         Ok(mesh)
     }
 
-    fn append(
-        &mut self,
-        object: &ObjectDescription,
-        file: &FileMesh,
-        materials: &[u32],
-    ) -> Result<(), InputError> {
+    fn append(&mut self, copy: &Copy<'_>, file: &FileMesh, materials: &[u32]) -> Result<(), InputError> {
+        let object = copy.object;
         let mesh = &mut self.mesh;
         let total =
             mesh.positions.len().max(mesh.uvs.len()).max(mesh.normals.len()) + 3 * file.triangles.len();
@@ -278,7 +300,7 @@ impl<'a> Builder<'a> {
             let message = "the scene has more vertices than can be numbered in 32 bits";
             return Err(self.description.document.error(object.mesh.span, message));
         }
-        let world = object.world_from_mesh;
+        let world = copy.placement * object.world_from_mesh;
         let (first_position, first_normal) = (mesh.positions.len(), mesh.normals.len());
         mesh.positions.extend(file.positions.iter().map(|&p| world.transform_point3(p)));
         if !(file.colors.is_empty() && mesh.colors.is_empty()) {
@@ -287,8 +309,9 @@ impl<'a> Builder<'a> {
             mesh.colors.resize(mesh.positions.len(), Vec3::ONE);
         }
         if let Some(index) = mesh.positions[first_position..].iter().position(|p| !is_usable(*p)) {
+            let which = copy.number.map_or(String::new(), |number| format!(" of copy {number}"));
             let message = format!(
-                "the object's transform takes vertex {index} out of the range of numbers, ±{LARGEST:e}"
+                "the object's transform takes vertex {index}{which} out of the range of numbers, ±{LARGEST:e}"
             );
             return Err(self.description.document.error(object.mesh.span, message));
         }
@@ -296,14 +319,19 @@ impl<'a> Builder<'a> {
         let order = if world.matrix3.determinant() < 0.0 { [0, 2, 1] } else { [0, 1, 2] };
         let first_triangle = mesh.triangles.len();
         append_indices(&mut mesh.triangles, &file.triangles, first_position, order);
-        append_indices(&mut mesh.uv_of, &file.uv_of, mesh.uvs.len(), order);
+        // Wherever a mesh stands, its texture coordinates are the same: they are held once.
+        let first_uv = *self.first_uvs.entry(std::ptr::from_ref(file)).or_insert_with(|| {
+            let first = mesh.uvs.len();
+            mesh.uvs.extend_from_slice(&file.uvs);
+            first
+        });
+        append_indices(&mut mesh.uv_of, &file.uv_of, first_uv, order);
         if !file.second_uv_of.is_empty() {
             mesh.second_uv_of.resize(first_triangle, [NONE; 3]);
-            append_indices(&mut mesh.second_uv_of, &file.second_uv_of, mesh.uvs.len(), order);
+            append_indices(&mut mesh.second_uv_of, &file.second_uv_of, first_uv, order);
         } else if !mesh.second_uv_of.is_empty() {
             mesh.second_uv_of.resize(mesh.triangles.len(), [NONE; 3]);
         }
-        mesh.uvs.extend_from_slice(&file.uvs);
         let RenderDescription { shading, normals, crease_rad, .. } = self.description.render;
         if shading == Some(Interpolation::Flat) {
             mesh.normal_of.resize(mesh.triangles.len(), [NONE; 3]);
@@ -322,6 +350,10 @@ impl<'a> Builder<'a> {
         mesh.material_of.extend(file.material_of.iter().map(|&m| materials[m as usize]));
         let warnings = &mut self.warnings;
         auto_uv::fill(mesh, file, first_triangle, self.materials.list(), |material, lacking| {
+            // The first copy speaks for all.
+            if copy.number.is_some_and(|number| number > 0) {
+                return;
+            }
             let path = &object.mesh.path;
             warnings.push(match lacking {
                 Lacking::All => format!(
@@ -334,11 +366,13 @@ impl<'a> Builder<'a> {
                 ),
             });
         });
-        if let Some(path) = &object.path {
+        if let (Some(path), Some(home)) = (&object.path, &copy.home) {
             let fault = self.description.document.error(path.span, "");
-            self.moving.push(MovingObject::new(path, file, mesh, [first_position, first_normal], fault));
+            let first = [first_position, first_normal];
+            self.moving.push(MovingObject::new(path, copy.placement, home, mesh, first, fault));
         }
-        let name = object.name.clone().unwrap_or_else(|| object.mesh.path.clone());
+        let name = object.name.as_ref().unwrap_or(&object.mesh.path);
+        let name = copy.number.map_or_else(|| name.clone(), |number| format!("{name}[{number}]"));
         mesh.objects.push(Object { name, two_sided: object.two_sided });
         Ok(())
     }
@@ -350,7 +384,7 @@ fn append_indices(list: &mut Vec<[u32; 3]>, more: &[[u32; 3]], base: usize, orde
 }
 
 /// The matrix that takes normals along: the inverse transposed, up to a factor.
-fn normal_matrix(linear: DMat3) -> DMat3 {
+pub(super) fn normal_matrix(linear: DMat3) -> DMat3 {
     let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
     // Cofactors instead of the inverse: no division, and the sign is put right for mirrored objects.
     DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * linear.determinant().signum()

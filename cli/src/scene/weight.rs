@@ -9,7 +9,7 @@ const BASE_BYTES: u64 = 8 << 20;
 /// Bytes of a thread's tile: measured at a tree of masked leaves, which fills its cells most.
 const THREAD_BYTES: u64 = 6 << 20;
 /// Bytes of a triangle and its share of the vertices, at the peak while the text of its file is still there: measured, 400 to 900.
-const TRIANGLE_BYTES: u64 = 600;
+pub(super) const TRIANGLE_BYTES: u64 = 600;
 /// Bytes of a texel beside itself, for sums over regions: measured, 3 to 11, because only maps that are asked for are summed up.
 const SUMMED_TEXEL_BYTES: u64 = 7;
 /// Textures with more texels are called huge: 4096².

@@ -105,7 +105,7 @@ fn frame_of(file: &ExrFile, like: &Frame) -> Option<(Frame, Vec<bool>)> {
     let color = (0..r.len()).map(|i| [r[i], g[i], b[i], a[i]]).collect();
     let layer = |layer: &Layer| {
         let planes = layer.channels.iter().map(|name| plane(name)).collect::<Option<_>>()?;
-        Some(Layer { channels: layer.channels.clone(), planes })
+        Some(Layer { channels: layer.channels.clone(), planes, names: layer.names.clone() })
     };
     let layers = like.layers.iter().map(layer).collect::<Option<_>>()?;
     let drawn = plane(DRAWN)?.into_iter().map(|drawn| drawn == 1.0).collect();

@@ -4,6 +4,7 @@ use crate::error::CliError;
 use crate::image_io::LayerKind;
 use crate::options::LayerRequest;
 use crate::scene::Scene;
+use pointillist_render::Matte;
 
 /// The layers that are asked for, each once.
 pub(super) fn layers(scene: &Scene, requests: &[LayerRequest]) -> Result<Vec<LayerKind>, CliError> {
@@ -23,6 +24,10 @@ pub(super) fn layers(scene: &Scene, requests: &[LayerRequest]) -> Result<Vec<Lay
             LayerRequest::Direct => vec![LayerKind::Direct],
             LayerRequest::Indirect => vec![LayerKind::Indirect],
             LayerRequest::Id => vec![LayerKind::Id],
+            LayerRequest::Cryptomatte(None) => {
+                [Matte::Object, Matte::Material].map(LayerKind::Cryptomatte).to_vec()
+            }
+            LayerRequest::Cryptomatte(Some(matte)) => vec![LayerKind::Cryptomatte(*matte)],
             LayerRequest::Lit(None) => lights.clone().map(LayerKind::Lit).collect(),
             LayerRequest::Lit(Some(name)) => {
                 let index = scene.lights.iter().position(|light| light.name == *name);

@@ -15,7 +15,8 @@ pub use image::{DEFAULT_SIZE, ImageDescription};
 pub use lights::LightDescription;
 pub use maps::{EnvironmentReference, TextureReference};
 pub use materials::{DEFAULT_ALBEDO, MaterialDescription, SurroundingsDescription};
-pub use objects::ObjectDescription;
+pub use objects::{Copies, ObjectDescription};
+pub(super) use objects::{affine_of, placed};
 pub use path::{CameraPath, Interpolation, ObjectPath};
 pub use render::RenderDescription;
 

@@ -58,6 +58,11 @@ impl<'a> Table<'a> {
         self.entries.iter().any(|(found, node)| found.name == key && matches!(node.value, Value::Table(_)))
     }
 
+    /// Whether the value of `key` is there and text.
+    pub fn is_text(&self, key: &str) -> bool {
+        self.entries.iter().any(|(found, node)| found.name == key && matches!(node.value, Value::Text(_)))
+    }
+
     /// An error about the value of `key`, or about the table if it is not there.
     pub fn error(&self, key: &str, message: impl Into<String>) -> InputError {
         self.document.error(self.span_of(key), message)
