@@ -2,7 +2,7 @@
 //!
 //! Each takes any input at all. A scene that is refused satisfies every fact.
 
-use crate::{AmbientLight, DrawOptions, Frame, LayerKind, Prepared, RenderError, Scene};
+use crate::{AmbientLight, DrawOptions, Frame, LayerKind, Matte, Prepared, RenderError, Scene};
 use glam::Vec3;
 use pointillist_view::PixelRect;
 
@@ -10,7 +10,7 @@ use pointillist_view::PixelRect;
 pub const PIXEL_ULPS: f32 = 64.0;
 
 /// Every layer that does not depend on lights' names.
-const LAYERS: [LayerKind; 7] = [
+const LAYERS: [LayerKind; 9] = [
     LayerKind::Normal,
     LayerKind::Position,
     LayerKind::Albedo,
@@ -18,6 +18,8 @@ const LAYERS: [LayerKind; 7] = [
     LayerKind::Indirect,
     LayerKind::Id,
     LayerKind::Back,
+    LayerKind::Cryptomatte(Matte::Object),
+    LayerKind::Cryptomatte(Matte::Material),
 ];
 
 /// The whole picture with all layers, or `None` for a scene that is refused.
