@@ -6,7 +6,8 @@ use glam::{DVec3, dvec3};
 use libfuzzer_sys::fuzz_target;
 use pointillist_ibpr::invariants::{self, OwnedScan};
 use pointillist_ibpr::{
-    Culling, EyeDome, Light, Normals, Options, Passes, PixelRect, Projection, Scale, Translucency, View, Weighting,
+    Culling, EyeDome, Light, Normals, Options, Passes, PixelRect, Projection, Scale, Translucency, View,
+    Weighting,
 };
 
 /// Points in steps of 1/64, often repeated, on a line or on a plane.
