@@ -1,6 +1,6 @@
 //! Light that comes straight from the lights, asked for only where it can matter.
 
-use crate::lights::{LightSample, share};
+use crate::lights::LightSample;
 use crate::lit_parts::LitParts;
 use crate::monitor::Monitor;
 use crate::scene::MeasuredBrdf;
@@ -53,7 +53,7 @@ impl Shader<'_> {
         light: &LightSample<'_>,
         points: &mut [Point],
         direct: &mut DirectScratch,
-        mut lit_layer: Option<&mut Vec<f64>>,
+        mut lit_layer: Option<&mut Vec<DVec3>>,
         monitor: &dyn Monitor,
     ) {
         direct.arrivals.clear();
@@ -86,15 +86,16 @@ impl Shader<'_> {
             monitor.lap("shadow");
         }
         let samples = f64::from(self.scene.lights[light.light].light.samples());
-        let share = share(light.channels * self.channels) / samples;
+        let share = light.channels.as_dvec3() / samples;
         for a in &direct.arrivals {
             let p = &mut points[a.point as usize];
             p.direct += a.radiance * a.fraction as f32;
             if let Some(layer) = lit_layer.as_deref_mut() {
                 let to_light =
                     self.scene.lights[light.light].light.illuminate(light.sample, p.place.position).to_light;
-                layer[a.point as usize] +=
-                    if sees_light(p.place.face_normal, to_light) { a.fraction * share } else { 0.0 };
+                if sees_light(p.place.face_normal, to_light) {
+                    layer[a.point as usize] += share * a.fraction;
+                }
             }
         }
     }

@@ -75,15 +75,16 @@ impl LayerKind {
         }
     }
 
-    /// Whether it holds a red, a green and a blue plane.
-    pub(crate) fn is_color(self) -> bool {
-        matches!(self, Self::Albedo | Self::Direct | Self::Indirect)
+    /// Whether tiles have a red, a green and a blue plane of it.
+    pub(crate) fn is_by_color(self) -> bool {
+        matches!(self, Self::Albedo | Self::Direct | Self::Indirect | Self::Lit(_))
     }
 
-    pub(crate) fn plane_count(self) -> usize {
+    /// How many planes of it tiles have.
+    pub(crate) fn tile_planes(self) -> usize {
         match self {
-            Self::Normal | Self::Position | Self::Albedo | Self::Direct | Self::Indirect => 3,
-            Self::Lit(_) | Self::Id | Self::Back => 1,
+            Self::Normal | Self::Position | Self::Albedo | Self::Direct | Self::Indirect | Self::Lit(_) => 3,
+            Self::Id | Self::Back => 1,
             Self::Cryptomatte(matte) => matte.channels().len(),
         }
     }

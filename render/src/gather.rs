@@ -4,7 +4,7 @@ use crate::background::Background;
 use crate::frame::LayerKind;
 use crate::partial::Pixels;
 use crate::shader::{Point, Shader};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Micropoint, Tile};
 use pointillist_view::PixelRect;
 use std::collections::BTreeMap;
@@ -49,12 +49,13 @@ impl Shader<'_> {
     }
 
     /// The further layers: colours are means over the micropoints of a pixel, geometry is that of the one with the largest weight.
-    /// `lit` holds the fraction that arrives at each micropoint, for each light whose layer is asked for.
+    /// `lit` holds the fraction of each colour that arrives at each micropoint, for each light whose layer is asked for; those layers get a plane
+    /// for each colour here, of which [`Pixels::mean_of_lit`] makes one.
     pub(crate) fn gather_layers(
         &self,
         tile: &Tile,
         layers: &[LayerKind],
-        lit: &BTreeMap<usize, Vec<f64>>,
+        lit: &BTreeMap<usize, Vec<DVec3>>,
         points: &[Point],
         pixels: &mut Pixels,
     ) {
@@ -81,7 +82,7 @@ impl Shader<'_> {
                     share(&|i| f32::from(u8::from(back(i))))
                 }
                 LayerKind::Cryptomatte(matte) => self.matte_planes(tile, *matte),
-                LayerKind::Lit(light) => share(&|i| lit[light][i] as f32),
+                LayerKind::Lit(light) => sum(&|i, _| lit[light][i].as_vec3(), &|m| m.weight, 3),
                 LayerKind::Normal | LayerKind::Position | LayerKind::Id => {
                     let value = |i: usize| self.geometry_value(*layer, tile, &points[i], &tile.points()[i]);
                     let values = heaviest(tile).into_iter().map(|i| i.map_or(Vec3::ZERO, value));

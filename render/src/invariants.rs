@@ -98,7 +98,8 @@ pub fn frames_are_identical(a: &Frame, b: &Frame) -> Result<(), String> {
     }
 }
 
-/// Where nothing glows, a colour is direct light plus ambient light plus what of the background is seen.
+/// Where nothing glows, a colour is direct light plus ambient light plus what of the background is seen. Of that only a mean over the colours is
+/// known if materials let them pass differently; the background is black then.
 ///
 /// # Errors
 /// The first pixel for which it is not.
@@ -109,6 +110,10 @@ pub fn light_adds_up(scene: &Scene) -> Result<(), String> {
         material.surface.emission = Vec3::ZERO;
         material.details.emission_map = None;
         material.details.emits = false;
+    }
+    let tints = |passes: Vec3| passes != Vec3::splat(passes.x);
+    if scene.materials.iter().any(|material| tints(material.details.passes_straight())) {
+        scene.image.background = Vec3::ZERO;
     }
     let Some(frame) = picture(&scene) else { return Ok(()) };
     let planes =

@@ -53,7 +53,7 @@ impl Shader<'_> {
         let mut lit = BTreeMap::new();
         for layer in layers {
             if let LayerKind::Lit(light) = layer {
-                lit.insert(*light, vec![0.0; tile.points().len()]);
+                lit.insert(*light, vec![DVec3::ZERO; tile.points().len()]);
             }
         }
         let within = if self.lights.are_tinted() { self.bounds(tile) } else { (DVec3::ZERO, DVec3::ZERO) };

@@ -3,7 +3,7 @@
 //! The constant part of a BRDF has a closed form, of an area Lambert's formula; the rest is integrated by quadrature over what is seen of the light.
 
 use crate::direct::DirectScratch;
-use crate::lights::{Shape, WholeLight, share};
+use crate::lights::{Shape, WholeLight};
 use crate::monitor::Monitor;
 use crate::seen::Seen;
 use crate::shader::{Point, Shader};
@@ -50,7 +50,7 @@ impl Shader<'_> {
         light: &WholeLight<'_>,
         points: &mut [Point],
         direct: &mut DirectScratch,
-        mut lit_layer: Option<&mut Vec<f64>>,
+        mut lit_layer: Option<&mut Vec<DVec3>>,
         monitor: &dyn Monitor,
     ) {
         let DirectScratch { area, line, seen, asked, owners, receivers, .. } = direct;
@@ -78,7 +78,7 @@ impl Shader<'_> {
             let (radiance, lit) = seen[owner as usize];
             points[owner as usize].direct += radiance;
             if let Some(layer) = lit_layer.as_deref_mut() {
-                layer[owner as usize] += lit / light.extent() * share(light.channels * self.channels);
+                layer[owner as usize] += light.channels.as_dvec3() * (lit / light.extent());
             }
         }
         monitor.lap("shadow");

@@ -97,7 +97,8 @@ static MEASURED: LazyLock<MeasuredBrdf> = LazyLock::new(|| {
 fn details() -> impl Strategy<Value = Details> {
     let sometimes = || prop::bool::weighted(0.2);
     let maps = (sometimes(), sometimes(), sometimes(), sometimes(), sometimes());
-    let numbers = (0.0..=1.0f32, color(0.6), color(0.6), 1.0..2.0f32);
+    let index = prop_oneof![Just(1.0), 1.0..2.0f32];
+    let numbers = (0.0..=1.0f32, color(0.6), color(0.6), index);
     let kinds =
         (sometimes(), sometimes(), sometimes(), sometimes(), sometimes(), prop::bool::weighted(RARELY));
     (maps, kinds, numbers).prop_map(
