@@ -319,19 +319,7 @@ impl<'a> Builder<'a> {
         let order = if world.matrix3.determinant() < 0.0 { [0, 2, 1] } else { [0, 1, 2] };
         let first_triangle = mesh.triangles.len();
         append_indices(&mut mesh.triangles, &file.triangles, first_position, order);
-        // Wherever a mesh stands, its texture coordinates are the same: they are held once.
-        let first_uv = *self.first_uvs.entry(std::ptr::from_ref(file)).or_insert_with(|| {
-            let first = mesh.uvs.len();
-            mesh.uvs.extend_from_slice(&file.uvs);
-            first
-        });
-        append_indices(&mut mesh.uv_of, &file.uv_of, first_uv, order);
-        if !file.second_uv_of.is_empty() {
-            mesh.second_uv_of.resize(first_triangle, [NONE; 3]);
-            append_indices(&mut mesh.second_uv_of, &file.second_uv_of, first_uv, order);
-        } else if !mesh.second_uv_of.is_empty() {
-            mesh.second_uv_of.resize(mesh.triangles.len(), [NONE; 3]);
-        }
+        append_uvs(mesh, &mut self.first_uvs, file, order);
         let RenderDescription { shading, normals, crease_rad, .. } = self.description.render;
         if shading == Some(Interpolation::Flat) {
             mesh.normal_of.resize(mesh.triangles.len(), [NONE; 3]);
@@ -375,6 +363,28 @@ impl<'a> Builder<'a> {
         let name = copy.number.map_or_else(|| name.clone(), |number| format!("{name}[{number}]"));
         mesh.objects.push(Object { name, two_sided: object.two_sided });
         Ok(())
+    }
+}
+
+/// Texture coordinates of the mesh's last triangles. Wherever a file's mesh stands they are the same, and are held once.
+fn append_uvs(
+    mesh: &mut Mesh,
+    first_uvs: &mut HashMap<*const FileMesh, usize>,
+    file: &FileMesh,
+    order: [usize; 3],
+) {
+    let first_triangle = mesh.triangles.len() - file.triangles.len();
+    let first_uv = *first_uvs.entry(std::ptr::from_ref(file)).or_insert_with(|| {
+        let first = mesh.uvs.len();
+        mesh.uvs.extend_from_slice(&file.uvs);
+        first
+    });
+    append_indices(&mut mesh.uv_of, &file.uv_of, first_uv, order);
+    if !file.second_uv_of.is_empty() {
+        mesh.second_uv_of.resize(first_triangle, [NONE; 3]);
+        append_indices(&mut mesh.second_uv_of, &file.second_uv_of, first_uv, order);
+    } else if !mesh.second_uv_of.is_empty() {
+        mesh.second_uv_of.resize(mesh.triangles.len(), [NONE; 3]);
     }
 }
 
