@@ -24,6 +24,7 @@ enum Shape {
 struct Part {
     shape: Shape,
     colored: bool,
+    opacities: Option<u8>,
     towards: Option<[i8; 3]>,
     spacing: Option<u8>,
 }
@@ -81,6 +82,10 @@ fn scan(part: &Part) -> OwnedScan {
     };
     if part.colored {
         scan.colors = Some((0..scan.positions.len()).map(|i| [0.5, (i % 3) as f32, 0.1]).collect());
+    }
+    if let Some(step) = part.opacities {
+        let opacity = |i: usize| (i * usize::from(step) % 256) as f32 / 255.0;
+        scan.opacities = Some((0..scan.positions.len()).map(opacity).collect());
     }
     scan.towards_scanner = part.towards.map(steps).or(scan.towards_scanner);
     scan.spacing = part.spacing.map(|s| f64::from(s) / 256.0).or(scan.spacing);

@@ -55,8 +55,9 @@ pub(crate) struct Buffer {
     pub(crate) count: Vec<f32>,
     /// What faces are made of.
     pub(crate) corners: Vec<Corner>,
-    /// Averaged color; not kept up to date for clouds without colors.
-    pub(crate) color: Vec<[f32; 3]>,
+    /// Averaged color, premultiplied by the opacity, and the opacity: 1 in opaque frames, which for clouds without colors do not keep it up
+    /// to date.
+    pub(crate) color: Vec<[f32; 4]>,
 }
 
 impl Buffer {
@@ -72,7 +73,7 @@ impl Buffer {
                 array.resize(len, 0.0);
             }
             self.color.clear();
-            self.color.resize(len, [0.0; 3]);
+            self.color.resize(len, [0.0; 4]);
             self.corners.clear();
             self.corners.resize(len, Corner::NONE);
         }
@@ -83,7 +84,7 @@ impl Buffer {
         for array in [&mut self.x, &mut self.y, &mut self.q, &mut self.count] {
             array.fill(0.0);
         }
-        self.color.fill([0.0; 3]);
+        self.color.fill([0.0; 4]);
     }
 
     /// Index of the nearest layer of pixel (`column`, `row`).
@@ -142,7 +143,7 @@ pub(crate) struct BufferBand<'a> {
     pub(crate) y: &'a mut [f32],
     pub(crate) q: &'a mut [f32],
     pub(crate) count: &'a mut [f32],
-    pub(crate) color: &'a mut [[f32; 3]],
+    pub(crate) color: &'a mut [[f32; 4]],
     /// Entries to the next layer and to the next row.
     pub(crate) stride: usize,
     pub(crate) pitch: usize,

@@ -47,6 +47,26 @@ pub enum IbprError {
         /// How many points there are.
         points: usize,
     },
+    /// An opacity is NaN, or not from 0 to 1.
+    #[error("the opacity of point {index} of scan {scan} is not from 0 to 1: {value}")]
+    BadOpacity {
+        /// Position of the scan in the slice.
+        scan: usize,
+        /// Position of the point in its scan.
+        index: usize,
+        /// As given.
+        value: f32,
+    },
+    /// There must be an opacity for each point, or none.
+    #[error("scan {scan} has {opacities} opacities for {points} points")]
+    OpacityCount {
+        /// Position of the scan in the slice.
+        scan: usize,
+        /// How many opacities were given.
+        opacities: usize,
+        /// How many points there are.
+        points: usize,
+    },
     /// The spacing of a scan is not finite, or not above 0.
     #[error("scan {scan} has a spacing of {spacing}; it must be finite and above 0")]
     BadSpacing {

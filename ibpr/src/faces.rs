@@ -232,8 +232,7 @@ fn vertex(corner: &Corner, inside: f32) -> Vertex {
 }
 
 fn paint(buffer: &Buffer, at: usize) -> Paint {
-    let [r, g, b] = buffer.color[at];
-    [r, g, b, buffer.count[at]]
+    Paint { color: buffer.color[at], count: buffer.count[at] }
 }
 
 /// Two triangles, along the diagonal whose ends are closer in depth.
@@ -268,7 +267,7 @@ fn draw_part<P: Pixels>(
         return;
     }
     let has = |k: usize| group >> (k % 4) & 1 == 1;
-    let blank = (vertex(&Corner::NONE, 0.0), [0.0; 4]);
+    let blank = (vertex(&Corner::NONE, 0.0), Paint::NONE);
     let mut ring = [blank; 6];
     let mut n = 0;
     let mut push = |v: Vertex, p: Paint| {
@@ -277,7 +276,7 @@ fn draw_part<P: Pixels>(
     };
     for k in (0..4).filter(|k| has(*k)) {
         let at = quad[k];
-        let p = if rules.painted { paint(buffer, at) } else { [0.0; 4] };
+        let p = if rules.painted { paint(buffer, at) } else { Paint::NONE };
         let outline = rules.outline_px > 0.0;
         if outline && !has(k + 3) {
             push(beyond(buffer, outlines, rules, [at, quad[(k + 3) % 4]], towards(k, (k + 3) % 4)), p);

@@ -35,7 +35,7 @@ struct Fill {
     x: f32,
     y: f32,
     q: f32,
-    color: [f32; 3],
+    color: [f32; 4],
 }
 
 /// Working memory.
@@ -130,7 +130,7 @@ fn between(buffer: &Buffer, index: usize, scale: &DepthScale) -> Option<Fill> {
         return None;
     }
     let together = nearest + scale.bent_step(nearest, STEP);
-    let mut fill = Fill { index, x: 0.0, y: 0.0, q: 0.0, color: [0.0; 3] };
+    let mut fill = Fill { index, x: 0.0, y: 0.0, q: 0.0, color: [0.0; 4] };
     let mut n = 0.0;
     for (a, b, q) in pairs.into_iter().filter(|p| p.2 < together) {
         n += 2.0;
@@ -242,7 +242,7 @@ fn layers_between(buffer: &Buffer, index: usize, scale: &DepthScale, fills: &mut
                     x: mean(&buffer.x),
                     y: mean(&buffer.y),
                     q,
-                    color: [0, 1, 2].map(|k| 0.5 * (c[k] + d[k])),
+                    color: [0, 1, 2, 3].map(|k| 0.5 * (c[k] + d[k])),
                 });
             }
         }

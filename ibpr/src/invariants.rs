@@ -28,6 +28,8 @@ pub struct OwnedScan {
     pub positions: Vec<DVec3>,
     /// Linear RGB.
     pub colors: Option<Vec<[f32; 3]>>,
+    /// See [`Scan::with_opacities`].
+    pub opacities: Option<Vec<f32>>,
     /// See [`Scan::with_spacing`].
     pub spacing: Option<f64>,
     /// See [`Scan::with_scanner`].
@@ -65,7 +67,7 @@ impl OwnedScan {
         };
         let places = (-steps..=steps).flat_map(|i| (-steps..=steps).map(move |j| (i, j)));
         let positions = places.filter_map(|(i, j)| at(i, j)).collect();
-        Self { positions, spacing: Some(spacing), towards_scanner: Some(towards), colors: None }
+        Self { positions, spacing: Some(spacing), towards_scanner: Some(towards), ..Self::default() }
     }
 
     /// Each point moved along `direction` by up to its length, forth or back.
@@ -82,6 +84,9 @@ impl OwnedScan {
         let mut scan = Scan::new(&self.positions);
         if let Some(colors) = &self.colors {
             scan = scan.with_colors(colors);
+        }
+        if let Some(opacities) = &self.opacities {
+            scan = scan.with_opacities(opacities);
         }
         if let Some(spacing) = self.spacing {
             scan = scan.with_spacing(spacing);
@@ -169,10 +174,12 @@ pub fn shuffled(scans: &[OwnedScan], seed: u64) -> Vec<OwnedScan> {
     let scan_order = order(scans.len());
     let mut scan = |s: &OwnedScan| {
         let points = order(s.positions.len());
-        let complete = s.colors.as_ref().filter(|c| c.len() == s.positions.len());
+        let colors = s.colors.as_ref().filter(|c| c.len() == points.len());
+        let opacities = s.opacities.as_ref().filter(|o| o.len() == points.len());
         OwnedScan {
             positions: points.iter().map(|i| s.positions[*i]).collect(),
-            colors: complete.map(|c| points.iter().map(|i| c[*i]).collect()).or(s.colors.clone()),
+            colors: colors.map(|c| points.iter().map(|i| c[*i]).collect()).or(s.colors.clone()),
+            opacities: opacities.map(|o| points.iter().map(|i| o[*i]).collect()).or(s.opacities.clone()),
             ..*s
         }
     };

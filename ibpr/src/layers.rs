@@ -103,15 +103,13 @@ fn split(
         out.x[to] = nearest.x + mean(|m, n| m.x - n.x);
         out.y[to] = nearest.y + mean(|m, n| m.y - n.y);
         out.q[to] = rules.scale.bent(nearest.depth + mean(|m, n| m.depth - n.depth));
-        if cloud.has_colors() {
-            let mut color = [0.0; 3];
-            for m in slab {
-                for (sum, c) in color.iter_mut().zip(cloud.colors[m.point as usize]) {
-                    *sum += c * inverse;
-                }
+        let mut color = [0.0; 4];
+        for m in slab {
+            for (sum, c) in color.iter_mut().zip(cloud.premultiplied(m.point as usize)) {
+                *sum += c * inverse;
             }
-            out.color[to] = color;
         }
+        out.color[to] = color;
         rest = &rest[end..];
     }
 }

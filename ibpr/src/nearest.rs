@@ -125,7 +125,8 @@ fn resolve(scratch: &NearestScratch, band: &Band, scale: &DepthScale, colored: b
             out.y[to] = (band.first_row + row) as f32 + 0.5 + sum[Y] * inverse;
             out.q[to] = scale.bent(scratch.near[from] + sum[DEPTH] * inverse);
             if colored {
-                out.color[to] = [0, 1, 2].map(|c| sum[COLOR + c] * inverse);
+                let [r, g, b] = [0, 1, 2].map(|c| sum[COLOR + c] * inverse);
+                out.color[to] = [r, g, b, 1.0];
             }
         }
     }

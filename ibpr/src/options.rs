@@ -75,7 +75,7 @@ pub enum Passes {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Translucency {
-    /// Opacity of each surface, 0 to 1.
+    /// Opacity of each surface, 0 to 1; times that of its points, if they have one ([`Scan::with_opacities`](crate::Scan::with_opacities)).
     pub alpha: f32,
     /// Surfaces kept per pixel, 1 to [`Translucency::MOST_LAYERS`]. The paper keeps 5.
     pub layers: usize,

@@ -32,8 +32,8 @@ impl Nearest {
         self.rim_cover.clear();
         self.rim_cover.resize(n, 0.0);
         let painted = if painted { n } else { 0 };
-        self.solid_paint.resize(painted, [0.0; 4]);
-        self.rim_paint.resize(painted, [0.0; 4]);
+        self.solid_paint.resize(painted, Paint::NONE);
+        self.rim_paint.resize(painted, Paint::NONE);
     }
 
     /// Whether any face touches a pixel.
@@ -95,7 +95,7 @@ pub(crate) struct Stack {
 impl Stack {
     /// Empties `n` pixels.
     pub(crate) fn begin(&mut self, n: usize) {
-        self.fragments.resize(n * MOST_FRAGMENTS, Fragment { surface: FAR, cover: 0.0, paint: [0.0; 4] });
+        self.fragments.resize(n * MOST_FRAGMENTS, Fragment { surface: FAR, cover: 0.0, paint: Paint::NONE });
         self.counts.clear();
         self.counts.resize(n, 0);
     }
@@ -144,6 +144,6 @@ impl Stack {
 impl Pixels for Stack {
     #[inline(always)]
     fn put(&mut self, at: usize, surface: [f32; 4], cover: f32, paint: impl FnOnce() -> Option<Paint>) {
-        self.insert(at, Fragment { surface, cover, paint: paint().unwrap_or([0.0; 4]) });
+        self.insert(at, Fragment { surface, cover, paint: paint().unwrap_or(Paint::NONE) });
     }
 }

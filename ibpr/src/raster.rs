@@ -3,8 +3,19 @@
 use crate::buffer::SUBPIXEL;
 use std::ops::Range;
 
-/// What a picture pixel keeps of a face besides its surface: linear RGB and the number of points.
-pub(crate) type Paint = [f32; 4];
+/// What a picture pixel keeps of a face besides its surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Paint {
+    /// Linear RGB, premultiplied by the opacity, and the opacity.
+    pub(crate) color: [f32; 4],
+    /// Number of averaged points.
+    pub(crate) count: f32,
+}
+
+impl Paint {
+    /// For faces that are not painted.
+    pub(crate) const NONE: Self = Self { color: [0.0, 0.0, 0.0, 1.0], count: 0.0 };
+}
 
 /// A vertex as it is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -110,7 +121,12 @@ impl<P: Pixels> Strip<P> {
         let cover = if RIM { (mix(a.inside, b.inside, c.inside) + 0.5).min(1.0) } else { 1.0 };
         if cover > 0.0 {
             let surface = mix4(&a.surface, &b.surface, &c.surface);
-            self.pixels.put(at, surface, cover, || paints.map(|[p, q, r]| mix4(p, q, r)));
+            self.pixels.put(at, surface, cover, || {
+                paints.map(|[p, q, r]| Paint {
+                    color: mix4(&p.color, &q.color, &r.color),
+                    count: mix(p.count, q.count, r.count),
+                })
+            });
         }
     }
 }

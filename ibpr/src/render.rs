@@ -324,7 +324,9 @@ fn face_rules(cloud: &Cloud, map: &BufferMap, options: &Options, second: bool) -
         centre: (x as f32, y as f32),
         perspective: map.is_perspective(),
         pixel: map.scale as f32,
-        painted: cloud.has_colors() || options.surface_layers,
+        painted: cloud.has_colors()
+            || options.surface_layers
+            || (options.translucency.is_some() && cloud.has_opacities()),
         sparse_only: second,
     }
 }

@@ -8,6 +8,7 @@ use glam::DVec3;
 pub struct Scan<'a> {
     pub(crate) positions: &'a [DVec3],
     pub(crate) colors: Option<&'a [[f32; 3]]>,
+    pub(crate) opacities: Option<&'a [f32]>,
     pub(crate) spacing: Option<f64>,
     pub(crate) towards_scanner: Option<DVec3>,
 }
@@ -23,13 +24,20 @@ impl<'a> Scan<'a> {
     /// Points without color, whose spacing is estimated and whose scanner is unknown.
     #[must_use]
     pub fn new(positions: &'a [DVec3]) -> Self {
-        Self { positions, colors: None, spacing: None, towards_scanner: None }
+        Self { positions, colors: None, opacities: None, spacing: None, towards_scanner: None }
     }
 
     /// Linear RGB of each point.
     #[must_use]
     pub fn with_colors(mut self, colors: &'a [[f32; 3]]) -> Self {
         self.colors = Some(colors);
+        self
+    }
+
+    /// Opacity of each point, 0 to 1: counts in translucent frames, times [`Translucency::alpha`](crate::Translucency::alpha).
+    #[must_use]
+    pub fn with_opacities(mut self, opacities: &'a [f32]) -> Self {
+        self.opacities = Some(opacities);
         self
     }
 
@@ -66,6 +74,15 @@ impl<'a> Scan<'a> {
             let good = |c: &[f32; 3]| c.iter().all(|v| (0.0..=Self::BRIGHTEST).contains(v));
             if let Some(index) = colors.iter().position(|c| !good(c)) {
                 return Err(IbprError::BadColor { scan, index, value: colors[index] });
+            }
+        }
+        if let Some(opacities) = self.opacities {
+            if opacities.len() != self.positions.len() {
+                let (opacities, points) = (opacities.len(), self.positions.len());
+                return Err(IbprError::OpacityCount { scan, opacities, points });
+            }
+            if let Some(index) = opacities.iter().position(|v| !(0.0..=1.0).contains(v)) {
+                return Err(IbprError::BadOpacity { scan, index, value: opacities[index] });
             }
         }
         match self.spacing {

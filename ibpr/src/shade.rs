@@ -61,7 +61,7 @@ impl Shader {
         });
         let lengths2 = n.length_squared() * towards_light.length_squared();
         let facing = if lengths2 > 0.0 { n.dot(towards_light).max(0.0) / lengths2.sqrt() } else { 0.0 };
-        let color = paint.map_or(self.base, |p| Vec3::from_slice(&p[..3]));
+        let color = paint.map_or(self.base, |p| Vec3::from_slice(&p.color[..3]));
         color * (self.ambient + (1.0 - self.ambient) * facing)
     }
 
@@ -90,7 +90,7 @@ impl Shader {
         out
     }
 
-    /// Surfaces over one another, each with opacity `alpha`: c = c_dst (1 − α) + c_src α, back to front.
+    /// Surfaces over one another, each with opacity `alpha` times its own: c = c_dst (1 − α) + c_src α, back to front.
     ///
     /// A surface within `together(depth)` of the one in front is the same one, folded.
     pub(crate) fn through(
@@ -109,12 +109,14 @@ impl Shader {
                 continue;
             }
             last = f.surface[0];
+            let own = f.paint.color[3];
             let c = self.shaded(&f.surface, place, Some(&f.paint).filter(|_| colored));
+            let premultiplied = if colored { c } else { c * own };
             let share = alpha * f.cover;
             // Front to back, which is the same sum.
-            out.blend(c, left * share);
-            left *= 1.0 - share;
-            if out.surface[0] == f32::INFINITY && f.cover >= 0.5 {
+            out.add(premultiplied * (left * share), left * share * own);
+            left *= 1.0 - share * own;
+            if out.surface[0] == f32::INFINITY && f.cover >= 0.5 && own > 0.0 {
                 out.show(&f.surface, Some(f.paint));
             }
         }
@@ -170,14 +172,18 @@ impl Shaded {
         Self { color: [0.0; 4], surface: [f32::INFINITY, 0.0, 0.0, 0.0], count: 0.0 };
 
     fn blend(&mut self, c: Vec3, share: f32) {
-        let c = c * share;
-        for (sum, v) in self.color.iter_mut().zip([c.x, c.y, c.z, share]) {
+        self.add(c * share, share);
+    }
+
+    /// Adds a premultiplied color.
+    fn add(&mut self, c: Vec3, opacity: f32) {
+        for (sum, v) in self.color.iter_mut().zip([c.x, c.y, c.z, opacity]) {
             *sum += v;
         }
     }
 
     fn show(&mut self, surface: &[f32; 4], paint: Option<Paint>) {
         self.surface = *surface;
-        self.count = paint.map_or(0.0, |p| p[3]);
+        self.count = paint.map_or(0.0, |p| p.count);
     }
 }

@@ -52,9 +52,10 @@ proptest! {
     #[test]
     fn scans_become_a_cloud_or_are_refused(
         positions in prop::collection::vec(vector(number), 0..6), colors in prop::option::of(prop::collection::vec(any::<[f32; 3]>(), 0..6)),
+        opacities in prop::option::of(prop::collection::vec(any::<f32>(), 0..6)),
         spacing in prop::option::of(number()), towards in prop::option::of(vector(number)),
     ) {
-        let scan = OwnedScan { positions, colors, spacing, towards_scanner: towards };
+        let scan = OwnedScan { positions, colors, opacities, spacing, towards_scanner: towards };
         let result = cloud(std::slice::from_ref(&scan));
         let near = |p: &DVec3| p.abs().cmple(DVec3::splat(Scan::FARTHEST)).all();
         match result {
@@ -66,6 +67,10 @@ proptest! {
             Err(IbprError::PointNotFinite { index, .. }) => prop_assert!(!scan.positions[index].is_finite()),
             Err(IbprError::PointTooFar { index, .. }) => {
                 prop_assert!(scan.positions[index].is_finite() && !near(&scan.positions[index]));
+            }
+            Err(IbprError::BadOpacity { index, .. }) => {
+                let opacities = scan.opacities.unwrap_or_default();
+                prop_assert!(!(0.0..=1.0).contains(&opacities[index]));
             }
             Err(_) => {}
         }

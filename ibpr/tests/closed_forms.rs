@@ -156,6 +156,51 @@ fn translucent_planes_cover_as_the_closed_form_says() {
 }
 
 #[test]
+fn points_of_their_own_opacity_show_what_lies_behind() {
+    let plane = |depth: f64, color: [f32; 3], opacity: Option<f32>| {
+        let scan = tilted((0.1, 0.0), 0.5, 1).moved(|p| p - DVec3::Z * depth);
+        let n = scan.positions.len();
+        OwnedScan { colors: Some(vec![color; n]), opacities: opacity.map(|o| vec![o; n]), ..scan }
+    };
+    let (red, blue) = ([0.8, 0.0, 0.0], [0.0, 0.0, 0.4]);
+    for (own, alpha) in [(0.25f32, 1.0f32), (0.6, 0.5), (0.0, 1.0), (1.0, 0.3)] {
+        let mut o = options(2.0);
+        o.ambient = 1.0;
+        o.translucency = Some(Translucency::new(alpha));
+        let frame = frame(&[plane(0.0, red, Some(own)), plane(20.0, blue, None)], &flat_view(), &o).unwrap();
+        let front = own * alpha;
+        let wanted = [0.8 * front, 0.0, 0.4 * (1.0 - front) * alpha, 1.0 - (1.0 - front) * (1.0 - alpha)];
+        for i in middle(30.0) {
+            let got = frame.color()[i];
+            let apart = got.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(apart <= 1e-5, "opacity {own}, α {alpha}, pixel {i}: {got:?}, not {wanted:?}");
+            // What is not seen at all is not what is shown.
+            assert_eq!(frame.depth()[i] > 1010.0, own == 0.0, "opacity {own}, pixel {i}");
+        }
+    }
+}
+
+/// A mean of colors weights each by its opacity: what cannot be seen gives no color.
+#[test]
+fn unseen_points_do_not_tint_their_neighbours() {
+    let scan = tilted((0.0, 0.0), 0.5, 1);
+    let n = scan.positions.len();
+    let every_second =
+        |a: f32, b: f32| -> Vec<f32> { (0..n).map(|i| if i % 2 == 0 { a } else { b }).collect() };
+    let colors = every_second(0.0, 0.5).into_iter().map(|green| [0.5 - green, green, 0.0]).collect();
+    let mut o = options(2.0);
+    o.ambient = 1.0;
+    o.translucency = Some(Translucency::new(1.0));
+    let scan = OwnedScan { colors: Some(colors), opacities: Some(every_second(0.0, 1.0)), ..scan };
+    let frame = frame(&[scan], &flat_view(), &o).unwrap();
+    for i in middle(30.0) {
+        let [red, green, _, opacity] = frame.color()[i];
+        assert!(red == 0.0 && (0.1..0.9).contains(&opacity), "pixel {i}: {:?}", frame.color()[i]);
+        assert!((green - 0.5 * opacity).abs() <= 1e-6, "pixel {i}: {:?}", frame.color()[i]);
+    }
+}
+
+#[test]
 fn faces_of_a_dense_plane_have_no_gaps() {
     for seed in 0..8 {
         let slope = (0.3 * seed as f64 - 1.0, 0.2 * seed as f64 - 0.8);

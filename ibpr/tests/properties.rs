@@ -43,12 +43,14 @@ fn scan() -> BoxedStrategy<OwnedScan> {
         .prop_map(|(c, d, n)| OwnedScan::plane(c, d * 0.03, DVec3::ZERO, n, 1));
     let repeated = (point(), 1..40usize).prop_map(|(p, n)| OwnedScan::new(vec![p; n]));
     let shape = prop_oneof![3 => plane, 3 => noisy, 3 => sphere, 2 => loose, 1 => line, 1 => repeated];
-    (shape, any::<bool>(), prop::option::of(direction()), prop::option::of(0.001..0.2f64))
-        .prop_map(|(scan, colored, towards_scanner, spacing)| {
+    let paints = (any::<bool>(), any::<bool>());
+    (shape, paints, prop::option::of(direction()), prop::option::of(0.001..0.2f64))
+        .prop_map(|(scan, (colored, has_opacities), towards_scanner, spacing)| {
             let n = scan.positions.len();
             let color = |i: usize| [i as f32 / n as f32, 0.5, (i % 7) as f32];
             let colors = colored.then(|| (0..n).map(color).collect());
-            OwnedScan { colors, towards_scanner, spacing, ..scan }
+            let opacities = has_opacities.then(|| (0..n).map(|i| (i % 5) as f32 / 4.0).collect());
+            OwnedScan { colors, opacities, towards_scanner, spacing, ..scan }
         })
         .boxed()
 }
