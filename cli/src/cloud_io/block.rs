@@ -16,6 +16,8 @@ pub struct CloudBlock<'a> {
     pub positions: &'a [DVec3],
     /// Linear RGB from 0 to 1.
     pub colours: Option<&'a [[f32; 3]]>,
+    /// From 0 to 1.
+    pub opacities: Option<&'a [f32]>,
     /// As in the file; not always of unit length.
     pub normals: Option<&'a [Vec3]>,
     /// Property `radius` of surfels, in the unit of the positions, as in the file.
@@ -69,6 +71,8 @@ pub struct CloudSummary {
     pub dropped: u64,
     /// Whether blocks have colours.
     pub has_colours: bool,
+    /// Whether blocks have opacities.
+    pub has_opacities: bool,
     /// Whether blocks have normals.
     pub has_normals: bool,
     /// Whether blocks have radii.
@@ -141,14 +145,25 @@ pub(super) struct Point {
     pub(super) position: DVec3,
     pub(super) normal: Vec3,
     pub(super) colour: [f32; 3],
+    pub(super) opacity: f32,
     pub(super) radius: f32,
+}
+
+/// What each point of a file has beside its position.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Has {
+    pub(super) colours: bool,
+    pub(super) opacities: bool,
+    pub(super) normals: bool,
+    pub(super) radii: bool,
 }
 
 impl Point {
     fn can_be_used(&self) -> bool {
         let [r, g, b] = self.colour;
         // A sum is not finite if a term is not; terms that are finite in f32 cannot overflow this one.
-        let rest = f64::from(r) + f64::from(g) + f64::from(b) + f64::from(self.radius);
+        let rest =
+            f64::from(r) + f64::from(g) + f64::from(b) + f64::from(self.opacity) + f64::from(self.radius);
         is_usable(self.position) && self.normal.is_finite() && rest.is_finite()
     }
 }
@@ -158,11 +173,10 @@ pub(super) struct Gather<'a> {
     sink: &'a mut dyn FnMut(CloudBlock<'_>) -> Result<(), Stop>,
     drop_invalid: bool,
     block_points: usize,
-    has_colours: bool,
-    has_normals: bool,
-    has_radii: bool,
+    has: Has,
     positions: Vec<DVec3>,
     colours: Vec<[f32; 3]>,
+    opacities: Vec<f32>,
     normals: Vec<Vec3>,
     radii: Vec<f32>,
     seen: u64,
@@ -182,11 +196,10 @@ impl<'a> Gather<'a> {
             sink,
             drop_invalid: options.drop_invalid,
             block_points: options.block_points.clamp(1, MAX_BLOCK_POINTS),
-            has_colours: false,
-            has_normals: false,
-            has_radii: false,
+            has: Has::default(),
             positions: Vec::new(),
             colours: Vec::new(),
+            opacities: Vec::new(),
             normals: Vec::new(),
             radii: Vec::new(),
             seen: 0,
@@ -199,9 +212,9 @@ impl<'a> Gather<'a> {
     }
 
     /// Says what the points to come have; once, before the first of them.
-    pub(super) fn expect(&mut self, has_colours: bool, has_normals: bool, has_radii: bool) {
+    pub(super) fn expect(&mut self, has: Has) {
         debug_assert_eq!(self.seen, 0, "all points of a file have the same");
-        (self.has_colours, self.has_normals, self.has_radii) = (has_colours, has_normals, has_radii);
+        self.has = has;
     }
 
     /// Takes a point.
@@ -219,13 +232,16 @@ impl<'a> Gather<'a> {
         self.low = self.low.min(point.position);
         self.high = self.high.max(point.position);
         self.positions.push(point.position);
-        if self.has_colours {
+        if self.has.colours {
             self.colours.push(point.colour);
         }
-        if self.has_normals {
+        if self.has.opacities {
+            self.opacities.push(point.opacity);
+        }
+        if self.has.normals {
             self.normals.push(point.normal);
         }
-        if self.has_radii {
+        if self.has.radii {
             self.radii.push(point.radius);
         }
         if self.positions.len() >= self.block_points { self.hand_out() } else { Ok(()) }
@@ -238,13 +254,15 @@ impl<'a> Gather<'a> {
         self.handed_out += self.positions.len() as u64;
         let block = CloudBlock {
             positions: &self.positions,
-            colours: self.has_colours.then_some(&*self.colours),
-            normals: self.has_normals.then_some(&*self.normals),
-            radii: self.has_radii.then_some(&*self.radii),
+            colours: self.has.colours.then_some(&*self.colours),
+            opacities: self.has.opacities.then_some(&*self.opacities),
+            normals: self.has.normals.then_some(&*self.normals),
+            radii: self.has.radii.then_some(&*self.radii),
         };
         (self.sink)(block)?;
         self.positions.clear();
         self.colours.clear();
+        self.opacities.clear();
         self.normals.clear();
         self.radii.clear();
         Ok(())
@@ -278,9 +296,10 @@ impl<'a> Gather<'a> {
             format,
             points: self.handed_out,
             dropped: self.invalid,
-            has_colours: self.has_colours,
-            has_normals: self.has_normals,
-            has_radii: self.has_radii,
+            has_colours: self.has.colours,
+            has_opacities: self.has.opacities,
+            has_normals: self.has.normals,
+            has_radii: self.has.radii,
             bounds: [self.low, self.high],
             faces: 0,
             grid: None,

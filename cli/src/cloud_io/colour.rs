@@ -43,6 +43,13 @@ impl ColourCode {
         }
     }
 
+    /// A stored opacity as a share of the highest code; NaN for NaN, nothing for a number out of range.
+    pub(super) fn share(self, stored: f64) -> Option<f32> {
+        let share = stored / f64::from(self.highest());
+        let is_valid = share.is_nan() || (0.0..=1.0 + ROUNDING).contains(&share);
+        is_valid.then_some(if share > 1.0 { 1.0 } else { share as f32 })
+    }
+
     /// The largest code.
     pub(super) const fn highest(self) -> u32 {
         match self {

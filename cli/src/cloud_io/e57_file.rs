@@ -5,7 +5,7 @@
 //! a point without a colour among others that have one is white.
 
 use super::ReadSeek;
-use super::block::{At, CloudSummary, Gather, Point, Stop};
+use super::block::{At, CloudSummary, Gather, Has, Point, Stop};
 use super::colour::ColourCode;
 use super::format::CloudFormat;
 use crate::input_error::InputError;
@@ -22,7 +22,7 @@ pub(super) fn read<R: ReadSeek>(
     input.rewind().map_err(io)?;
     let mut reader = E57Reader::new(input).map_err(|error| fault(name, &error, 0))?;
     let scans = reader.pointclouds();
-    gather.expect(scans.iter().any(e57::PointCloud::has_color), false, false);
+    gather.expect(Has { colours: scans.iter().any(e57::PointCloud::has_color), ..Has::default() });
     let mut number = 0;
     let mut holes = 0_u64;
     for scan in &scans {

@@ -4,7 +4,7 @@
 //! into them: if the largest of the first block is from 1 to 255, they are taken as 8 bits.
 
 use super::ReadSeek;
-use super::block::{At, CloudSummary, Gather, MAX_BLOCK_POINTS, Point, Stop};
+use super::block::{At, CloudSummary, Gather, Has, MAX_BLOCK_POINTS, Point, Stop};
 use super::colour::ColourCode;
 use super::format::CloudFormat;
 use super::las_check;
@@ -28,7 +28,7 @@ pub(super) fn read<R: ReadSeek>(
     let mut chunk = PointDataBuilder::new().for_header(reader.header()).build();
     let announced = reader.header().number_of_points();
     let points_at_once = (CHUNK_BYTES / chunk.record_len().max(1)).clamp(1, MAX_BLOCK_POINTS);
-    gather.expect(reader.header().point_format().has_color, false, false);
+    gather.expect(Has { colours: reader.header().point_format().has_color, ..Has::default() });
     let mut code = None;
     let mut read = 0;
     while read < announced {

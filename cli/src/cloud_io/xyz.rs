@@ -18,7 +18,7 @@
 //! A first line with one whole number is the count of points. Empty lines, and lines that begin with `#` or `//`, are
 //! passed over; so is the rest of a line from there on.
 
-use super::block::{At, CloudSummary, Gather, MAX_BLOCK_POINTS, Point, Stop};
+use super::block::{At, CloudSummary, Gather, Has, MAX_BLOCK_POINTS, Point, Stop};
 use super::colour::ColourCode;
 use super::format::CloudFormat;
 use super::number::{Words, parse_f64};
@@ -175,7 +175,8 @@ impl Table {
             (None, _) => Rest::None,
         };
         let has_colours = matches!(rest, Rest::Colour(_) | Rest::Both(_));
-        gather.expect(has_colours, matches!(rest, Rest::Normal | Rest::Both(_)), false);
+        let normals = matches!(rest, Rest::Normal | Rest::Both(_));
+        gather.expect(Has { colours: has_colours, normals, ..Has::default() });
         for row in std::mem::take(rows) {
             push(name, row, rest, gather)?;
         }

@@ -20,6 +20,7 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
         drop_invalid: options.drop_invalid,
         spacing: options.surface.spacing,
         vertices: options.vertices,
+        ignore_alpha: options.surface.ignore_alpha,
     };
     let mut set = report.stats.stage("load", || ScanSet::load(&options.files, &load))?;
     let camera = points::camera(&options.camera, set.view.as_ref(), None, || set.positions())?;
@@ -29,7 +30,7 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     if set.dropped > 0 {
         report.warn(&format!("{} points that are not finite were left out", set.dropped));
     }
-    let frame_options = options.frame_options();
+    let frame_options = options.frame_options(set.has_translucent());
     let cloud = report.stats.stage("prepare", || set.cloud(frame_options.base))?;
     let layers = layer_list(&options.layers, &LAYERS).unwrap_or_default();
     let drawn =

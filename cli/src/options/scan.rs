@@ -64,13 +64,16 @@ pub struct SurfaceOptions {
     /// With two passes, size of the finer buffer's pixels relative to the normal one's
     #[arg(long, value_name = "F", default_value_t = 0.83, value_parser = values::share_above_0)]
     pub finer: f64,
-    /// Opacity of surfaces, 0 to 1: draws them translucent
+    /// Opacity of surfaces, 0 to 1, times that of their points (`alpha` in a PLY); without it, surfaces are translucent only if a point is
     #[arg(long, value_name = "A", value_parser = values::share)]
     pub alpha: Option<f32>,
-    /// With --alpha, surfaces per pixel
+    /// Draw all points as opaque, whatever opacity the file gives them
+    #[arg(long)]
+    pub ignore_alpha: bool,
+    /// Where surfaces are translucent, how many a pixel keeps
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = values::whole::<u16>(1..=ibpr::Translucency::MOST_LAYERS as u16))]
     pub depth_layers: u16,
-    /// With --alpha, depth of a layer in spacings (the paper: 10)
+    /// Where surfaces are translucent, depth of a layer in spacings (the paper: 10)
     #[arg(long, value_name = "T", default_value_t = 5.0, value_parser = values::positive)]
     pub layer_threshold: f64,
     /// Draw scans and blocks that face away too
@@ -162,8 +165,8 @@ pub enum WeightsValue {
 }
 
 impl ScanOptions {
-    /// What the renderer is asked for.
-    pub fn frame_options(&self) -> ibpr::Options {
+    /// What the renderer is asked for, for points of which some are translucent, or none.
+    pub fn frame_options(&self, has_translucent: bool) -> ibpr::Options {
         let surface = &self.surface;
         let mut options = ibpr::Options::default();
         options.scale = surface.scale.0;
@@ -191,7 +194,7 @@ impl ScanOptions {
             1 => ibpr::Passes::One,
             _ => ibpr::Passes::Two { finer: surface.finer as f32 },
         };
-        options.translucency = surface.alpha.map(|alpha| {
+        options.translucency = surface.alpha.or(has_translucent.then_some(1.0)).map(|alpha| {
             ibpr::Translucency::new(alpha)
                 .with_layers(surface.depth_layers.into())
                 .with_threshold(surface.layer_threshold as f32)

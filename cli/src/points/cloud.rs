@@ -54,11 +54,13 @@ impl PointSet {
 
     fn read(&mut self, path: &Path, options: &CloudOptions) -> Result<(), InputError> {
         self.files.push((path.to_owned(), self.positions.len()));
+        let mut has_translucent = false;
         let summary = cloud_io::read_cloud::<InputError>(path, options, &mut |block| {
             self.positions.extend_from_slice(block.positions);
             append(&mut self.normals, block.normals);
             append(&mut self.colours, block.colours);
             append(&mut self.radii, block.radii);
+            has_translucent |= block.opacities.is_some_and(|all| all.iter().any(|&opacity| opacity < 1.0));
             let taken = block.positions.len() as u64 * POINT_BYTES;
             self.meter
                 .add(taken, || "its points take".to_owned())
@@ -72,6 +74,11 @@ impl PointSet {
         }
         if summary.faces > 0 {
             warn("its faces are not drawn; `pointillist sample` puts points all over them");
+        }
+        if has_translucent {
+            warn(
+                "its opacities (`alpha`) are not used: discs are opaque; `pointillist scan` draws translucent points",
+            );
         }
         if !summary.has_normals {
             warn(

@@ -24,6 +24,8 @@ pub struct LoadedScan {
     positions: Vec<DVec3>,
     /// Linear RGB, or empty.
     colours: Vec<[f32; 3]>,
+    /// From 0 to 1, or empty: opaque.
+    opacities: Vec<f32>,
     spacing: Option<f64>,
     /// Direction to the scanner.
     towards_scanner: Option<DVec3>,
@@ -55,6 +57,8 @@ pub struct LoadOptions {
     pub spacing: Option<f64>,
     /// Take the vertices of meshes in the place of points all over them.
     pub vertices: bool,
+    /// Take all points as opaque.
+    pub ignore_alpha: bool,
 }
 
 impl ScanSet {
@@ -103,6 +107,11 @@ impl ScanSet {
         scans.chain(self.meshes.iter().flat_map(LoadedMesh::corners))
     }
 
+    /// Whether any point is not opaque.
+    pub fn has_translucent(&self) -> bool {
+        self.scans.iter().any(|scan| !scan.opacities.is_empty())
+    }
+
     /// Puts points on the meshes, as many as a picture of the view needs: as far apart as pixels, or as the points of the scans
     /// if those are farther apart, or as `spacing` says.
     pub fn cover_meshes(&mut self, camera: &Camera, size: [u32; 2], spacing: Option<f64>) {
@@ -128,6 +137,9 @@ impl ScanSet {
                 None => scan.positions.extend_from_slice(block.positions),
             }
             scan.colours.extend_from_slice(block.colours.unwrap_or_default());
+            if !options.ignore_alpha {
+                scan.opacities.extend_from_slice(block.opacities.unwrap_or_default());
+            }
             let taken = block.positions.len() as u64 * POINT_BYTES;
             self.meter
                 .add(taken, || "its points take".to_owned())
@@ -136,6 +148,13 @@ impl ScanSet {
         let name = input::name_of(path);
         self.warnings.extend(summary.warnings.iter().map(|warning| format!("{name}: {warning}")));
         self.dropped += summary.dropped;
+        // Programs that write an opacity mostly write 1.
+        if scan.opacities.iter().all(|&opacity| opacity == 1.0) {
+            scan.opacities = Vec::new();
+        } else if scan.opacities.iter().all(|&opacity| opacity == 0.0) {
+            let warning = "all its points have opacity 0, so that nothing is seen of them";
+            self.warnings.push(format!("{name}: {warning}; `--ignore-alpha` draws them opaque"));
+        }
         scan.spacing = options.spacing.or(summary.grid.and_then(|grid| grid.spacing));
         // A Stanford range grid is seen from its +z, and so is every scan of a .conf.
         if pose.is_some() || summary.grid.is_some() {
@@ -169,7 +188,7 @@ impl ScanSet {
             for value in scan.positions.iter().flat_map(|p| p.to_array()) {
                 hash.write(&value.to_le_bytes());
             }
-            for value in scan.colours.iter().flatten() {
+            for value in scan.colours.iter().flatten().chain(&scan.opacities) {
                 hash.write(&value.to_le_bytes());
             }
             hash.write(format!("{:?} {:?};", scan.spacing, scan.towards_scanner).as_bytes());
@@ -183,6 +202,9 @@ impl LoadedScan {
         let mut scan = ibpr::Scan::new(&self.positions);
         if !self.colours.is_empty() {
             scan = scan.with_colors(&self.colours);
+        }
+        if !self.opacities.is_empty() {
+            scan = scan.with_opacities(&self.opacities);
         }
         if let Some(spacing) = self.spacing {
             scan = scan.with_spacing(spacing);

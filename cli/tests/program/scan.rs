@@ -319,3 +319,63 @@ fn the_camera_line_of_a_conf_is_the_default_view() {
     let rows = |z: &[f32]| (0..48).filter(|y| z[y * 64..(y + 1) * 64].iter().any(|z| z.is_finite())).count();
     assert!(rows(&near) > 40, "only {} of 48 rows are filled", rows(&near));
 }
+
+/// A sheet on `z` in one colour, whose points have this `alpha` (written as bytes, or as floats if it has a point).
+fn glassy(z: f64, colour: &str, alpha: &str) -> String {
+    let kind = if alpha.contains('.') { "float" } else { "uchar" };
+    let points = 41 * 41;
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {points}\nproperty float x\nproperty float y\nproperty float z\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\nproperty {kind} alpha\nend_header\n"
+    );
+    for line in sheet(z).lines() {
+        text += &format!("{line} {colour} {alpha}\n");
+    }
+    text
+}
+
+#[test]
+fn points_with_an_alpha_of_their_own_are_seen_through() {
+    let folder = Folder::new();
+    folder.write("back.xyz", sheet(-0.5));
+    folder.write("half.ply", glassy(0.5, "255 0 0", "51"));
+    folder.write("float.ply", glassy(0.5, "255 0 0", "0.2"));
+    folder.write("whole.ply", glassy(0.5, "255 0 0", "255"));
+    folder.write("nothing.ply", glassy(0.5, "255 0 0", "0"));
+    let middle = |file: &str, more: &[&str]| {
+        let more = [&["--ambient", "1", "-o", "out.exr", "--float", "--overwrite"], more].concat();
+        run(&folder, &scan(&[file, "back.xyz"], &more));
+        let picture = read_exr_picture(&std::fs::read(folder.path("out.exr")).unwrap()).unwrap();
+        picture.color[24 * 64 + 32]
+    };
+    let close = |file: &str, more: &[&str], wanted: [f32; 4]| {
+        let got = middle(file, more);
+        let apart = got.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(apart < 1e-4, "{file} {more:?}: {got:?}, not {wanted:?}");
+    };
+    // The sheet behind is of the colour of points without one, 0.8.
+    let through = [0.2 + 0.8 * 0.8, 0.8 * 0.8, 0.8 * 0.8, 1.0];
+    close("half.ply", &[], through);
+    close("float.ply", &[], through);
+    close("whole.ply", &[], [1.0, 0.0, 0.0, 1.0]);
+    close("half.ply", &["--ignore-alpha"], [1.0, 0.0, 0.0, 1.0]);
+    // Both at half: 0.1 of red, then 0.9 × 0.5 of what is behind.
+    close("half.ply", &["--alpha", "0.5"], [0.1 + 0.45 * 0.8, 0.45 * 0.8, 0.45 * 0.8, 0.1 + 0.45]);
+    close("nothing.ply", &[], [0.8, 0.8, 0.8, 1.0]);
+}
+
+#[test]
+fn opacities_are_told_of_and_checked() {
+    let folder = Folder::new();
+    folder.write("half.ply", glassy(0.5, "255 0 0", "51"));
+    folder.write("none.ply", glassy(0.5, "255 0 0", "0"));
+    folder.write("wrong.ply", glassy(0.5, "255 0 0", "1.5"));
+    assert!(folder.prints(&["info", "half.ply"]).contains("\"opacities\": true"));
+    folder.fails(
+        &["scan", "wrong.ply"],
+        3,
+        &["wrong.ply", "wrong.ply:12", "`alpha` is 1.5, not from 0 to 1"],
+    );
+    folder.fails(&["scan", "none.ply"], 0, &["none.ply", "opacity 0", "--ignore-alpha"]);
+    folder.fails(&["surfel", "half.ply"], 0, &["half.ply", "`alpha`", "pointillist scan"]);
+}

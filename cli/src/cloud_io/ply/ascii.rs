@@ -4,7 +4,7 @@ use super::super::block::{At, Gather, Stop};
 use super::super::number::{Words, parse_f32, parse_f64};
 use super::super::source::{Line, Source};
 use super::header::{Element, list_of};
-use super::layout::{Layout, UNUSED, Values};
+use super::layout::{COLOUR_HELP, Layout, UNUSED, Values};
 use super::range_grid::GridReader;
 use super::{Place, cut_short};
 use crate::input_error::InputError;
@@ -23,9 +23,9 @@ pub(super) fn vertices(
         next_line(source, element, index)?;
         let line = source.line();
         let values = numbers(name, &line, element, layout)?;
-        let point = layout.point(&values).map_err(|message| {
-            line.error(name, None, message).with_help("write colours as uchar from 0 to 255")
-        })?;
+        let point = layout
+            .point(&values)
+            .map_err(|message| line.error(name, None, message).with_help(COLOUR_HELP))?;
         if let Some(grid) = &mut grid {
             grid.keep(point.position).map_err(|error| error.in_file(name))?;
         }

@@ -3,7 +3,7 @@
 use super::super::block::{At, Gather, Stop};
 use super::super::source::Source;
 use super::header::{Element, size_of};
-use super::layout::{Layout, UNUSED, Values};
+use super::layout::{COLOUR_HELP, Layout, UNUSED, Values};
 use super::range_grid::GridReader;
 use super::{Place, cut_short};
 use crate::input_error::InputError;
@@ -28,7 +28,7 @@ pub(super) fn vertices(
                 source.name(),
                 format!("{message}, in vertex {index} (from 0) at byte {start}"),
             )
-            .with_help("write colours as uchar from 0 to 255")
+            .with_help(COLOUR_HELP)
         })?;
         if let Some(grid) = &mut grid {
             grid.keep(point.position).map_err(|error| error.in_file(source.name()))?;

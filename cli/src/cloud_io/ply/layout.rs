@@ -1,6 +1,6 @@
 //! Maps the properties of a PLY vertex to the coordinates, normal and colour of a point.
 
-use super::super::block::Point;
+use super::super::block::{Has, Point};
 use super::super::colour::ColourCode;
 use super::header::Element;
 use crate::input_error::InputError;
@@ -11,22 +11,29 @@ use ply_rs_bw::ply::{PropertyDef, PropertyType, ScalarType};
 pub(super) type Values = [f64; UNUSED + 1];
 
 /// Where a number without meaning goes.
-pub(super) const UNUSED: usize = 10;
+pub(super) const UNUSED: usize = 11;
 
 const POSITION: [&str; 3] = ["x", "y", "z"];
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
+
+/// The way out for colours and opacities out of range.
+pub(super) const COLOUR_HELP: &str =
+    "write colours and opacities as uchar from 0 to 255, or as float from 0 to 1";
 
 /// Names of colours; the first that are complete are taken.
 const COLOURS: [[&str; 3]; 3] =
     [["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
 
+/// Names of opacities; the first that is there is taken.
+const OPACITY: [&str; 2] = ["alpha", "a"];
+
 /// The meaning of each property of a vertex.
 pub(super) struct Layout {
-    /// For each property an index into [`Values`]: 0–2 position, 3–5 normal, 6–8 colour, 9 radius.
+    /// For each property an index into [`Values`]: 0–2 position, 3–5 normal, 6–8 colour, 9 radius, 10 opacity.
     pub(super) slots: Vec<usize>,
     colour: Option<([&'static str; 3], [ColourCode; 3])>,
-    has_normals: bool,
-    has_radii: bool,
+    opacity: Option<(&'static str, ColourCode)>,
+    pub(super) has: Has,
 }
 
 impl Layout {
@@ -46,13 +53,14 @@ impl Layout {
         let normal = three(NORMAL);
         let colour = COLOURS.into_iter().find_map(|names| Some((names, three(names)?)));
         let radius = scalar("radius");
+        let opacity = OPACITY.into_iter().find_map(|name| Some((name, scalar(name)?)));
         let mut slots = vec![UNUSED; vertex.properties.len()];
         let wanted = position
             .into_iter()
             .map(Some)
             .chain(normal.map_or([None; 3], |n| n.map(Some)))
             .chain(colour.map_or([None; 3], |(_, c)| c.map(Some)))
-            .chain([radius]);
+            .chain([radius, opacity.map(|(_, property)| property)]);
         for (slot, property) in wanted.enumerate() {
             if let Some(property) = property {
                 slots[property] = slot;
@@ -60,40 +68,42 @@ impl Layout {
         }
         let code = |property: usize| colour_code(&vertex.properties[property]);
         let colour = colour.map(|(names, properties)| (names, properties.map(code)));
-        Ok(Self { slots, colour, has_normals: normal.is_some(), has_radii: radius.is_some() })
-    }
-
-    pub(super) fn has_colours(&self) -> bool {
-        self.colour.is_some()
-    }
-
-    pub(super) fn has_normals(&self) -> bool {
-        self.has_normals
-    }
-
-    pub(super) fn has_radii(&self) -> bool {
-        self.has_radii
+        let opacity = opacity.map(|(name, property)| (name, code(property)));
+        let has = Has {
+            colours: colour.is_some(),
+            opacities: opacity.is_some(),
+            normals: normal.is_some(),
+            radii: radius.is_some(),
+        };
+        Ok(Self { slots, colour, opacity, has })
     }
 
     /// The point with these numbers, or what is wrong with them.
     pub(super) fn point(&self, values: &Values) -> Result<Point, String> {
-        let [x, y, z, nx, ny, nz, r, g, b, radius, _] = *values;
+        let [x, y, z, nx, ny, nz, r, g, b, radius, opacity, _] = *values;
+        let out_of_range = |name: &str, stored: f64, code: ColourCode| {
+            format!("`{name}` is {stored}, not from 0 to {}", code.highest())
+        };
         let colour = match &self.colour {
             None => [0.0; 3],
             Some((names, codes)) => {
                 let mut linear = [0.0; 3];
                 for (i, stored) in [r, g, b].into_iter().enumerate() {
-                    linear[i] = codes[i].linear(stored).ok_or_else(|| {
-                        format!("`{}` is {stored}, not from 0 to {}", names[i], codes[i].highest())
-                    })?;
+                    linear[i] =
+                        codes[i].linear(stored).ok_or_else(|| out_of_range(names[i], stored, codes[i]))?;
                 }
                 linear
             }
+        };
+        let opacity = match self.opacity {
+            None => 1.0,
+            Some((name, code)) => code.share(opacity).ok_or_else(|| out_of_range(name, opacity, code))?,
         };
         Ok(Point {
             position: DVec3::new(x, y, z),
             normal: Vec3::new(nx as f32, ny as f32, nz as f32),
             colour,
+            opacity,
             radius: radius as f32,
         })
     }

@@ -25,7 +25,7 @@ use range_grid::GridReader;
 pub(super) fn read(mut source: Source<'_>, gather: &mut Gather<'_>) -> Result<CloudSummary, Stop> {
     let header = Header::read(&mut source)?;
     let layout = Layout::of(header.vertex(source.name())?, source.name())?;
-    gather.expect(layout.has_colours(), layout.has_normals(), layout.has_radii());
+    gather.expect(layout.has);
     let mut warnings = Vec::new();
     let mut grid = GridReader::of(&header, &mut warnings);
     for element in &header.elements {

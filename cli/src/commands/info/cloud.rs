@@ -19,6 +19,7 @@ pub(super) fn of_cloud(summary: &CloudSummary) -> Value {
         "points": summary.points,
         "invalid": summary.dropped,
         "colours": summary.has_colours,
+        "opacities": summary.has_opacities,
         "normals": summary.has_normals,
         "radii": summary.has_radii,
         "bounds": summary.bounds.map(|corner| corner.to_array()),
