@@ -11,12 +11,46 @@ use pointillist_view::Projection;
 use std::hash::Hasher as _;
 use twox_hash::XxHash3_64;
 
-/// Hashes numbers as little-endian bytes, so that the value is the same on every machine.
-#[derive(Default)]
-struct Fingerprint(XxHash3_64);
+/// XXH3 (64 bits) of bytes that come a few at a time. The value depends on the bytes alone, not on how they are divided; numbers given as
+/// little-endian bytes have the same on every machine.
+#[derive(Clone, Default)]
+pub struct ByteHash {
+    hash: XxHash3_64,
+    /// Less than [`BLOCK`] bytes that are not yet hashed.
+    waiting: Vec<u8>,
+}
 
-/// Texels that are hashed at once: each call takes as long as some hundred bytes.
-const OPAQUE_AT_ONCE: usize = 1024;
+/// Bytes that are hashed at once: each call takes as long as some hundred.
+const BLOCK: usize = 4096;
+
+impl ByteHash {
+    /// Takes some bytes.
+    #[inline]
+    pub fn write(&mut self, bytes: &[u8]) {
+        if self.waiting.len() + bytes.len() >= BLOCK {
+            self.write_block(bytes);
+        } else {
+            self.waiting.extend_from_slice(bytes);
+        }
+    }
+
+    fn write_block(&mut self, bytes: &[u8]) {
+        self.hash.write(&self.waiting);
+        self.hash.write(bytes);
+        self.waiting.clear();
+    }
+
+    /// The hash of all bytes.
+    #[must_use]
+    pub fn finish(mut self) -> u64 {
+        self.write_block(&[]);
+        self.hash.finish()
+    }
+}
+
+/// The hash of a scene or of parts of it.
+#[derive(Default)]
+struct Fingerprint(ByteHash);
 
 /// The hash of everything that a picture of the scene depends on.
 #[must_use]
@@ -181,18 +215,18 @@ impl Fingerprint {
         self.int(u64::from(texture.height));
         match &texture.texels {
             Texels::Srgb8(texels) => self.0.write(texels.as_flattened()),
-            Texels::OpaqueSrgb8(texels) => self.opaque(texels, |rgb| rgb),
+            Texels::OpaqueSrgb8(texels) => texels.iter().for_each(|&rgb| self.opaque(rgb)),
             Texels::Linear8(texels) => {
                 self.int(1);
                 self.0.write(texels.as_flattened());
             }
             Texels::OpaqueLinear8(texels) => {
                 self.int(1);
-                self.opaque(texels, |rgb| rgb);
+                texels.iter().for_each(|&rgb| self.opaque(rgb));
             }
             Texels::Gray8(texels) => {
                 self.int(1);
-                self.opaque(texels, |[gray]| [gray; 3]);
+                texels.iter().for_each(|&[gray]| self.opaque([gray; 3]));
             }
             Texels::Opacity8(texels) => self.0.write(texels.as_flattened()),
             Texels::Float(texels) => texels.iter().flatten().for_each(|c| self.0.write(&c.to_le_bytes())),
@@ -200,16 +234,8 @@ impl Fingerprint {
     }
 
     /// How opaque texels are stored does not count: they are taken as with an alpha of 255.
-    fn opaque<T: Copy>(&mut self, texels: &[T], rgb: impl Fn(T) -> [u8; 3]) {
-        let mut bytes = Vec::with_capacity(4 * OPAQUE_AT_ONCE);
-        for some in texels.chunks(OPAQUE_AT_ONCE) {
-            bytes.clear();
-            for &texel in some {
-                let [r, g, b] = rgb(texel);
-                bytes.extend([r, g, b, u8::MAX]);
-            }
-            self.0.write(&bytes);
-        }
+    fn opaque(&mut self, [r, g, b]: [u8; 3]) {
+        self.0.write(&[r, g, b, u8::MAX]);
     }
 
     fn light(&mut self, light: &Light) {
@@ -256,6 +282,17 @@ impl Fingerprint {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_hash_does_not_depend_on_how_bytes_are_divided() {
+        let bytes: Vec<u8> = (0..3 * BLOCK).map(|i| (i * i / 7) as u8).collect();
+        for size in [1, 3, 8, BLOCK - 1, BLOCK, BLOCK + 1, bytes.len()] {
+            let mut hash = ByteHash::default();
+            bytes.chunks(size).for_each(|some| hash.write(some));
+            assert_eq!(hash.finish(), XxHash3_64::oneshot(&bytes), "{size} at a time");
+        }
+        assert_eq!(ByteHash::default().finish(), XxHash3_64::oneshot(&[]));
+    }
 
     /// `ShadeMaterial` can gain fields without an error here: the fingerprint must then take them in.
     #[test]

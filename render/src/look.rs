@@ -3,14 +3,13 @@
 use crate::ambient::Ambient;
 use crate::capture::{Capture, CaptureOptions};
 use crate::error::RenderError;
+use crate::fingerprint::ByteHash;
 use crate::monitor::{Monitor, go_on};
 use crate::prepared::Prepared;
 use glam::DVec3;
 use pointillist_parallel as parallel;
 use pointillist_sh::{CubeMap, CubeProjector, Sh, Weights};
 use pointillist_shprobe::{DistanceMap, ProbeError};
-use std::hash::Hasher as _;
-use twox_hash::XxHash3_64;
 
 /// How probes look around.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -167,7 +166,7 @@ pub fn fingerprints(
     let options = CaptureOptions { resolution: WATCHED, ..capture };
     at_all(positions, monitor, |position| {
         let capture = prepared.capture(position, options, ambient, monitor)?;
-        let mut hash = XxHash3_64::default();
+        let mut hash = ByteHash::default();
         let planes = capture.radiance.iter().chain([&capture.sky, &capture.distance, &capture.back]);
         planes.flatten().for_each(|v| hash.write(&v.to_le_bytes()));
         Ok(hash.finish())

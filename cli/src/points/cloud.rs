@@ -5,9 +5,9 @@ use crate::input;
 use crate::input_error::InputError;
 use crate::memory::Meter;
 use glam::{DVec3, Vec3};
+use pointillist_render::fingerprint::ByteHash;
 use pointillist_surfel::{Cloud, Points, SurfelError};
 use std::path::{Path, PathBuf};
-use twox_hash::XxHash3_64;
 
 /// The points of all files, with the attributes that all of them have.
 #[derive(Clone, Debug, Default)]
@@ -141,8 +141,7 @@ impl PointSet {
     /// Hash of all that is drawn.
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
-        use std::hash::Hasher as _;
-        let mut hash = XxHash3_64::default();
+        let mut hash = ByteHash::default();
         for value in self.positions.iter().flat_map(|p| p.to_array()) {
             hash.write(&value.to_le_bytes());
         }

@@ -12,8 +12,8 @@ use crate::scene::Camera;
 use glam::{DVec3, Vec3};
 use mesh::LoadedMesh;
 use pointillist_ibpr as ibpr;
+use pointillist_render::fingerprint::ByteHash;
 use std::path::Path;
-use twox_hash::XxHash3_64;
 
 /// Bytes of a point: as it is kept here, and what the renderer makes of it.
 const POINT_BYTES: u64 = 48;
@@ -182,8 +182,7 @@ impl ScanSet {
 
     /// Hash of all that is drawn.
     pub fn fingerprint(&self) -> u64 {
-        use std::hash::Hasher as _;
-        let mut hash = XxHash3_64::default();
+        let mut hash = ByteHash::default();
         for scan in &self.scans {
             for value in scan.positions.iter().flat_map(|p| p.to_array()) {
                 hash.write(&value.to_le_bytes());
