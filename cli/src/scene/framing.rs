@@ -68,6 +68,11 @@ fn around_from<I: Iterator<Item = DVec3>>(
     }
 }
 
+/// How far from its target a camera has to be, in the direction in which it is, so that the mesh fills the view.
+pub(crate) fn distance_to(camera: &Camera, mesh: &Mesh, aspect: f64) -> f64 {
+    distance(camera, corners(mesh), aspect)
+}
+
 fn corners(mesh: &Mesh) -> impl Iterator<Item = DVec3> + '_ {
     mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize])
 }

@@ -35,7 +35,7 @@ pub use pointillist_render::{
 
 pub use builtin::builtin;
 pub use description::{Description, parse_str};
-pub(crate) use framing::{MARGIN as FRAME_MARGIN, around as frame_around};
+pub(crate) use framing::{MARGIN as FRAME_MARGIN, around as frame_around, distance_to as framing_distance};
 pub use load::{Overrides, is_model, load, load_to_bake};
 pub use motion::Motion;
 pub(crate) use plain_model::key_light;

@@ -153,6 +153,38 @@ fn a_turntable_goes_around_a_plain_model() {
     folder.fails(&["render", "triangle.obj", "--turntable", "0"], 2, &["--turntable"]);
 }
 
+/// What is said of a turntable of a bar of this size.
+fn said_of_a_bar(folder: &Folder, [x, y, z]: [f64; 3], options: &[&str]) -> String {
+    let bar =
+        format!("v 0 0 0\nv {x} 0 0\nv {x} {y} {z}\nv 0 {y} {z}\nv 0 0 {z}\nf 1 2 3\nf 1 4 5\nf 2 3 5\n");
+    folder.write("bar.obj", bar);
+    let line = ["render", "bar.obj", "--size", "96x64", "--turntable", "4", "-o", "b.{frame}.png"];
+    let run = folder.command(&[&line[..], options].concat()).output().expect("the command runs");
+    assert!(run.status.success());
+    String::from_utf8_lossy(&run.stderr).into_owned()
+}
+
+#[test]
+fn a_turntable_that_cuts_the_model_off_says_from_where_it_would_not() {
+    let folder = Folder::new();
+    let said = said_of_a_bar(&folder, [0.1, 0.1, 3.0], &[]);
+    let (_, rest) = said.split_once("reaches beyond others; `--eye ").unwrap_or_else(|| panic!("{said}"));
+    let eye = rest.split('`').next().unwrap_or_default();
+    assert!(!said_of_a_bar(&folder, [0.1, 0.1, 3.0], &["--eye", eye]).contains("reaches beyond"));
+    // From there no view reaches the border of the picture, and without it some do.
+    let edge = |frame: u32| {
+        let picture = image::open(folder.path(&format!("b.{frame}.png"))).expect("a picture").to_rgba8();
+        let (width, height) = picture.dimensions();
+        picture
+            .enumerate_pixels()
+            .any(|(x, y, p)| (x % (width - 1) == 0 || y % (height - 1) == 0) && p.0[3] > 0)
+    };
+    assert!((0..4).all(|frame| !edge(frame)));
+    said_of_a_bar(&folder, [0.1, 0.1, 3.0], &[]);
+    assert!((0..4).any(edge));
+    assert!(!said_of_a_bar(&folder, [0.1, 3.0, 0.1], &[]).contains("reaches beyond"));
+}
+
 #[test]
 fn names_without_a_place_for_the_frame_are_refused() {
     let folder = Folder::new();

@@ -22,7 +22,7 @@ use crate::options::RenderOptions;
 use crate::scene;
 use draw::Film;
 use plan::{check_memory, check_size, job};
-use shots::{check_outputs, check_turntable, motion, shots};
+use shots::{check_outputs, check_turntable, cut_off, motion, shots};
 
 pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     if options.watch { watch::run(options, &draw_once) } else { draw_once(options) }
@@ -58,6 +58,9 @@ fn draw_once(options: &RenderOptions) -> Result<(), CliError> {
     check_memory(options, job.window, &job.layers)?;
     // All cameras before the first picture: a film that would end in the middle of the night ends now.
     shots.iter().try_for_each(|shot| motion.camera(&loaded.scene.camera, shot.frame).map(drop))?;
+    if let Some(message) = cut_off(options, &loaded, &motion, &shots) {
+        report.warn(&message);
+    }
     if options.preview {
         preview::show(&loaded, options, &report)?;
         if is_shown_only {

@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::input::is_standard;
 use crate::name_pattern;
 use crate::options::{FrameRange, RenderOptions};
-use crate::scene::{LoadedScene, Motion};
+use crate::scene::{FRAME_MARGIN, LoadedScene, Motion, framing_distance};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -71,6 +71,36 @@ pub(super) fn check_turntable(options: &RenderOptions) -> Result<(), CliError> {
         return Err(CliError::Usage(message.to_owned()));
     }
     Ok(())
+}
+
+/// What to say of a turntable that cuts the model off: it is framed for the first view, and may be wider in others.
+pub(super) fn cut_off(
+    options: &RenderOptions,
+    loaded: &LoadedScene,
+    motion: &Motion,
+    shots: &[Shot],
+) -> Option<String> {
+    if options.turntable.is_none() || options.camera.eye.is_some() {
+        return None;
+    }
+    let start = &loaded.scene.camera;
+    let image = &loaded.scene.image;
+    let aspect = f64::from(image.width) / f64::from(image.height);
+    let cameras = shots.iter().filter_map(|shot| motion.camera(start, shot.frame).ok());
+    let needed =
+        cameras.map(|camera| framing_distance(&camera, &loaded.scene.mesh, aspect)).fold(0.0, f64::max);
+    let away = start.eye - start.target;
+    // Up to the margin that the first view has, nothing is cut off.
+    if needed <= FRAME_MARGIN * away.length() {
+        return None;
+    }
+    let eye = start.target + away * (needed / away.length());
+    let digits = (3.0 - needed.log10().floor()).clamp(0.0, 12.0) as usize;
+    Some(format!(
+        "--turntable: the model is framed for the first view and reaches beyond others; `--eye {:.digits$},{:.digits$},{:.digits$}` \
+         shows all of it",
+        eye.x, eye.y, eye.z
+    ))
 }
 
 fn output_path(options: &RenderOptions) -> PathBuf {
