@@ -4,6 +4,11 @@ export const select = (name) => document.querySelector(name);
 
 export const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
+// Lets a finger leave what it moves. Only pointers that are there can be captured, not those of events made by a script.
+export function capture(element, event) {
+  if (event.isTrusted) element.setPointerCapture(event.pointerId);
+}
+
 // A function that draws once a frame, however often it is called.
 export function oncePerFrame(draw) {
   let isAsked = false;
@@ -83,7 +88,7 @@ export class Orbit {
   }
 
   begin(event) {
-    this.canvas.setPointerCapture?.(event.pointerId);
+    capture(this.canvas, event);
     this.drag = { x: event.clientX, y: event.clientY, travelled: 0 };
   }
 

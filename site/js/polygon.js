@@ -1,6 +1,6 @@
 // A polygon over a grid: corners that are dragged, and the exact area in every cell.
 
-import { clamp, milliseconds, oncePerFrame, select } from "./figure.js";
+import { capture, clamp, milliseconds, oncePerFrame, select } from "./figure.js";
 
 const COLUMNS = 8;
 const ROWS = 6;
@@ -68,7 +68,7 @@ export class PolygonDemo {
       // A finger needs more than the eye.
       handle.append(svgElement("circle", { r: 0.48, class: "reach" }), svgElement("circle", { r: 0.17 }));
       handle.addEventListener("pointerdown", (event) => {
-        handle.setPointerCapture?.(event.pointerId);
+        capture(handle, event);
         this.dragged = i;
       });
       handle.addEventListener("keydown", (event) => this.press(event, i));

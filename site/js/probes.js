@@ -1,6 +1,6 @@
 // Probes: a ball in two rooms, lit by what probes around it hold.
 
-import { clamp, fit, imageOf, milliseconds, oncePerFrame, paperBehind, select, slider } from "./figure.js";
+import { capture, clamp, fit, imageOf, milliseconds, oncePerFrame, paperBehind, select, slider } from "./figure.js";
 
 // Least distance of the ball's middle from walls, metres.
 const MARGIN = 0.12;
@@ -24,7 +24,7 @@ export class ProbeDemo {
 
   listen() {
     this.plan.addEventListener("pointerdown", (event) => {
-      this.plan.setPointerCapture?.(event.pointerId);
+      capture(this.plan, event);
       this.isDragged = true;
       this.dragTo(event);
     });
