@@ -116,7 +116,7 @@ export class PolygonDemo {
     areas.forEach((area, i) => {
       const { title, square, text } = this.cells[i];
       square.style.fillOpacity = 0.75 * area;
-      text.textContent = area === 0 ? "" : area === 1 ? "1" : area.toFixed(2).replace(/^0/, "");
+      text.textContent = shortShare(area);
       title.textContent = `${area} of this cell`;
     });
   }
@@ -147,4 +147,12 @@ function element(name, text) {
   const made = document.createElement(name);
   made.textContent = text;
   return made;
+}
+
+// Two digits; what is nearly nothing or nearly full is not rounded to that.
+function shortShare(area) {
+  if (area === 0) return "";
+  if (area === 1) return "1";
+  if (area < 0.005) return ">0";
+  return area > 0.995 ? "<1" : area.toFixed(2).slice(1);
 }

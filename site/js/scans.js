@@ -3,7 +3,7 @@
 import { Orbit, count, fit, imageOf, milliseconds, oncePerFrame, paperBehind, select, slider } from "./figure.js";
 
 // How far the camera is from the model, in half diagonals of its box.
-const DISTANCE = 3.7;
+const DISTANCE = 3;
 
 export class ScanDemo {
   constructor(engine) {
