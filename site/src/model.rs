@@ -34,10 +34,13 @@ impl Model {
     fn checked(self) -> Result<Self, String> {
         let count = self.positions.len();
         if count == 0 {
-            return Err("no vertices were found: it must be PLY, or OBJ with lines `v x y z`".to_string());
+            return Err(
+                "no surface was found: it must be PLY, or OBJ with lines `v x y z` and `f 1 2 3`".to_string()
+            );
         }
         // Far enough for every unit, near enough that cameras around it are within their own range.
-        if let Some(vertex) = self.positions.iter().position(|p| !(p.abs().max_element() < 1e9)) {
+        let is_usable = |p: &DVec3| p.abs().cmple(DVec3::splat(1e9)).all();
+        if let Some(vertex) = self.positions.iter().position(|p| !is_usable(p)) {
             return Err(format!("vertex {vertex} (from 0) is not within ±1e9"));
         }
         if self.extent() == 0.0 {
