@@ -74,6 +74,8 @@ class Page {
     const recolor = () => this.started.forEach((name) => this.demos[name].recolor());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolor);
     addEventListener("resize", recolor);
+    // Of pictures that are drawn later. A module that has stopped, for want of memory say, does not start again.
+    addEventListener("error", ({ message }) => showProblem(`${message}. Reload the page to start anew.`));
   }
 
   // Says what went wrong instead of leaving a dead page.
