@@ -1,6 +1,6 @@
 //! `sample` turns meshes into clouds.
 
-use crate::common::Folder;
+use crate::common::{Folder, PROPERTIES};
 use predicates::str::contains;
 use std::fs;
 
@@ -18,19 +18,7 @@ fn a_mesh_becomes_exactly_as_many_points() {
     folder.prints(&["sample", "triangle.obj", "--count", "123", "--ascii", "-o", "a.ply"]);
     let (head, points) = cloud(&folder, "a.ply");
     let properties: Vec<_> = head.iter().filter_map(|l| l.strip_prefix("property ")).collect();
-    let expected = [
-        "float x",
-        "float y",
-        "float z",
-        "float nx",
-        "float ny",
-        "float nz",
-        "uchar red",
-        "uchar green",
-        "uchar blue",
-        "float radius",
-    ];
-    assert_eq!(properties, expected);
+    assert_eq!(properties, PROPERTIES);
     assert_eq!(points.len(), 123);
     for p in points {
         assert!(p[1] >= 0.0 && p[1] <= 1.5 * (1.0 - p[0].abs()) + 1e-6 && p[2] == 0.0, "{p:?}");

@@ -1,6 +1,6 @@
 //! `surfel`: pictures of clouds made here, and every kind of bad input.
 
-use crate::common::Folder;
+use crate::common::{Folder, PROPERTIES};
 use pointillist_cli::image_io::{Picture, read_exr_picture};
 use predicates::prelude::*;
 use predicates::str::contains;
@@ -11,19 +11,6 @@ fn sheet(z: f64) -> Vec<String> {
     let line = |i: i32| format!("{} {} {z} 0 0 1 {} 120 60 0.0354", place(i), place(i / 41), i % 256);
     (0..41 * 41).map(line).collect()
 }
-
-const PROPERTIES: [&str; 10] = [
-    "float x",
-    "float y",
-    "float z",
-    "float nx",
-    "float ny",
-    "float nz",
-    "uchar red",
-    "uchar green",
-    "uchar blue",
-    "float radius",
-];
 
 fn ply(properties: &[&str], lines: &[String]) -> String {
     let head: String = properties.iter().map(|p| format!("property {p}\n")).collect();

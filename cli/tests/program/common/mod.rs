@@ -25,6 +25,20 @@ position = [1, 2, 3]
 intensity = [30, 30, 30]
 "#;
 
+/// The properties of a point in the clouds that `sample` writes.
+pub(crate) const PROPERTIES: [&str; 10] = [
+    "float x",
+    "float y",
+    "float z",
+    "float nx",
+    "float ny",
+    "float nz",
+    "uchar red",
+    "uchar green",
+    "uchar blue",
+    "float radius",
+];
+
 /// A folder of its own for each test, with the triangle and its scene.
 pub(crate) struct Folder(TempDir);
 
