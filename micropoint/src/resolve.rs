@@ -224,7 +224,8 @@ impl Others {
         self.stands.clear();
         if order.len() >= neighbours::WORTH_IT {
             self.stands.resize(order.len(), false);
-            self.neighbours.build(order.iter().map(|&p| dicer.outline(dicer.part(p))));
+            let overlap = |a: u32, b: u32| dicer.overlap(order[a as usize], order[b as usize]);
+            self.neighbours.build(order.iter().map(|&p| dicer.outline(dicer.part(p))), overlap);
         }
     }
 
@@ -330,10 +331,10 @@ impl Cut {
         let outline = dicer.outline(part);
         self.blockers.clear();
         for o in others {
-            let other = dicer.part(o);
-            if !part.bounds.overlap(&other.bounds) || convex::are_disjoint(outline, dicer.outline(other)) {
+            if !dicer.overlap(p, o) {
                 continue;
             }
+            let other = dicer.part(o);
             let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
             let upper = Layer { face: fo, outline: dicer.outline(other), nearness: other.nearness };
             let lower = Layer { face: fp, outline, nearness: part.nearness };
