@@ -622,7 +622,13 @@ impl Dicer {
     #[inline]
     pub(crate) fn overlap(&self, a: u32, b: u32) -> bool {
         let (a, b) = (self.part(a), self.part(b));
-        a.bounds.overlap(&b.bounds) && !convex::are_disjoint(self.outline(a), self.outline(b))
+        a.bounds.overlap(&b.bounds) && self.outlines_overlap(a, b)
+    }
+
+    /// Not inlined: the bounds decide most questions.
+    #[inline(never)]
+    fn outlines_overlap(&self, a: &Part, b: &Part) -> bool {
+        !convex::are_disjoint(self.outline(a), self.outline(b))
     }
 
     /// A part's outline relative to its cell.

@@ -98,19 +98,25 @@ impl Neighbours {
         }
     }
 
-    /// The ranks of all parts that may overlap a part, rising; itself may be among them.
-    pub(crate) fn of(&mut self, rank: usize) -> &[u32] {
+    /// Of the ranks that `counts` holds of, those of all parts that overlap a part, rising. `overlaps` tells whether one of them does.
+    pub(crate) fn of(
+        &mut self,
+        rank: usize,
+        counts: impl Fn(usize) -> bool,
+        overlaps: impl Fn(&u32) -> bool,
+    ) -> &[u32] {
         self.found.clear();
         if self.are_compared {
             let first = self.pairs.partition_point(|pair| (pair.0 as usize) < rank);
             let own = self.pairs[first..].iter().take_while(|pair| pair.0 as usize == rank);
-            self.found.extend(own.map(|pair| pair.1));
+            self.found.extend(own.map(|pair| pair.1).filter(|&other| counts(other as usize)));
             return &self.found;
         }
+        let counts = |&other: &u32| counts(other as usize) && overlaps(&other);
         let place = self.place[rank] as usize;
         let Interval { low, high, .. } = self.intervals[place];
         let within = self.intervals[place..].iter().take_while(|other| other.low <= high);
-        self.found.extend(within.map(|other| other.rank));
+        self.found.extend(within.map(|other| other.rank).filter(counts));
         let mut count = place;
         while count > 0 {
             if self.highest[count - 1] < low {
@@ -119,7 +125,7 @@ impl Neighbours {
             }
             count -= 1;
             let other = self.intervals[count];
-            if other.high >= low {
+            if other.high >= low && counts(&other.rank) {
                 self.found.push(other.rank);
             }
         }
@@ -224,7 +230,10 @@ mod tests {
         let mut neighbours = Neighbours::default();
         let overlap = |a: u32, b: u32| !convex::are_disjoint(&outlines[a as usize], &outlines[b as usize]);
         neighbours.build(outlines.iter().map(Vec::as_slice), overlap);
-        ((0..outlines.len()).map(|i| neighbours.of(i).to_vec()).collect(), neighbours.are_compared)
+        (
+            (0..outlines.len()).map(|i| neighbours.of(i, |other| other != i, |_| true).to_vec()).collect(),
+            neighbours.are_compared,
+        )
     }
 
     /// The same without comparing.
@@ -233,7 +242,7 @@ mod tests {
         neighbours.build(outlines.iter().map(Vec::as_slice), |_, _| true);
         neighbours.build_tree();
         neighbours.are_compared = false;
-        (0..outlines.len()).map(|i| neighbours.of(i).to_vec()).collect()
+        (0..outlines.len()).map(|i| neighbours.of(i, |other| other != i, |_| true).to_vec()).collect()
     }
 
     #[test]
@@ -242,7 +251,7 @@ mod tests {
             let stripes: Vec<_> = (0..100).map(|i| stripe(i * 37 % 100, 100, slope)).collect();
             assert!(of_each(&stripes).0.iter().all(Vec::is_empty), "slope {slope}");
             // Few pairs were compared to find that.
-            assert!(neighbours_by_tree(&stripes).iter().all(|found| found.len() <= 3), "slope {slope}");
+            assert!(neighbours_by_tree(&stripes).iter().all(|found| found.len() <= 2), "slope {slope}");
         }
     }
 
@@ -256,7 +265,7 @@ mod tests {
             let stripes: Vec<_> =
                 (0..count).map(|i| vec![at(i, 0.0), at(i, 1.0), at(i + 1, 1.0), at(i + 1, 0.0)]).collect();
             assert!(of_each(&stripes).0.iter().all(Vec::is_empty), "{meet}");
-            assert!(neighbours_by_tree(&stripes).iter().all(|found| found.len() <= 3), "{meet}");
+            assert!(neighbours_by_tree(&stripes).iter().all(|found| found.len() <= 2), "{meet}");
         }
     }
 
