@@ -330,13 +330,13 @@ fn glassy(z: f64, kind: &str, alpha: &str) -> String {
 #[test]
 fn points_with_an_alpha_of_their_own_are_seen_through() {
     let folder = folder();
-    for (name, kind, alpha) in [
-        ("half.ply", "uchar", "51"),
-        ("float.ply", "float", "0.2"),
-        ("whole.ply", "uchar", "255"),
-        ("none.ply", "float", "0"),
+    for (name, z, kind, alpha) in [
+        ("half.ply", 0.5, "uchar", "51"),
+        ("float.ply", 0.5, "float", "0.2"),
+        ("whole.ply", 0.5, "uchar", "255"),
+        ("none.ply", 0.8, "float", "0"),
     ] {
-        folder.write(name, glassy(0.5, kind, alpha));
+        folder.write(name, glassy(z, kind, alpha));
     }
     let middle = |files: &[&str], more: &[&str]| {
         let line =
@@ -364,6 +364,7 @@ fn points_with_an_alpha_of_their_own_are_seen_through() {
     // Files without are opaque, in either order.
     close(&["half.ply", "far.ply"], &[], 1.0);
     close(&["far.ply", "half.ply"], &[], 1.0);
+    // In front of the other, and not seen.
     close(&["half.ply", "none.ply"], &[], 0.2);
     let same = |a: &str, b: &str| {
         let [a, b] = [a, b].map(|name| middle(&[name, "far.ply"], &[]));
