@@ -24,6 +24,7 @@ struct Attributes {
     radii: Option<Vec<u8>>,
     raw_radius: Option<f32>,
     colored: bool,
+    opacities: Option<Vec<u8>>,
 }
 
 #[derive(Arbitrary, Debug)]
@@ -94,6 +95,9 @@ fn points(shapes: &[Shape], attributes: &Attributes) -> OwnedPoints {
     if attributes.colored {
         all.colors = Some((0..n).map(|i| [0.5, (i % 3) as f32, 0.1]).collect());
     }
+    if let Some(opacities) = attributes.opacities.as_ref().filter(|some| !some.is_empty()) {
+        all.opacities = Some(opacities.iter().map(|o| f32::from(*o) / 255.0).cycle().take(n).collect());
+    }
     all
 }
 
@@ -140,6 +144,7 @@ fuzz_target!(|input: (Vec<Shape>, Attributes, Picture, Rules, u64)| {
     let options = options(&rules, k);
     let facts = invariants::octrees_are_sound(&points)
         .and_then(|()| invariants::frames_are_sound(&points, &view, &options))
+        .and_then(|()| invariants::opaque_points_need_no_opacities(&points, &view, &options))
         .and_then(|()| invariants::order_does_not_matter(&points, &view, &options, seed))
         .and_then(|()| invariants::culling_changes_nothing(&points, &view, &options))
         .and_then(|()| invariants::one_color_stays_one_color(&points, &view, &options, [0.25, 1.0, 0.7]));

@@ -22,6 +22,8 @@ pub(crate) struct Attributes {
     /// Share of the surface, square units.
     pub(crate) areas: Vec<f32>,
     pub(crate) colors: Option<Vec<[f32; 3]>>,
+    /// None if all points are opaque.
+    pub(crate) opacities: Option<Vec<f32>>,
 }
 
 impl Attributes {
@@ -31,6 +33,10 @@ impl Attributes {
 
     pub(crate) fn normal(&self, point: usize) -> Vec3 {
         Vec3::from_array([0, 1, 2].map(|axis| self.normals[axis][point]))
+    }
+
+    pub(crate) fn opacity(&self, point: usize) -> f32 {
+        self.opacities.as_ref().map_or(1.0, |all| all[point])
     }
 
     /// Reorders the values: the one that was at `places[i]` goes to place i.
@@ -43,6 +49,7 @@ impl Attributes {
         reordered(&mut self.radii, places);
         reordered(&mut self.areas, places);
         self.colors.iter_mut().for_each(|list| reordered(list, places));
+        self.opacities.iter_mut().for_each(|list| reordered(list, places));
     }
 }
 
@@ -73,12 +80,14 @@ pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, V
     };
     let radii: Vec<f32> = radii.into_iter().map(|r| r.clamp(SMALLEST, 1e6)).collect();
     let areas = areas::of_cloud(&places, &normals, &radii, two_sided);
+    let opacities = points.opacities.filter(|all| all.iter().any(|&opacity| opacity < 1.0));
     let attributes = Attributes {
         cells: [0, 1, 2].map(|axis| keys.iter().map(|&(_, i)| cells[i as usize][axis]).collect()),
         normals: [0, 1, 2].map(|axis| normals.iter().map(|n| n[axis]).collect()),
         radii,
         areas: areas.into_iter().map(|a| a.clamp(SMALLEST * SMALLEST, 1e12)).collect(),
         colors: points.colors.map(|given| keys.iter().map(|&(_, i)| given[i as usize]).collect()),
+        opacities: opacities.map(|given| keys.iter().map(|&(_, i)| given[i as usize]).collect()),
     };
     (attributes, keys.into_iter().map(|key| key.0).collect())
 }
@@ -89,6 +98,7 @@ fn compare(points: &Points<'_>, cells: &[[u32; 3]], a: usize, b: usize) -> Order
     let normal = |i: usize| points.normals.map_or([0.0; 3], |all| all[i].to_array());
     let color = |i: usize| points.colors.map_or([0.0; 3], |all| all[i]);
     let radius = |i: usize| points.radii.map_or(0.0, |all| all[i]);
+    let opacity = |i: usize| points.opacities.map_or(1.0, |all| all[i]);
     let by = |p: [f32; 3], q: [f32; 3]| {
         p.iter().zip(&q).map(|(p, q)| p.total_cmp(q)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
     };
@@ -106,4 +116,5 @@ fn compare(points: &Points<'_>, cells: &[[u32; 3]], a: usize, b: usize) -> Order
         .then_with(|| by(normal(a), normal(b)))
         .then_with(|| by(color(a), color(b)))
         .then_with(|| radius(a).total_cmp(&radius(b)))
+        .then_with(|| opacity(a).total_cmp(&opacity(b)))
 }

@@ -36,6 +36,7 @@ pub(crate) enum Value {
     Right,
     Top,
     Bottom,
+    Opacity,
     Kept,
 }
 
@@ -83,6 +84,7 @@ impl Projected {
             rows: [whole(get(Value::Top)), whole(get(Value::Bottom))],
             sharpness: get(Value::Sharpness),
             color: [get(Value::Red), get(Value::Green), get(Value::Blue)],
+            opacity: get(Value::Opacity),
             normal: [get(Value::NormalX), get(Value::NormalY), get(Value::NormalZ)],
         }
     }

@@ -28,7 +28,7 @@ impl Cloud {
     /// # Errors
     /// [`SurfelError::NoPoints`], [`SurfelError::TooManyPoints`], [`SurfelError::LengthMismatch`],
     /// [`SurfelError::PointNotFinite`], [`SurfelError::PointTooFar`], [`SurfelError::BadNormal`],
-    /// [`SurfelError::BadColor`], [`SurfelError::BadRadius`].
+    /// [`SurfelError::BadColor`], [`SurfelError::BadRadius`], [`SurfelError::BadOpacity`].
     pub fn new(points: &Points<'_>) -> Result<Self, SurfelError> {
         points.check()?;
         let lattice = Lattice::around(points.positions);
@@ -39,7 +39,7 @@ impl Cloud {
         let two_sided = points.normals.is_none();
         let mut nodes = nodes(&cubes, &generations, &links, &attributes, two_sided);
         nodes.iter_mut().zip(pairs).for_each(|(node, pairs)| node.pairs = pairs);
-        let links = PackedLinks::new(&links, &nodes, points.colors.is_some());
+        let links = PackedLinks::new(&links, &nodes, &attributes);
         Ok(Self { lattice, points: attributes, nodes, links, two_sided })
     }
 
@@ -54,6 +54,12 @@ impl Cloud {
     #[must_use]
     pub fn has_colors(&self) -> bool {
         self.points.colors.is_some()
+    }
+
+    /// Whether any point is less than opaque.
+    #[must_use]
+    pub fn has_opacities(&self) -> bool {
+        self.points.opacities.is_some()
     }
 
     /// Whether normals were estimated; such a cloud is seen from both sides.
@@ -74,7 +80,7 @@ impl Cloud {
         (area / self.len() as f64).sqrt() * self.lattice.side
     }
 
-    /// Bytes per point besides position, normal, color and radius: octree, links and areas.
+    /// Bytes per point besides position, normal, color, radius and opacity: octree, links and areas.
     #[must_use]
     pub fn overhead_per_point(&self) -> f64 {
         let bytes = self.links.bytes()

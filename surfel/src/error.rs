@@ -105,6 +105,16 @@ pub enum SurfelError {
         /// As given.
         radius: f32,
     },
+    /// An opacity is not a number, or not from 0 to 1.
+    #[error(
+        "the opacity of point {index} is {value}; it must be from 0 to 1 (leave opacities out if all points are opaque)"
+    )]
+    BadOpacity {
+        /// Number of the point.
+        index: usize,
+        /// As given.
+        value: f32,
+    },
     /// A side of the picture is above [`Renderer::LARGEST_SIDE`](crate::Renderer::LARGEST_SIDE).
     #[error("a picture of {width}×{height} pixels cannot be drawn: each side must be at most 16384")]
     TooLarge {

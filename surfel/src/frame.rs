@@ -64,7 +64,7 @@ impl Frame {
     }
 
     /// Distance from the eye along the view direction, world units, of the nearest surface that, with those before it,
-    /// covers half the pixel or more; `f32::INFINITY` where there is none.
+    /// keeps back half the light of the pixel or more; `f32::INFINITY` where there is none.
     #[must_use]
     pub fn depth(&self) -> &[f32] {
         &self.depth

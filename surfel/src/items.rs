@@ -22,8 +22,10 @@ pub(crate) struct Items {
     pub(crate) areas: Values,
     /// The way between the places of a pair, times their standard deviation in shares of it; 0 for one item.
     pub(crate) spreads: [Values; 3],
-    /// Colors without light, if points have any.
+    /// Colors without light, if points have any; premultiplied by the opacity.
     pub(crate) paint: [Values; 3],
+    /// 1 unless points have opacities.
+    pub(crate) opacities: Values,
 }
 
 impl Items {
@@ -34,6 +36,7 @@ impl Items {
         areas: [0.0; 2 * BATCH],
         spreads: [[0.0; 2 * BATCH]; 3],
         paint: [[0.0; 2 * BATCH]; 3],
+        opacities: [1.0; 2 * BATCH],
     };
 
     /// Takes items of a node, at most [`BATCH`] discs.
@@ -87,6 +90,9 @@ impl NullaryFnOnce for Take<'_> {
         } else {
             discs.take_links(&cloud.links, node, run.items.clone());
         }
+        if !cloud.has_opacities() {
+            discs.opacities.fill(1.0);
+        }
         if run.in_pairs {
             discs.unite();
         } else {
@@ -109,7 +115,10 @@ impl Items {
         self.radii[..count].copy_from_slice(&points.radii[items.clone()]);
         self.areas[..count].copy_from_slice(&points.areas[items.clone()]);
         if let Some(colors) = &points.colors {
-            self.take_colors(colors[items].iter().copied());
+            self.take_colors(colors[items.clone()].iter().copied());
+        }
+        if let Some(opacities) = &points.opacities {
+            self.take_opacities(opacities[items].iter().copied());
         }
     }
 
@@ -131,7 +140,10 @@ impl Items {
             (*radius, *to) = (radius_of_area(area), area);
         }
         if let Some(colors) = &links.colors {
-            self.take_colors(colors[items].iter().map(|&c| packed::unpack_color(c)));
+            self.take_colors(colors[items.clone()].iter().map(|&c| packed::unpack_color(c)));
+        }
+        if let Some(opacities) = &links.opacities {
+            self.take_opacities(opacities[items].iter().map(|&o| packed::unpack_share(o)));
         }
     }
 
@@ -140,6 +152,17 @@ impl Items {
         let [red, green, blue] = &mut self.paint;
         for (((red, green), blue), color) in red.iter_mut().zip(green).zip(blue).zip(colors) {
             [*red, *green, *blue] = color;
+        }
+    }
+
+    /// After the colors, which become premultiplied.
+    #[inline(always)]
+    fn take_opacities(&mut self, opacities: impl Iterator<Item = f32>) {
+        let [red, green, blue] = &mut self.paint;
+        let paint = red.iter_mut().zip(green).zip(blue);
+        for ((((red, green), blue), to), opacity) in paint.zip(&mut self.opacities).zip(opacities) {
+            *to = opacity;
+            (*red, *green, *blue) = (*red * opacity, *green * opacity, *blue * opacity);
         }
     }
 
@@ -162,7 +185,8 @@ impl Items {
                 spreads[i] = (offsets[2 * i + 1] - offsets[2 * i]) * deviations[i];
             }
         }
-        for values in self.offsets.iter_mut().chain(&mut self.normals).chain(&mut self.paint) {
+        let others = [&mut self.opacities].into_iter().chain(&mut self.paint);
+        for values in self.offsets.iter_mut().chain(&mut self.normals).chain(others) {
             for i in 0..BATCH {
                 let (first, second) = (values[2 * i], values[2 * i + 1]);
                 values[i] = first + (second - first) * shares[i];

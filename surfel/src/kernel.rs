@@ -1,7 +1,7 @@
 //! Draws discs into a tile: nearest depths first, then weighted sums.
 
 use crate::grid::SQUARE;
-use crate::layer::{Depths, LANES, Layer, Normals, Open, PITCH, RAMP, Sums};
+use crate::layer::{Depths, Extras, LANES, Layer, Open, PITCH, RAMP, Sums};
 use crate::splat::Splat;
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
@@ -27,7 +27,7 @@ pub(crate) fn sharpness_of_nearest(layer: &mut Layer, splats: &[Splat]) {
 
 /// Adds up the splats with these numbers that belong to the nearest surface, in the `FIRST` layer or else in blocks
 /// that are `open`; `behind` gets the numbers of those that have parts behind it. Discs may lie behind a surface by
-/// `slack` more than their thickness (bent depth). Normals are added up if they are `WANTED`.
+/// `slack` more than their thickness (bent depth). Extras are added up if they are `WANTED`.
 pub(crate) fn add<const FIRST: bool, const WANTED: bool>(
     layer: &mut Layer,
     splats: &[Splat],
@@ -157,8 +157,8 @@ impl<const FIRST: bool, const WANTED: bool, I: Iterator<Item = u32>> WithSimd fo
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Layer { depths, sums, normals } = self.layer;
-        let (depths, sums, normals) = (&depths[..], &mut sums[..], &mut normals[..]);
+        let Layer { depths, sums, extras, .. } = self.layer;
+        let (depths, sums, extras) = (&depths[..], &mut sums[..], &mut extras[..]);
         let none = simd.splat_f32s(0.0);
         for number in self.numbers {
             let s = &self.splats[number as usize];
@@ -186,7 +186,7 @@ impl<const FIRST: bool, const WANTED: bool, I: Iterator<Item = u32>> WithSimd fo
                         let weights = simd.mul_f32s(weight, kernel);
                         add_block(simd, s, i, weights, depth, &mut sums[row * PITCH + column]);
                         if WANTED {
-                            add_normals(simd, s, i, weights, &mut normals[row * PITCH + column]);
+                            add_extras(simd, s, i, weights, &mut extras[row * PITCH + column]);
                         }
                     }
                 }
@@ -213,10 +213,11 @@ fn add_block<S: Simd>(simd: S, s: &Splat, i: usize, weights: S::f32s, depths: S:
 }
 
 #[inline(always)]
-fn add_normals<S: Simd>(simd: S, s: &Splat, i: usize, weights: S::f32s, block: &mut Normals) {
-    for (sums, value) in block.0.iter_mut().zip(s.normal) {
+fn add_extras<S: Simd>(simd: S, s: &Splat, i: usize, weights: S::f32s, block: &mut Extras) {
+    for (sums, value) in block.normals.iter_mut().zip(s.normal) {
         add_value(simd, value, weights, &mut S::as_mut_simd_f32s(sums).0[i]);
     }
+    add_value(simd, s.opacity, weights, &mut S::as_mut_simd_f32s(&mut block.opacity).0[i]);
 }
 
 #[inline(always)]

@@ -34,13 +34,16 @@ impl Sums {
     pub(crate) const NOTHING: Self = Self([[0.0; LANES]; 6]);
 }
 
-/// Weighted sums of normals (in the picture's axes) of a block.
+/// Weighted sums of a block that not every frame has: normals (in the picture's axes) and opacity.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-pub(crate) struct Normals(pub(crate) [Lanes; 3]);
+pub(crate) struct Extras {
+    pub(crate) normals: [Lanes; 3],
+    pub(crate) opacity: Lanes,
+}
 
-impl Normals {
-    pub(crate) const NOTHING: Self = Self([[0.0; LANES]; 3]);
+impl Extras {
+    pub(crate) const NOTHING: Self = Self { normals: [[0.0; LANES]; 3], opacity: [0.0; LANES] };
 }
 
 /// What a block shows while layers are laid under one another.
@@ -52,19 +55,27 @@ pub(crate) struct Pixels {
     /// Bent depth and normal (in the picture's axes) of the layer that made it half opaque; the depth is +∞ before.
     pub(crate) depth: Lanes,
     pub(crate) normal: [Lanes; 3],
+    /// Share that surfaces cover, however opaque; untouched in clouds without opacities, where it is the opacity.
+    pub(crate) covered: Lanes,
 }
 
 impl Pixels {
-    pub(crate) const EMPTY: Self =
-        Self { color: [[0.0; LANES]; 4], depth: [f32::INFINITY; LANES], normal: [[0.0; LANES]; 3] };
+    pub(crate) const EMPTY: Self = Self {
+        color: [[0.0; LANES]; 4],
+        depth: [f32::INFINITY; LANES],
+        normal: [[0.0; LANES]; 3],
+        covered: [0.0; LANES],
+    };
 }
 
 /// Depths and sums of the layer that is being drawn.
 pub(crate) struct Layer {
     pub(crate) depths: Vec<Depths>,
     pub(crate) sums: Vec<Sums>,
-    /// Untouched unless normals are asked for.
-    pub(crate) normals: Vec<Normals>,
+    /// Untouched unless normals are asked for or the cloud has opacities.
+    pub(crate) extras: Vec<Extras>,
+    /// Whether the cloud has opacities.
+    pub(crate) is_clear: bool,
 }
 
 impl Layer {
@@ -74,16 +85,17 @@ impl Layer {
         Self {
             depths: vec![depths; count],
             sums: vec![Sums::NOTHING; count],
-            normals: vec![Normals::NOTHING; count],
+            extras: vec![Extras::NOTHING; count],
+            is_clear: false,
         }
     }
 
-    /// Makes these sums empty, with those of normals if they are `WANTED`.
+    /// Makes these sums empty, with the extras if they are `WANTED`.
     #[inline(always)]
     pub(crate) fn clear_sums<const WANTED: bool>(&mut self, blocks: Range<usize>) {
         self.sums[blocks.clone()].fill(Sums::NOTHING);
         if WANTED {
-            self.normals[blocks].fill(Normals::NOTHING);
+            self.extras[blocks].fill(Extras::NOTHING);
         }
     }
 

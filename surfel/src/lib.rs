@@ -41,7 +41,7 @@
 //! * [`Renderer`] takes each part of the cloud from the coarsest level on which about one point falls on a pixel, or,
 //!   out of focus, points are as far apart as the blur is wide. Between two levels it draws pairs of neighbours as one
 //!   disc. Discs become ellipses with exact perspective and are lit; in each pixel those of the nearest surface are
-//!   averaged and composited over what is behind.
+//!   averaged and composited over what is behind. Points may have opacities ([`Points::with_opacities`]).
 //! * [`Focus`]: the paper's parameter d (\[3\], §3), or a thin lens, of which d = aperture/focus is the same.
 //! * [`Procedure::Paper`]: what the paper does (\[3\]), for comparison.
 //!

@@ -1,7 +1,7 @@
 //! Coarser levels: links to a few of a cube's points, each of which represents the points around it.
 //!
-//! A link names the point that is nearest to the middle of those that it represents. Its place, normal and color are
-//! their means and its area is their sum, like the prefiltered textures of \[1\], so that coarse levels are not noisy.
+//! A link names the point that is nearest to the middle of those that it represents. Its place, normal, color and
+//! opacity are their means and its area is their sum, like the prefiltered textures of \[1\], so that coarse levels are not noisy.
 
 use crate::attributes::Attributes;
 use crate::lattice::{between, morton, moved};
@@ -23,19 +23,23 @@ pub(crate) struct Link {
     /// Area of all points that it represents, square units.
     pub(crate) area: f32,
     pub(crate) normal: Vec3,
+    /// Premultiplied by the opacity.
     pub(crate) color: Vec3,
+    pub(crate) opacity: f32,
 }
 
 impl Link {
     /// A link that represents one point only.
     fn of_point(points: &Attributes, point: usize) -> Self {
-        let color = points.colors.as_ref().map_or(Vec3::ZERO, |all| Vec3::from_array(all[point]));
+        let opacity = points.opacity(point);
+        let color = points.colors.as_ref().map_or(Vec3::ZERO, |all| Vec3::from_array(all[point]) * opacity);
         Self {
             point: point as u32,
             cell: points.cell(point),
             area: points.areas[point],
             normal: points.normal(point),
             color,
+            opacity,
         }
     }
 }
@@ -140,6 +144,7 @@ fn merged(links: &[Link]) -> Link {
     let mean = links.iter().map(|l| place(l) * (l.area / area)).sum::<Vec3>();
     let normal = links.iter().map(|l| l.normal * (l.area / area)).sum::<Vec3>();
     let color = links.iter().map(|l| l.color * (l.area / area)).sum::<Vec3>();
+    let opacity = links.iter().map(|l| l.opacity * (l.area / area)).sum::<f32>();
     let distance2 = |l: &Link| place(l).distance_squared(mean);
     let nearest = links
         .iter()
@@ -151,5 +156,6 @@ fn merged(links: &[Link]) -> Link {
         area,
         normal: normal.try_normalize().unwrap_or(nearest.normal),
         color,
+        opacity,
     }
 }

@@ -1,4 +1,4 @@
-//! Directions and colors in 32 bits, for links.
+//! Directions and colors in 32 bits and shares in 16, for links.
 
 use glam::Vec3;
 
@@ -56,6 +56,20 @@ pub(crate) fn unpack_color(packed: u32) -> [f32; 3] {
     [0, 9, 18].map(|shift| (packed >> shift & 0x1ff) as f32 * scale)
 }
 
+/// Steps of a share.
+const SHARES: f32 = 65535.0;
+
+/// A share, 0 to 1, in 16 bits; 0 and 1 are exact.
+pub(crate) fn pack_share(share: f32) -> u16 {
+    (share * SHARES).round() as u16
+}
+
+/// The share again.
+#[inline(always)]
+pub(crate) fn unpack_share(packed: u16) -> f32 {
+    f32::from(packed) / SHARES
+}
+
 /// The bias of the exponent of an `f32`.
 const F32_BIAS: i32 = f32::MAX_EXP - 1;
 
@@ -76,6 +90,14 @@ mod tests {
             assert_eq!(unpack_way(pack_direction(axis)).normalize(), axis);
             assert_eq!(unpack_way(pack_direction(-axis)).normalize(), -axis);
         }
+    }
+
+    #[test]
+    fn shares_survive() {
+        for share in [0.0, 1.0, 0.5, 1e-9, 0.999_999, 1.0 / 3.0] {
+            assert!((unpack_share(pack_share(share)) - share).abs() <= 0.5 / SHARES, "{share}");
+        }
+        assert_eq!([0.0, 1.0].map(|share| unpack_share(pack_share(share))), [0.0, 1.0]);
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! All links of a cloud in little memory.
 
+use crate::attributes::Attributes;
 use crate::links::Link;
 use crate::node::Node;
 use crate::packed;
 
-/// The links of all cubes, packed: 18 bytes each, 22 with color.
+/// The links of all cubes, packed: 18 bytes each, 4 more with color, 2 more with opacity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PackedLinks {
     pub(crate) points: Vec<u32>,
@@ -13,11 +14,12 @@ pub(crate) struct PackedLinks {
     pub(crate) areas: Vec<f32>,
     pub(crate) normals: Vec<u32>,
     pub(crate) colors: Option<Vec<u32>>,
+    pub(crate) opacities: Option<Vec<u16>>,
 }
 
 impl PackedLinks {
     /// `nodes` are those of the cubes.
-    pub(crate) fn new(links: &[Vec<Link>], nodes: &[Node], colored: bool) -> Self {
+    pub(crate) fn new(links: &[Vec<Link>], nodes: &[Node], points: &Attributes) -> Self {
         let all = || links.iter().flatten();
         let with_nodes =
             || nodes.iter().zip(links).flat_map(|(node, list)| list.iter().map(move |l| (node, l)));
@@ -31,7 +33,11 @@ impl PackedLinks {
             places: [0, 1, 2].map(place),
             areas: all().map(|l| l.area).collect(),
             normals: all().map(|l| packed::pack_direction(l.normal)).collect(),
-            colors: colored.then(|| all().map(|l| packed::pack_color(l.color.to_array())).collect()),
+            colors: points.colors.as_ref().map(|_| all().map(|l| packed::pack_color(color_of(l))).collect()),
+            opacities: points
+                .opacities
+                .as_ref()
+                .map(|_| all().map(|l| packed::pack_share(l.opacity)).collect()),
         }
     }
 
@@ -40,5 +46,11 @@ impl PackedLinks {
         4 * (self.points.len() + self.areas.len() + self.normals.len())
             + 2 * 3 * self.points.len()
             + 4 * self.colors.as_ref().map_or(0, Vec::len)
+            + 2 * self.opacities.as_ref().map_or(0, Vec::len)
     }
+}
+
+/// The color of what is opaque of a link. Colors and opacities are rounded apart, so that no color exceeds its opacity.
+fn color_of(link: &Link) -> [f32; 3] {
+    if link.opacity > 0.0 { (link.color / link.opacity).to_array() } else { [0.0; 3] }
 }

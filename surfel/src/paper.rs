@@ -11,7 +11,8 @@
 //!    differ, surfaces at different depths meet, and every link is weighted with the Gaussian of its own radius.
 //!
 //! Departures: blurred pixels are as opaque as the share of the filter that the first z-buffer covers (the paper's
-//! figures have no background to tell), and a disc is never so small that it misses all pixel centres.
+//! figures have no background to tell), and a disc is never so small that it misses all pixel centres. Points with
+//! opacities have their mean, as of colors; nothing is seen behind them, since the z-buffers know one surface.
 
 use crate::camera::Camera;
 use crate::frame::Band;
@@ -42,15 +43,23 @@ struct PaperLink {
     /// With depth of field, pixels.
     radius: f32,
     normal: Vec3,
-    /// Shaded.
+    /// Shaded, premultiplied by the opacity.
     color: Vec3,
+    opacity: f32,
 }
 
 impl PaperLink {
-    const NONE: Self = Self { depth: f32::INFINITY, radius: 0.0, normal: Vec3::ZERO, color: Vec3::ZERO };
+    const NONE: Self =
+        Self { depth: f32::INFINITY, radius: 0.0, normal: Vec3::ZERO, color: Vec3::ZERO, opacity: 0.0 };
 
     fn of(s: &Splat) -> Self {
-        Self { depth: s.depth, radius: s.sharpness, normal: s.normal.into(), color: s.color.into() }
+        Self {
+            depth: s.depth,
+            radius: s.sharpness,
+            normal: s.normal.into(),
+            color: s.color.into(),
+            opacity: s.opacity,
+        }
     }
 }
 
@@ -137,9 +146,10 @@ pub(crate) fn reconstruct(scene: &Scene<'_>, cells: &[PaperPixel], band: &mut Ba
         for column in 0..width {
             let i = row * width + column;
             let filtered = Filter::new(scene, cells, (width, height), (column, band.first_row + row)).run();
-            let [r, g, b] = (filtered.color * filtered.alpha).to_array();
-            band.color[i] = [r, g, b, filtered.alpha];
-            let shown = filtered.alpha >= 0.5;
+            let [r, g, b] = (filtered.color * filtered.covered).to_array();
+            let alpha = filtered.covered * filtered.opacity;
+            band.color[i] = [r, g, b, alpha];
+            let shown = alpha >= 0.5;
             band.depth[i] = if shown { scene.camera.world_depth(filtered.depth) } else { f32::INFINITY };
             if let Some(normals) = &mut band.normal {
                 normals[i] = if shown { scene.shader.in_world(filtered.normal) } else { [0.0; 3] };
@@ -150,10 +160,19 @@ pub(crate) fn reconstruct(scene: &Scene<'_>, cells: &[PaperPixel], band: &mut Ba
 }
 
 struct Filtered {
+    /// Premultiplied by the opacity.
     color: Vec3,
+    opacity: f32,
     normal: Vec3,
     depth: f32,
-    alpha: f32,
+    covered: f32,
+}
+
+impl Filtered {
+    /// Of one link, all over the pixel.
+    fn of(link: &PaperLink, depth: f32) -> Self {
+        Self { color: link.color, opacity: link.opacity, normal: link.normal, depth, covered: 1.0 }
+    }
 }
 
 /// The filter over one pixel.
@@ -172,7 +191,7 @@ impl<'a> Filter<'a> {
     fn run(&self) -> Filtered {
         let cell = &self.cells[self.at.1 * self.size.0 + self.at.0];
         let depth = if cell.near[0] < f32::INFINITY { cell.near[0] } else { cell.near[1] };
-        let blank = Filtered { color: Vec3::ZERO, normal: Vec3::ZERO, depth, alpha: 0.0 };
+        let blank = Filtered { color: Vec3::ZERO, opacity: 0.0, normal: Vec3::ZERO, depth, covered: 0.0 };
         if depth == f32::INFINITY {
             return blank;
         }
@@ -181,7 +200,7 @@ impl<'a> Filter<'a> {
         let thickness = self.camera.bent_length(cell.radius, depth);
         let differ = (cell.near[0] - cell.near[1]).abs() > thickness || cell.near[0] == f32::INFINITY;
         if link.depth < f32::INFINITY && !blurred && !differ {
-            return Filtered { color: link.color, normal: link.normal, depth, alpha: 1.0 };
+            return Filtered::of(link, depth);
         }
         let radius = cell.radius.clamp(1.0, WIDEST_PX);
         let mut sums = Sums::default();
@@ -201,8 +220,9 @@ impl<'a> Filter<'a> {
             // No link in reach: a covered pixel stays opaque.
             return self.nearest_link(radius, depth).unwrap_or(blank);
         }
-        let alpha = if blurred || differ { sums.covered / sums.all } else { 1.0 };
-        Filtered { color: sums.color / sums.weight, normal: sums.normal / sums.weight, depth, alpha }
+        let covered = if blurred || differ { sums.covered / sums.all } else { 1.0 };
+        let (color, normal) = (sums.color / sums.weight, sums.normal / sums.weight);
+        Filtered { color, opacity: sums.opacity / sums.weight, normal, depth, covered }
     }
 
     /// Calls `each` with all pixels within `radius` and their squared distances.
@@ -230,7 +250,7 @@ impl<'a> Filter<'a> {
                 nearest = Some((distance2, other.link));
             }
         });
-        nearest.map(|(_, l)| Filtered { color: l.color, normal: l.normal, depth, alpha: 1.0 })
+        nearest.map(|(_, link)| Filtered::of(&link, depth))
     }
 }
 
@@ -243,6 +263,7 @@ fn gaussian(distance2: f32, radius: f32) -> f32 {
 struct Sums {
     weight: f32,
     color: Vec3,
+    opacity: f32,
     normal: Vec3,
     /// Of the filter: all, and where there is surface.
     all: f32,
@@ -253,6 +274,7 @@ impl Sums {
     fn add(&mut self, link: &PaperLink, weight: f32) {
         self.weight += weight;
         self.color += link.color * weight;
+        self.opacity += link.opacity * weight;
         self.normal += link.normal * weight;
     }
 }

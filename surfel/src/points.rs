@@ -14,13 +14,15 @@ pub struct Points<'a> {
     pub(crate) colors: Option<&'a [[f32; 3]]>,
     /// Discs of these radii leave no gap; world units, above 0. Without them they are estimated.
     pub(crate) radii: Option<&'a [f32]>,
+    /// 0 to 1. Without them all points are opaque.
+    pub(crate) opacities: Option<&'a [f32]>,
 }
 
 impl<'a> Points<'a> {
     /// Points without attributes.
     #[must_use]
     pub const fn new(positions: &'a [DVec3]) -> Self {
-        Self { positions, normals: None, colors: None, radii: None }
+        Self { positions, normals: None, colors: None, radii: None, opacities: None }
     }
 
     /// Gives them normals.
@@ -41,6 +43,13 @@ impl<'a> Points<'a> {
     #[must_use]
     pub const fn with_radii(mut self, radii: &'a [f32]) -> Self {
         self.radii = Some(radii);
+        self
+    }
+
+    /// Gives them opacities, 0 to 1: the share of light that a surface of such points keeps back.
+    #[must_use]
+    pub const fn with_opacities(mut self, opacities: &'a [f32]) -> Self {
+        self.opacities = Some(opacities);
         self
     }
 
@@ -66,6 +75,7 @@ impl<'a> Points<'a> {
             ("normals", self.normals.map(<[_]>::len)),
             ("colors", self.colors.map(<[_]>::len)),
             ("radii", self.radii.map(<[_]>::len)),
+            ("opacities", self.opacities.map(<[_]>::len)),
         ];
         for (what, length) in lengths {
             if let Some(length) = length.filter(|&l| l != count) {
@@ -97,6 +107,10 @@ impl<'a> Points<'a> {
         if let Some(index) = self.radii.and_then(|all| all.iter().position(|r| !radius(r))) {
             let radius = self.radii.map_or(0.0, |all| all[index]);
             return Err(SurfelError::BadRadius { index, radius });
+        }
+        let opacities = self.opacities.unwrap_or_default();
+        if let Some(index) = opacities.iter().position(|o| !(0.0..=1.0).contains(o)) {
+            return Err(SurfelError::BadOpacity { index, value: opacities[index] });
         }
         Ok(())
     }

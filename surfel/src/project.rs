@@ -58,7 +58,8 @@ impl WithSimd for Project<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { lanes, scene, shape, map, count } = self;
-        let Projector { discs: Items { offsets, normals, radii, areas, spreads, paint }, out } = lanes;
+        let Projector { discs: Items { offsets, normals, radii, areas, spreads, paint, opacities }, out } =
+            lanes;
         let vector = |all: &Values, i: usize| Vector::new(simd, S::as_simd_f32s(all).0[i]);
         let vectors =
             |all: &[Values; 3], i: usize| [vector(&all[0], i), vector(&all[1], i), vector(&all[2], i)];
@@ -79,9 +80,12 @@ impl WithSimd for Project<'_> {
             }
             project(simd, &placed, [vector(radii, i), vector(areas, i)], (&scene.camera, shape, map), out, i);
             let at = (placed.x + map.first[0], placed.y + map.first[1]);
-            let [red, green, blue] = scene.shader.lit(simd, vectors(paint, i), placed.normal, at);
-            for (value, shaded) in [(Value::Red, red), (Value::Green, green), (Value::Blue, blue)] {
-                out.set(i, value, shaded);
+            let opacity = vector(opacities, i);
+            let [red, green, blue] = scene.shader.lit((vectors(paint, i), opacity), placed.normal, at);
+            for (value, result) in
+                [(Value::Red, red), (Value::Green, green), (Value::Blue, blue), (Value::Opacity, opacity)]
+            {
+                out.set(i, value, result);
             }
         }
     }

@@ -4,7 +4,7 @@ use crate::frame::Band;
 use crate::grid::{TileRect, WIDTH};
 use crate::layer::{LANES, Lanes, Layer, Open, PITCH, Pixels, Touched};
 use crate::shade::{INDEPENDENT, LEAST_LIGHT, Shader, opacity};
-use crate::vector::Vector;
+use crate::vector::{Real, Vector};
 use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
 
 /// Weights below this count as 0: their inverse could overflow.
@@ -14,7 +14,8 @@ const LEAST_WEIGHT: f32 = 1e-30;
 const LEAST_INSIDE: f32 = 0.25;
 
 /// Composites a layer behind what is in `pixels` (nothing before the `FIRST` layer), and clears its sums. Returns the
-/// blocks in which pixels that it touched are not yet opaque. Normals are kept if they are `WANTED`.
+/// blocks in which pixels that it touched are not yet opaque. Normals are kept, and opacities looked at, if extras are
+/// `WANTED`.
 pub(crate) fn resolve<const FIRST: bool, const WANTED: bool>(
     layer: &mut Layer,
     pixels: &mut [Pixels],
@@ -66,11 +67,16 @@ impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANT
                     let under = Under { alpha, is_there, i };
                     let color = [mean(&color[0]), mean(&color[1]), mean(&color[2])];
                     let pixels = &mut pixels[index];
-                    let (is_first, after) = under.blend::<FIRST>(simd, &mut pixels.color, color);
+                    let (is_first, after) = if WANTED && layer.is_clear {
+                        let opacity = mean(&layer.extras[index].opacity).at_most(1.0);
+                        under.blend_clear::<FIRST>(simd, pixels, (color, opacity))
+                    } else {
+                        under.blend::<FIRST>(simd, &mut pixels.color, color)
+                    };
                     let empty = f32::INFINITY;
                     keep::<S, FIRST>(mean(depth), is_first, empty, &mut pixels.depth, i);
                     if WANTED {
-                        for (kept, sums) in pixels.normal.iter_mut().zip(&layer.normals[index].0) {
+                        for (kept, sums) in pixels.normal.iter_mut().zip(&layer.extras[index].normals) {
                             keep::<S, FIRST>(mean(sums), is_first, 0.0, kept, i);
                         }
                     }
@@ -121,9 +127,48 @@ impl<S: Simd> Under<S> {
             let added = share * color.if_set(self.is_there, 0.0);
             *channel = if FIRST { added } else { Vector::new(simd, *channel) + added }.lanes;
         }
+        (self.became_half(simd, before, after), after)
+    }
+
+    /// The same where surfaces are opaque to a share; `color` is premultiplied by it.
+    ///
+    /// What of this surface lies beside those before it is `beside`, as above. The rest lies behind what they cover, which
+    /// lets through what covers less than it keeps back.
+    #[inline(always)]
+    fn blend_clear<const FIRST: bool>(
+        &self,
+        simd: S,
+        pixels: &mut Pixels,
+        (color, own): ([Vector<S>; 3], Vector<S>),
+    ) -> (S::m32s, Vector<S>) {
+        let Pixels { color: [channels @ .., opacity], covered, .. } = pixels;
+        let opacity = &mut S::as_mut_simd_f32s(opacity).0[self.i];
+        let covered = &mut S::as_mut_simd_f32s(covered).0[self.i];
+        let zero = Vector::all(simd, 0.0);
+        let (before, by_all) =
+            if FIRST { (zero, zero) } else { (Vector::new(simd, *opacity), Vector::new(simd, *covered)) };
+        let overlap = -(by_all * INDEPENDENT - 1.0);
+        let beside = (self.alpha * overlap).min(-(by_all - 1.0)).if_set(self.is_there, 0.0);
+        let behind = self.alpha.if_set(self.is_there, 0.0) - beside;
+        let through = (by_all - before).at_least(0.0) / by_all.at_least(f32::MIN_POSITIVE);
+        // No more than there is light left, by rounding either.
+        let seen = (beside + behind * through).min(-(before - 1.0)).at_least(0.0);
+        let after = before + seen * own.if_set(self.is_there, 0.0);
+        (*opacity, *covered) = (after.lanes, (by_all + beside).lanes);
+        for (channel, color) in channels.iter_mut().zip(color) {
+            let channel = &mut S::as_mut_simd_f32s(channel).0[self.i];
+            let added = seen * color.if_set(self.is_there, 0.0);
+            *channel = if FIRST { added } else { Vector::new(simd, *channel) + added }.lanes;
+        }
+        (self.became_half(simd, before, after), after)
+    }
+
+    /// The pixels of this surface that were less than half opaque before it, and are not after.
+    #[inline(always)]
+    fn became_half(&self, simd: S, before: Vector<S>, after: Vector<S>) -> S::m32s {
         let half = Vector::all(simd, 0.5);
         let was_open = simd.and_m32s(self.is_there, half.is_above(before));
-        (simd.and_m32s(was_open, simd.greater_than_or_equal_f32s(after.lanes, half.lanes)), after)
+        simd.and_m32s(was_open, simd.greater_than_or_equal_f32s(after.lanes, half.lanes))
     }
 }
 

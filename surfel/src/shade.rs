@@ -63,18 +63,17 @@ impl Shader {
         -(normal[0] * x + normal[1] * y + normal[2]) / (x * x + y * y + 1.0).sqrt()
     }
 
-    /// Color × (A + (1 − A)·max(0, n·l)) of surfaces at places (x, y) of the picture.
+    /// Color × (A + (1 − A)·max(0, n·l)) of surfaces at places (x, y) of the picture, premultiplied as `paint` is.
     #[inline(always)]
     pub(crate) fn lit<S: Simd>(
         &self,
-        simd: S,
-        paint: [Vector<S>; 3],
+        (paint, opacity): ([Vector<S>; 3], Vector<S>),
         normal: [Vector<S>; 3],
         at: (Vector<S>, Vector<S>),
     ) -> [Vector<S>; 3] {
         let light = self.facing(normal, at) * (1.0 - self.ambient) + self.ambient;
         let [red, green, blue] = match self.base {
-            Some(base) => base.to_array().map(|v| Vector::all(simd, v)),
+            Some(base) => base.to_array().map(|v| opacity * v),
             None => paint,
         };
         [red * light, green * light, blue * light]

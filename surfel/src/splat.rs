@@ -55,8 +55,9 @@ pub(crate) struct Splat {
     pub(crate) rows: [u8; 2],
     /// How much steeper than the kernel's an edge has to be to look sharp.
     pub(crate) sharpness: f32,
-    /// Color with its light.
+    /// Color with its light, premultiplied by the opacity.
     pub(crate) color: [f32; 3],
+    pub(crate) opacity: f32,
     /// In the picture's axes.
     pub(crate) normal: [f32; 3],
 }
@@ -80,6 +81,7 @@ impl Splat {
         rows: [0; 2],
         sharpness: 0.0,
         color: [0.0; 3],
+        opacity: 1.0,
         normal: [0.0; 3],
     };
 

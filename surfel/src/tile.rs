@@ -20,6 +20,9 @@ use std::sync::atomic::Ordering;
 /// Most layers of a pixel. All that lies behind the last but one is drawn as one layer, the last.
 const MOST_LAYERS: usize = 4;
 
+/// The same in a cloud with opacities, where more is seen behind more.
+const MOST_CLEAR_LAYERS: usize = 16;
+
 /// Squares of a tile: columns, rows.
 const SQUARES: [usize; 2] = [WIDTH / SQUARE, HEIGHT / SQUARE];
 
@@ -66,6 +69,7 @@ impl Tile {
         let mut touched = Touched::NOTHING;
         nodes.clone().for_each(|s| touched.add(columns_of(&s, rect), rows_of(&s, rect)));
         self.layer.clear_near(&touched.in_squares());
+        self.layer.is_clear = scene.cloud.has_opacities();
         self.farthest = [[Some(f32::INFINITY); SQUARES[0]]; SQUARES[1]];
         for selected in nodes {
             if scene.culling && self.hides(&selected, rect) {
@@ -81,7 +85,7 @@ impl Tile {
             band.clear(rect.x / WIDTH);
             return;
         }
-        if scene.normals {
+        if scene.normals || self.layer.is_clear {
             self.draw_layers::<true>(scene, rect, touched);
         } else {
             self.draw_layers::<false>(scene, rect, touched);
@@ -89,7 +93,7 @@ impl Tile {
         write(&self.pixels, &scene.shader, rect, band);
     }
 
-    /// Composites all layers, beginning with the splats of the first, which touch these pixels; with normals if they
+    /// Composites all layers, beginning with the splats of the first, which touch these pixels; with extras if they
     /// are `WANTED`.
     fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, rect: &TileRect, mut touched: Touched) {
         for blocks in touched.others(rect.height) {
@@ -107,7 +111,8 @@ impl Tile {
             (&open, 0.0),
         );
         open = resolve::<true, WANTED>(&mut self.layer, &mut self.pixels, rect, &touched);
-        for number in 1..MOST_LAYERS {
+        let most = if self.layer.is_clear { MOST_CLEAR_LAYERS } else { MOST_LAYERS };
+        for number in 1..most {
             if open.is_nowhere() {
                 break;
             }
@@ -115,7 +120,7 @@ impl Tile {
             if self.behind.is_empty() {
                 break;
             }
-            let slack = if number + 1 == MOST_LAYERS { f32::INFINITY } else { 0.0 };
+            let slack = if number + 1 == most { f32::INFINITY } else { 0.0 };
             open = self.next_layer::<WANTED>(rect, touched, (&open, slack));
         }
     }

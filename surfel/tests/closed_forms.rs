@@ -377,6 +377,96 @@ fn what_is_in_focus_stays_as_it_is() {
     }
 }
 
+/// A plane of 120 × 120 units about the middle of [`flat_view`], of one color and opacity.
+fn sheet(z: f64, color: [f32; 3], opacity: f32) -> OwnedPoints {
+    let plane = OwnedPoints::plane(DVec3::Z * z, DVec3::X * 0.8, DVec3::Y * 0.8, 150, 150);
+    plane.painted(|_| color).thinned(|_| opacity)
+}
+
+/// The pixels of [`flat_view`] at most `most` from its middle on either axis.
+fn middle(frame: &Frame, most: f64) -> impl Iterator<Item = usize> {
+    let inside = move |i: &usize| {
+        let (x, y) = centre(frame, *i);
+        x.abs().max(y.abs()) <= most
+    };
+    (0..frame.depth().len()).filter(inside)
+}
+
+#[test]
+fn light_passes_sheets_by_the_product_of_what_they_let_through() {
+    let opacities = [0.6, 0.25, 0.4, 0.75, 0.2f32];
+    let sheets = opacities.iter().enumerate().map(|(i, &opacity)| {
+        let color = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]][i % 3];
+        sheet(-20.0 * i as f64, color, opacity)
+    });
+    let points = sheets.reduce(|all, next| all.and(&next)).expect("sheets");
+    let (mut wanted, mut light) = ([0.0f32; 4], 1.0f32);
+    for (i, opacity) in opacities.iter().enumerate() {
+        wanted[i % 3] += light * opacity;
+        light *= 1.0 - opacity;
+    }
+    wanted[3] = 1.0 - light;
+    for level in [0.0, 1.4, 6.0] {
+        let options = with(|o| (o.ambient, o.level) = (1.0, level));
+        let drawn = frame(&points, &flat_view(), &options).unwrap();
+        for i in middle(&drawn, 40.0) {
+            let got = drawn.color()[i];
+            let off = got.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(off < 2e-3, "level {level}, pixel {i}: {got:?}, not {wanted:?}");
+            // More than half of the light is kept back by the first.
+            assert!((drawn.depth()[i] - 1000.0).abs() < 0.05, "{}", drawn.depth()[i]);
+        }
+    }
+}
+
+#[test]
+fn points_that_are_not_seen_color_nothing_at_any_level() {
+    let points = OwnedPoints::plane(DVec3::ZERO, DVec3::X * 0.4, DVec3::Y * 0.4, 300, 300);
+    // Every other column is clear and would be bright.
+    let clear = |p: DVec3| ((p.x / 0.4).floor() as i64).rem_euclid(2) == 0;
+    let points = points.painted(|p| if clear(p) { [0.0, 9.0, 9.0] } else { [0.6, 0.0, 0.0] });
+    let points = points.thinned(|p| if clear(p) { 0.0 } else { 0.5 });
+    for (procedure, level) in [
+        (Procedure::Blended, 0.0),
+        (Procedure::Blended, 1.4),
+        (Procedure::Blended, 5.0),
+        (Procedure::Paper, 1.4),
+    ] {
+        let options = with(|o| (o.ambient, o.level, o.procedure) = (1.0, level, procedure));
+        let drawn = frame(&points, &flat_view(), &options).unwrap();
+        let all: Vec<usize> = middle(&drawn, 40.0).collect();
+        let mean =
+            |c: usize| all.iter().map(|&i| f64::from(drawn.color()[i][c])).sum::<f64>() / all.len() as f64;
+        let got = [0, 1, 2, 3].map(mean);
+        // One disc per pixel, by the paper: which one is nearest to the middle is its choice, pixel by pixel.
+        let slack = if procedure == Procedure::Paper { 0.26 } else { 0.002 };
+        assert!((got[3] - 0.25).abs() < slack, "{procedure:?}, level {level}: {got:?}");
+        assert!(
+            (got[0] - 0.6 * got[3]).abs() < 1e-3 && got[1] == 0.0,
+            "{procedure:?}, level {level}: {got:?}"
+        );
+    }
+}
+
+#[test]
+fn an_edge_behind_a_clear_sheet_is_the_edge_alone_dimmed() {
+    let edge = sheet(-20.0, [0.0, 1.0, 0.0], 1.0).moved(|p| p - DVec3::X * 60.5);
+    let front = sheet(0.0, [1.0, 0.0, 0.0], 0.6);
+    // All points: the octree of both sheets has other levels than that of one.
+    let options = with(|o| (o.ambient, o.level) = (1.0, 0.0));
+    let [alone, both] = [&edge, &front.and(&edge)].map(|p| frame(p, &flat_view(), &options).unwrap());
+    let mut partly = 0;
+    for i in middle(&both, 40.0) {
+        let behind = alone.color()[i][3];
+        partly += usize::from((0.1..0.9).contains(&behind));
+        let wanted = [0.6, 0.4 * behind, 0.0, 0.6 + 0.4 * behind];
+        let got = both.color()[i];
+        let off = got.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(off < 5e-3, "pixel {i}: {got:?}, not {wanted:?}");
+    }
+    assert!(partly > 40, "{partly} pixels show the edge");
+}
+
 #[test]
 fn a_plane_has_its_depth_and_color() {
     let points = OwnedPoints::plane(DVec3::ZERO, DVec3::X * 0.8, DVec3::Y * 0.8, 120, 120);

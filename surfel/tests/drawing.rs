@@ -42,14 +42,19 @@ fn shape() -> BoxedStrategy<OwnedPoints> {
 
 fn points() -> BoxedStrategy<OwnedPoints> {
     let radius = prop_oneof![3 => 0.005..0.2f32, 1 => 1e-6..3.0f32];
-    (shape(), prop::option::of(shape()), any::<[bool; 2]>(), prop::option::weighted(0.3, radius))
-        .prop_map(|(first, second, [colored, two_sided], radius)| {
+    let opacities = prop::option::weighted(
+        0.4,
+        prop::collection::vec(prop_oneof![2 => 0.0..=1.0f32, 1 => Just(1.0), 1 => Just(0.0)], 1..5),
+    );
+    (shape(), prop::option::of(shape()), any::<[bool; 2]>(), prop::option::weighted(0.3, radius), opacities)
+        .prop_map(|(first, second, [colored, two_sided], radius, opacities)| {
             let mut all = second.map_or(first.clone(), |s| first.and(&s));
             let n = all.positions.len();
             let color = |i: usize| [i as f32 / n as f32, 0.5, (i % 7) as f32];
             all.colors = colored.then(|| (0..n).map(color).collect());
             all.normals = all.normals.filter(|_| !two_sided);
             all.radii = radius.map(|r| (0..n).map(|i| r * (1.0 + (i % 3) as f32)).collect()).or(all.radii);
+            all.opacities = opacities.map(|some| (0..n).map(|i| some[i % some.len()]).collect());
             all
         })
         .boxed()
@@ -121,6 +126,11 @@ proptest! {
     #[test]
     fn frames_are_sound(p in points(), v in view(), o in options()) {
         holds!(invariants::frames_are_sound(&p, &v, &o));
+    }
+
+    #[test]
+    fn opaque_points_need_no_opacities(p in points(), v in view(), o in options()) {
+        holds!(invariants::opaque_points_need_no_opacities(&p, &v, &o));
     }
 
     #[test]

@@ -48,6 +48,7 @@ fn attributes_are_as_many_as_positions() {
     assert_eq!(refused(&points.with_normals(&[])), mismatch("normals", 0));
     assert_eq!(refused(&points.with_colors(&[[0.5; 3]; 3])), mismatch("colors", 3));
     assert_eq!(refused(&points.with_radii(&[1.0])), mismatch("radii", 1));
+    assert_eq!(refused(&points.with_opacities(&[1.0; 3])), mismatch("opacities", 3));
 }
 
 #[test]
@@ -63,6 +64,12 @@ fn attributes_are_checked_and_named() {
     for bad in [0.0, -0.0, -1.0, f32::NAN, f32::INFINITY] {
         match refused(&points.with_radii(&[1.0, bad])) {
             SurfelError::BadRadius { index: 1, radius } => assert_eq!(radius.to_bits(), bad.to_bits()),
+            other => panic!("{other:?}"),
+        }
+    }
+    for bad in [-0.1, 1.000_001, f32::NAN, f32::INFINITY] {
+        match refused(&points.with_opacities(&[1.0, bad])) {
+            SurfelError::BadOpacity { index: 1, value } => assert_eq!(value.to_bits(), bad.to_bits()),
             other => panic!("{other:?}"),
         }
     }
@@ -187,6 +194,7 @@ fn every_error_says_something() {
         SurfelError::BadNormal { index: 7 },
         SurfelError::BadColor { index: 7 },
         SurfelError::BadRadius { index: 7, radius: -1.0 },
+        SurfelError::BadOpacity { index: 7, value: 1.5 },
         SurfelError::TooLarge { width: 70_000, height: 1 },
         SurfelError::BadOption { name: "level", value: -7.0, range: "it must be at least 0" },
     ];

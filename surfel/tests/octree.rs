@@ -58,13 +58,15 @@ fn points() -> BoxedStrategy<OwnedPoints> {
     let radius =
         prop_oneof![3 => 0.01..2.0f32, 1 => (1.0..9.0f32, -37..38).prop_map(|(r, e)| r * 10f32.powi(e))];
     let radii = prop::option::of(prop::collection::vec(radius, 1..4));
-    (positions, normals, radii, any::<bool>())
-        .prop_map(|(positions, normals, radii, colored)| {
+    let opacities = prop::option::of(prop::collection::vec(0.0..=1.0f32, 1..4));
+    (positions, normals, radii, opacities, any::<bool>())
+        .prop_map(|(positions, normals, radii, opacities, colored)| {
             let n = positions.len();
             OwnedPoints {
                 normals: normals.map(|some| some.into_iter().cycle().take(n).collect()),
                 radii: radii.map(|some| some.into_iter().cycle().take(n).collect()),
                 colors: colored.then(|| (0..n).map(|i| [i as f32, 0.5, 1.0 / (i + 1) as f32]).collect()),
+                opacities: opacities.map(|some| some.into_iter().cycle().take(n).collect()),
                 positions,
             }
         })

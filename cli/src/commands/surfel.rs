@@ -19,7 +19,7 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     let frame_options = options.frame_options().map_err(CliError::Usage)?;
     let fov_deg = options.lens_fov_deg().map_err(CliError::Usage)?;
     let (region, window) = points::check_view(&options.camera)?;
-    let set = report.stats.stage("load", || PointSet::load(&options.clouds, options.drop_invalid))?;
+    let set = report.stats.stage("load", || PointSet::load(&options.clouds, options.reading()))?;
     set.warnings.iter().for_each(|warning| report.warn(warning));
     let cloud = report.stats.stage("prepare", || set.cloud(options.discs.estimate_normals))?;
     let camera = points::camera(&options.camera, None, fov_deg, || cloud.positions())?;

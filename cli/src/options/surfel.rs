@@ -2,6 +2,7 @@
 
 use super::values::{self, Vector};
 use super::{CameraOptions, Common, PictureOptions, PointLayerRequest};
+use crate::points::PointOptions;
 use clap::ValueEnum;
 use pointillist_surfel as surfel;
 use std::path::PathBuf;
@@ -9,7 +10,7 @@ use std::path::PathBuf;
 /// `surfel`.
 #[derive(Debug, clap::Args)]
 pub struct SurfelOptions {
-    /// Clouds, drawn together: .ply with x y z and, where it has them, nx ny nz, red green blue, radius; .ply.gz, .xyz, .las, .laz, with a feature .e57
+    /// Clouds, drawn together: .ply with x y z and, where it has them, nx ny nz, red green blue, alpha, radius; .ply.gz, .xyz, .las, .laz, with a feature .e57
     #[arg(required = true, value_name = "CLOUD")]
     pub clouds: Vec<PathBuf>,
     /// The picture: .png or .exr (default: the first CLOUD's name with .png)
@@ -87,6 +88,9 @@ pub struct DiscOptions {
     /// Fit planes to neighbouring points for normals, even where the file has some
     #[arg(long)]
     pub estimate_normals: bool,
+    /// Draw all points as opaque, whatever opacity the file gives them (`alpha` in a PLY)
+    #[arg(long)]
+    pub ignore_alpha: bool,
 }
 
 /// How surfaces are lit.
@@ -114,6 +118,12 @@ pub enum ProcedureValue {
 const DEFAULT_SENSOR_MM: f64 = 24.0;
 
 impl SurfelOptions {
+    /// How clouds are read.
+    #[must_use]
+    pub fn reading(&self) -> PointOptions {
+        PointOptions { drop_invalid: self.drop_invalid, ignore_alpha: self.discs.ignore_alpha }
+    }
+
     /// The field of view of the lens in degrees, where nothing else says what is seen.
     ///
     /// # Errors

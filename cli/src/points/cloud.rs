@@ -16,6 +16,8 @@ pub struct PointSet {
     normals: Option<Vec<Vec3>>,
     colours: Option<Vec<[f32; 3]>>,
     radii: Option<Vec<f32>>,
+    /// None as long as no file has them; points of files without them are opaque.
+    opacities: Option<Vec<f32>>,
     /// The files, and the number of the first point of each.
     files: Vec<(PathBuf, usize)>,
     /// What may be wrong, with the name of the file.
@@ -36,31 +38,47 @@ fn append<T: Clone>(all: &mut Option<Vec<T>>, part: Option<&[T]>) {
     }
 }
 
+/// How clouds are read.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PointOptions {
+    /// Leave out points that are not finite.
+    pub drop_invalid: bool,
+    /// Take all points for opaque.
+    pub ignore_alpha: bool,
+}
+
 impl PointSet {
     /// Reads clouds.
     ///
     /// # Errors
     ///
     /// [`InputError`] for the first file that cannot be used.
-    pub fn load(paths: &[PathBuf], drop_invalid: bool) -> Result<Self, InputError> {
+    pub fn load(paths: &[PathBuf], options: PointOptions) -> Result<Self, InputError> {
         let mut set =
             Self { normals: Some(vec![]), colours: Some(vec![]), radii: Some(vec![]), ..Self::default() };
-        let options = CloudOptions::default().with_drop_invalid(drop_invalid);
         for path in paths {
-            set.read(path, &options)?;
+            set.read(path, options)?;
         }
         Ok(set)
     }
 
-    fn read(&mut self, path: &Path, options: &CloudOptions) -> Result<(), InputError> {
-        self.files.push((path.to_owned(), self.positions.len()));
-        let mut has_translucent = false;
-        let summary = cloud_io::read_cloud::<InputError>(path, options, &mut |block| {
+    fn read(&mut self, path: &Path, options: PointOptions) -> Result<(), InputError> {
+        let first = self.positions.len();
+        self.files.push((path.to_owned(), first));
+        let cloud_options = CloudOptions::default().with_drop_invalid(options.drop_invalid);
+        let summary = cloud_io::read_cloud::<InputError>(path, &cloud_options, &mut |block| {
             self.positions.extend_from_slice(block.positions);
             append(&mut self.normals, block.normals);
             append(&mut self.colours, block.colours);
             append(&mut self.radii, block.radii);
-            has_translucent |= block.opacities.is_some_and(|all| all.iter().any(|&opacity| opacity < 1.0));
+            let opacities = block.opacities.filter(|_| !options.ignore_alpha);
+            if opacities.is_some() || self.opacities.is_some() {
+                let all = self.opacities.get_or_insert_default();
+                // Of files without.
+                all.resize(self.positions.len() - block.positions.len(), 1.0);
+                all.extend_from_slice(opacities.unwrap_or_default());
+                all.resize(self.positions.len(), 1.0);
+            }
             let taken = block.positions.len() as u64 * POINT_BYTES;
             self.meter
                 .add(taken, || "its points take".to_owned())
@@ -75,9 +93,10 @@ impl PointSet {
         if summary.faces > 0 {
             warn("its faces are not drawn; `pointillist sample` puts points all over them");
         }
-        if has_translucent {
+        let own = self.opacities.as_ref().map(|all| &all[first..]);
+        if own.is_some_and(|own| !own.is_empty() && own.iter().all(|&opacity| opacity == 0.0)) {
             warn(
-                "its opacities (`alpha`) are not used: discs are opaque; `pointillist scan` draws translucent points",
+                "all its points have opacity 0, so that nothing is seen of them; `--ignore-alpha` draws them opaque",
             );
         }
         if !summary.has_normals {
@@ -104,6 +123,9 @@ impl PointSet {
         if let Some(radii) = &self.radii {
             points = points.with_radii(radii);
         }
+        if let Some(opacities) = &self.opacities {
+            points = points.with_opacities(opacities);
+        }
         Cloud::new(&points).map_err(|error| self.blame(&error))
     }
 
@@ -114,7 +136,8 @@ impl PointSet {
             | SurfelError::PointTooFar { index, .. }
             | SurfelError::BadNormal { index }
             | SurfelError::BadColor { index }
-            | SurfelError::BadRadius { index, .. } => *index,
+            | SurfelError::BadRadius { index, .. }
+            | SurfelError::BadOpacity { index, .. } => *index,
             _ => 0,
         };
         let file = self.files.iter().rev().find(|(_, first)| *first <= index);
@@ -147,7 +170,8 @@ impl PointSet {
         }
         let normals = self.normals.iter().flatten().flat_map(|n| n.to_array());
         let colours = self.colours.iter().flatten().copied().flatten();
-        for value in normals.chain(colours).chain(self.radii.iter().flatten().copied()) {
+        let [radii, opacities] = [&self.radii, &self.opacities].map(|all| all.iter().flatten().copied());
+        for value in normals.chain(colours).chain(radii).chain(opacities) {
             hash.write(&value.to_le_bytes());
         }
         hash.finish()

@@ -3,5 +3,5 @@
 mod cloud;
 mod layers;
 
-pub use cloud::PointSet;
+pub use cloud::{PointOptions, PointSet};
 pub use layers::{Drawn, PointLayer, window_of};

@@ -6,8 +6,8 @@
 use super::description::{Description, LightDescription, MaterialDescription, SurroundingsDescription};
 use super::text::{Node, Value};
 use crate::input_error::InputError;
-use glam::Vec3;
-use pointillist_shade::{Light, Model};
+use glam::{DVec3, Vec3};
+use pointillist_shade::{Light, LightOutline, Model};
 
 /// All keys without effect, in the order of the sections. `has_made_normals`: vertex normals were made for some mesh.
 pub(super) fn keys(description: &Description, has_made_normals: bool) -> Vec<InputError> {
@@ -21,6 +21,35 @@ pub(super) fn keys(description: &Description, has_made_normals: bool) -> Vec<Inp
         finder.material(name, material);
     }
     finder.found
+}
+
+/// Lights with an area that shine on one side, with all of `positions` on the other.
+pub(super) fn turned_away(description: &Description, positions: &[DVec3]) -> Vec<InputError> {
+    let document = &description.document;
+    let mut found = vec![];
+    for (index, light) in description.lights.iter().enumerate() {
+        let (key, way_out) = match light.light {
+            Light::Rect { .. } => ("edge_v", "it shines on the side `edge_u × edge_v`: swap the two"),
+            Light::Polygon { two_sided: false, .. } => (
+                "vertices",
+                "it shines on the side from which they run counter-clockwise: reverse them, or set `two_sided = true`",
+            ),
+            _ => continue,
+        };
+        let Some(node) = find(document.root(), &["light", &index.to_string(), key]) else { continue };
+        if light.light.outline().is_some_and(|outline| is_behind(&outline, positions)) {
+            let message = format!("`light[{index}]` lights nothing: all of the scene is behind it");
+            found.push(document.error(node.span, message).with_help(way_out));
+        }
+    }
+    found
+}
+
+/// Whether nothing is in front of an outline's plane by more than rounding.
+fn is_behind(outline: &LightOutline, positions: &[DVec3]) -> bool {
+    let (corner, normal) = (outline.vertices()[0], outline.area_vector().normalize_or_zero());
+    let rounding = |p: DVec3| 1e-9 * (p.abs().max_element() + corner.abs().max_element());
+    positions.iter().all(|&p| (p - corner).dot(normal) <= rounding(p))
 }
 
 struct Finder<'a> {

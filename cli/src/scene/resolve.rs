@@ -72,6 +72,11 @@ pub(super) fn resolve(
     }
     let no_effect = no_effect::keys(description, builder.has_made_normals);
     builder.warnings.extend(no_effect.iter().map(InputError::to_string));
+    // What moves may come before a light later.
+    if builder.moving.is_empty() {
+        let turned_away = no_effect::turned_away(description, &builder.mesh.positions);
+        builder.warnings.extend(turned_away.iter().map(InputError::to_string));
+    }
     let mut warnings = builder.warnings;
     let mut scene = Scene::new(camera, description.image.size);
     scene.image.background = description.image.background;

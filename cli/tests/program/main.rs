@@ -22,6 +22,7 @@ mod gltf;
 #[cfg(unix)]
 mod interrupts;
 mod job;
+mod lamps_turned_away;
 mod map_places;
 mod masks;
 mod materials;

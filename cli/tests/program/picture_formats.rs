@@ -170,3 +170,26 @@ fn a_model_is_lit_by_a_map_and_seen_in_front_of_it() {
     let lamp = exr(&folder, "d.exr").plane("G").unwrap();
     assert!(lamp.iter().any(|&g| g > 0.1), "the lamp of models lights it, where the map does not");
 }
+
+#[test]
+fn a_background_that_a_png_does_not_show_is_told_of() {
+    let folder = Folder::new();
+    let said = |more: &[&str]| {
+        let line =
+            [&["render", "scene.toml", "--set", "image.background=[1,0,0]", "--overwrite"], more].concat();
+        let output = folder.command(&line).output().expect("the command runs");
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{more:?}: {text}");
+        text
+    };
+    let told = "`image.background` is under alpha 0 in a PNG";
+    assert!(said(&["-o", "a.png"]).contains(told));
+    assert!(said(&["-o", "a.png", "--time-budget", "60"]).contains(told));
+    assert_eq!(open(&folder, "a.png").into_rgba8().get_pixel(0, 0)[3], 0);
+    for more in
+        [&["-o", "a.jpg"][..], &["-o", "a.exr"], &["-o", "a.png", "--bg", "f00"], &["-o", "a.png", "--quiet"]]
+    {
+        assert!(!said(more).contains(told), "{more:?}");
+    }
+    assert!(!said(&["-o", "a.png", "--set", "image.background=[0,0,0]"]).contains(told));
+}

@@ -377,5 +377,4 @@ fn opacities_are_told_of_and_checked() {
         &["wrong.ply", "wrong.ply:12", "`alpha` is 1.5, not from 0 to 1"],
     );
     folder.fails(&["scan", "none.ply"], 0, &["none.ply", "opacity 0", "--ignore-alpha"]);
-    folder.fails(&["surfel", "half.ply"], 0, &["half.ply", "`alpha`", "pointillist scan"]);
 }

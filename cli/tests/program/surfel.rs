@@ -314,3 +314,77 @@ fn bad_options_are_wrong_usage_and_named() {
     folder.fails(&["surfel", "near.ply", "-o", "no/a.png", "--size", "8x8"], 1, &["cannot be written"]);
     assert!(!folder.names().iter().any(|name| name.ends_with(".png") || name.ends_with(".exr")));
 }
+
+/// The properties of a sampled cloud, and `alpha` of this type.
+fn with_alpha(kind: &str) -> Vec<String> {
+    PROPERTIES.iter().map(|p| (*p).to_owned()).chain([format!("{kind} alpha")]).collect()
+}
+
+/// A file with a sheet whose points all have this `alpha`.
+fn glassy(z: f64, kind: &str, alpha: &str) -> String {
+    let properties = with_alpha(kind);
+    let lines: Vec<String> = sheet(z).iter().map(|line| format!("{line} {alpha}")).collect();
+    ply(&properties.iter().map(String::as_str).collect::<Vec<_>>(), &lines)
+}
+
+#[test]
+fn points_with_an_alpha_of_their_own_are_seen_through() {
+    let folder = folder();
+    for (name, z, kind, alpha) in [
+        ("half.ply", 0.5, "uchar", "51"),
+        ("float.ply", 0.5, "float", "0.2"),
+        ("whole.ply", 0.5, "uchar", "255"),
+        ("none.ply", 0.8, "float", "0"),
+    ] {
+        folder.write(name, glassy(z, kind, alpha));
+    }
+    let middle = |files: &[&str], more: &[&str]| {
+        let line =
+            [&["surfel"], files, &["--float", "--overwrite", "--ambient", "1", "-o", "out.exr"], &VIEW, more]
+                .concat();
+        folder.prints(&line);
+        picture(&folder, "out.exr").color[24 * 64 + 32]
+    };
+    // 120 and 60 are 0.1878 and 0.0452 linear; red differs from point to point.
+    let (green, blue) = (0.1878, 0.0452);
+    let close = |files: &[&str], more: &[&str], alpha: f32| {
+        let got = middle(files, more);
+        let apart = got[1..]
+            .iter()
+            .zip([green * alpha, blue * alpha, alpha])
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f32::max);
+        assert!(apart < 1e-3, "{files:?} {more:?}: {got:?}, not opaque to {alpha}");
+    };
+    close(&["half.ply"], &[], 0.2);
+    close(&["float.ply"], &[], 0.2);
+    close(&["half.ply"], &["--procedure", "paper"], 0.2);
+    close(&["half.ply"], &["--ignore-alpha"], 1.0);
+    close(&["whole.ply"], &[], 1.0);
+    // Files without are opaque, in either order.
+    close(&["half.ply", "far.ply"], &[], 1.0);
+    close(&["far.ply", "half.ply"], &[], 1.0);
+    // In front of the other, and not seen.
+    close(&["half.ply", "none.ply"], &[], 0.2);
+    let same = |a: &str, b: &str| {
+        let [a, b] = [a, b].map(|name| middle(&[name, "far.ply"], &[]));
+        assert_eq!(a.map(f32::to_bits), b.map(f32::to_bits));
+    };
+    same("near.ply", "whole.ply");
+}
+
+#[test]
+fn opacities_of_discs_are_checked_and_told_of() {
+    let folder = Folder::new();
+    folder.write("wrong.ply", glassy(0.0, "float", "1.5"));
+    folder.write("none.ply", glassy(0.0, "uchar", "0"));
+    folder.fails(&["surfel", "wrong.ply"], 3, &["wrong.ply", "`alpha` is 1.5, not from 0 to 1"]);
+    folder.fails(&["surfel", "none.ply"], 0, &["none.ply", "opacity 0", "--ignore-alpha"]);
+    // A picture of other opacities is another picture.
+    folder.write("near.ply", glassy(0.0, "uchar", "90"));
+    folder.prints(&["surfel", "near.ply", "-o", "kept.png", "--size", "32x32"]);
+    let before = std::fs::read(folder.path("kept.png")).unwrap();
+    folder.write("near.ply", glassy(0.0, "uchar", "200"));
+    folder.prints(&["surfel", "near.ply", "-o", "kept.png", "--size", "32x32"]);
+    assert!(before != std::fs::read(folder.path("kept.png")).unwrap(), "the old picture was kept");
+}

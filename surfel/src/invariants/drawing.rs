@@ -99,6 +99,19 @@ pub fn a_lens_is_a_depth(
     if depth.is_some() { agree(by(Focus::Lens { aperture, focus }), depth) } else { Ok(()) }
 }
 
+/// Points of opacity 1 are those that have none.
+///
+/// # Errors
+/// As [`frames_are_identical`].
+pub fn opaque_points_need_no_opacities(
+    points: &OwnedPoints,
+    view: &View,
+    options: &Options,
+) -> Result<(), String> {
+    let without = OwnedPoints { opacities: None, ..points.clone() };
+    agree(frame(&points.thinned(|_| 1.0), view, options), frame(&without, view, options))
+}
+
 /// Points of one color (at most 65,408), lit from everywhere, show that color wherever anything is seen; with links, as
 /// exactly as these keep it.
 ///

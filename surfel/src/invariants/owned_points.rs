@@ -15,6 +15,8 @@ pub struct OwnedPoints {
     pub colors: Option<Vec<[f32; 3]>>,
     /// See [`Points::with_radii`].
     pub radii: Option<Vec<f32>>,
+    /// See [`Points::with_opacities`].
+    pub opacities: Option<Vec<f32>>,
 }
 
 /// Makes points ready for drawing.
@@ -49,6 +51,7 @@ impl OwnedPoints {
             normals: Some(vec![normal; count]),
             colors: None,
             radii: (radius > 0.0).then(|| vec![radius; count]),
+            opacities: None,
         }
     }
 
@@ -107,6 +110,12 @@ impl OwnedPoints {
         Self { colors: Some(self.positions.iter().map(|p| color(*p)).collect()), ..self.clone() }
     }
 
+    /// Every point with the opacity of its place.
+    #[must_use]
+    pub fn thinned(&self, opacity: impl Fn(DVec3) -> f32) -> Self {
+        Self { opacities: Some(self.positions.iter().map(|p| opacity(*p)).collect()), ..self.clone() }
+    }
+
     /// Both lots of points, with the attributes that both have.
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
@@ -118,6 +127,7 @@ impl OwnedPoints {
             normals: both(self.normals.as_ref(), other.normals.as_ref()),
             colors: both(self.colors.as_ref(), other.colors.as_ref()),
             radii: both(self.radii.as_ref(), other.radii.as_ref()),
+            opacities: both(self.opacities.as_ref(), other.opacities.as_ref()),
         }
     }
 
@@ -139,6 +149,7 @@ impl OwnedPoints {
             normals: reordered(self.normals.as_ref(), &order),
             colors: reordered(self.colors.as_ref(), &order),
             radii: reordered(self.radii.as_ref(), &order),
+            opacities: reordered(self.opacities.as_ref(), &order),
         }
     }
 
@@ -150,6 +161,7 @@ impl OwnedPoints {
             normals: self.normals.as_deref(),
             colors: self.colors.as_deref(),
             radii: self.radii.as_deref(),
+            opacities: self.opacities.as_deref(),
         }
     }
 }

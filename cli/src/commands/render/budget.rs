@@ -7,7 +7,7 @@
 //! Where tiles are drawn, they are compared with what stood there before: what the tiles that are missing lack is as much.
 
 use super::draw::failed;
-use super::output::{OutputFormat, is_there, write_picture};
+use super::output::{OutputFormat, is_there, unseen_background, write_picture};
 use super::plan::stamp;
 use crate::commands::Report;
 use crate::error::CliError;
@@ -74,6 +74,9 @@ pub(super) fn draw(
         stamp.fingerprint = stamp.fingerprint.rotate_left(1) ^ done as u64;
     }
     report.stats.count("pixels", job.window.pixels());
+    if let Some(text) = unseen_background(&frame, &scene.image, format, &options.picture) {
+        report.note(&text);
+    }
     report.stats.stage("write", || write_picture(output, format, frame, stamp, &options.picture))?;
     let took = report.stats.elapsed().as_secs_f64();
     let left = match (done == all, believed.is_finite()) {

@@ -4,7 +4,7 @@
 //! A take is prepared when the first of its frames is drawn, so that frames that are there already cost nothing but a look into their files.
 
 use super::kept::Kept;
-use super::output::{OutputFormat, is_there, write_picture};
+use super::output::{OutputFormat, is_there, unseen_background, write_picture};
 use super::plan::stamp;
 use super::shots::Shot;
 use crate::commands::Report;
@@ -137,6 +137,7 @@ impl Film<'_> {
         let frame = self.draw_or_keep(index, prepared, view, &mut kept, monitor)?;
         report.stats.count("pixels", job.window.pixels());
         report.stats.count("pictures", 1);
+        let unseen = unseen_background(&frame, &scene.image, self.format, &options.picture);
         report.stats.stage("write", || write_picture(output, self.format, frame, stamp, &options.picture))?;
         kept.remove(report);
         drop(keeper);
@@ -144,6 +145,9 @@ impl Film<'_> {
         let seconds = if index == 0 { report.stats.elapsed() } else { begin.elapsed() }.as_secs_f64();
         let (width, height) = (job.window.width(), job.window.height());
         report.note(&format!("{}: {width}×{height} pixels in {seconds:.2} s", output.display()));
+        if let Some(text) = unseen.filter(|_| index == 0) {
+            report.note(&text);
+        }
         if interrupt::is_requested() && index + 1 < self.shots.len() {
             return Err(CliError::Interrupted(self.how_far(index + 1)));
         }

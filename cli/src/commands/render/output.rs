@@ -9,6 +9,8 @@ use crate::image_io::{
 use crate::input::is_standard;
 use crate::memory;
 use crate::options::{Colour, DisplayOptions, PictureOptions};
+use glam::Vec3;
+use pointillist_render::ImageSettings;
 use std::io::{self, Seek, Write};
 use std::path::Path;
 
@@ -99,6 +101,27 @@ pub(in crate::commands) fn is_there(
             false
         }
     }
+}
+
+/// What is to be said of a picture whose background is there, but not seen by who looks at it.
+pub(super) fn unseen_background(
+    frame: &Frame,
+    image: &ImageSettings,
+    format: OutputFormat,
+    options: &PictureOptions,
+) -> Option<String> {
+    let is_bare = || frame.color.iter().any(|pixel| pixel[3] == 0.0);
+    if format != OutputFormat::Png || options.bg.is_some() || !is_bare() {
+        return None;
+    }
+    let key = match (&image.environment, image.background != Vec3::ZERO) {
+        (Some(_), _) if !image.hides_environment => "image.environment",
+        (_, true) => "image.background",
+        _ => return None,
+    };
+    Some(format!(
+        "`{key}` is under alpha 0 in a PNG, where viewers show nothing; a .jpg shows it, and --bg COLOR puts a colour there"
+    ))
 }
 
 /// Writes a drawn picture in any format.
