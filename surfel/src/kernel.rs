@@ -27,15 +27,16 @@ pub(crate) fn sharpness_of_nearest(layer: &mut Layer, splats: &[Splat]) {
 
 /// Adds up the splats with these numbers that belong to the nearest surface, in the `FIRST` layer or else in blocks
 /// that are `open`; `behind` gets the numbers of those that have parts behind it. Discs may lie behind a surface by
-/// `slack` more than their thickness (bent depth). Extras are added up if they are `WANTED`.
-pub(crate) fn add<const FIRST: bool, const WANTED: bool>(
+/// `slack` more than their thickness (bent depth). Normals are added up if they are `WANTED`, opacities if the cloud is
+/// `CLEAR`.
+pub(crate) fn add<const FIRST: bool, const WANTED: bool, const CLEAR: bool>(
     layer: &mut Layer,
     splats: &[Splat],
     numbers: impl Iterator<Item = u32>,
     behind: &mut Vec<u32>,
     (open, slack): (&Open, f32),
 ) {
-    Arch::new().dispatch(Add::<FIRST, WANTED, _> { layer, splats, numbers, behind, open, slack });
+    Arch::new().dispatch(Add::<FIRST, WANTED, CLEAR, _> { layer, splats, numbers, behind, open, slack });
 }
 
 /// The farthest of the nearest depths in some rows of a square: +∞ if a pixel has none, or lies beyond the picture.
@@ -143,7 +144,7 @@ impl WithSimd for SharpnessOfNearest<'_> {
     }
 }
 
-struct Add<'a, const FIRST: bool, const WANTED: bool, I> {
+struct Add<'a, const FIRST: bool, const WANTED: bool, const CLEAR: bool, I> {
     layer: &'a mut Layer,
     splats: &'a [Splat],
     numbers: I,
@@ -152,12 +153,14 @@ struct Add<'a, const FIRST: bool, const WANTED: bool, I> {
     slack: f32,
 }
 
-impl<const FIRST: bool, const WANTED: bool, I: Iterator<Item = u32>> WithSimd for Add<'_, FIRST, WANTED, I> {
+impl<const FIRST: bool, const WANTED: bool, const CLEAR: bool, I: Iterator<Item = u32>> WithSimd
+    for Add<'_, FIRST, WANTED, CLEAR, I>
+{
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Layer { depths, sums, extras, .. } = self.layer;
+        let Layer { depths, sums, extras } = self.layer;
         let (depths, sums, extras) = (&depths[..], &mut sums[..], &mut extras[..]);
         let none = simd.splat_f32s(0.0);
         for number in self.numbers {
@@ -186,7 +189,11 @@ impl<const FIRST: bool, const WANTED: bool, I: Iterator<Item = u32>> WithSimd fo
                         let weights = simd.mul_f32s(weight, kernel);
                         add_block(simd, s, i, weights, depth, &mut sums[row * PITCH + column]);
                         if WANTED {
-                            add_extras(simd, s, i, weights, &mut extras[row * PITCH + column]);
+                            add_normals(simd, s, i, weights, &mut extras[row * PITCH + column]);
+                        }
+                        if CLEAR {
+                            let opacity = &mut extras[row * PITCH + column].opacity;
+                            add_value(simd, s.opacity, weights, &mut S::as_mut_simd_f32s(opacity).0[i]);
                         }
                     }
                 }
@@ -213,11 +220,10 @@ fn add_block<S: Simd>(simd: S, s: &Splat, i: usize, weights: S::f32s, depths: S:
 }
 
 #[inline(always)]
-fn add_extras<S: Simd>(simd: S, s: &Splat, i: usize, weights: S::f32s, block: &mut Extras) {
+fn add_normals<S: Simd>(simd: S, s: &Splat, i: usize, weights: S::f32s, block: &mut Extras) {
     for (sums, value) in block.normals.iter_mut().zip(s.normal) {
         add_value(simd, value, weights, &mut S::as_mut_simd_f32s(sums).0[i]);
     }
-    add_value(simd, s.opacity, weights, &mut S::as_mut_simd_f32s(&mut block.opacity).0[i]);
 }
 
 #[inline(always)]

@@ -74,8 +74,6 @@ pub(crate) struct Layer {
     pub(crate) sums: Vec<Sums>,
     /// Untouched unless normals are asked for or the cloud has opacities.
     pub(crate) extras: Vec<Extras>,
-    /// Whether the cloud has opacities.
-    pub(crate) is_clear: bool,
 }
 
 impl Layer {
@@ -86,11 +84,10 @@ impl Layer {
             depths: vec![depths; count],
             sums: vec![Sums::NOTHING; count],
             extras: vec![Extras::NOTHING; count],
-            is_clear: false,
         }
     }
 
-    /// Makes these sums empty, with the extras if they are `WANTED`.
+    /// Makes these sums empty, with the extras if any are `WANTED`.
     #[inline(always)]
     pub(crate) fn clear_sums<const WANTED: bool>(&mut self, blocks: Range<usize>) {
         self.sums[blocks.clone()].fill(Sums::NOTHING);

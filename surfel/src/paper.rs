@@ -140,12 +140,21 @@ impl PaperTile {
 
 /// Step 2: filters all pixels of a band.
 pub(crate) fn reconstruct(scene: &Scene<'_>, cells: &[PaperPixel], band: &mut Band<'_>) {
+    match scene.cloud.has_opacities() {
+        true => filter_band::<true>(scene, cells, band),
+        false => filter_band::<false>(scene, cells, band),
+    }
+}
+
+/// Opacities are looked at if the cloud is `CLEAR`.
+fn filter_band<const CLEAR: bool>(scene: &Scene<'_>, cells: &[PaperPixel], band: &mut Band<'_>) {
     let width = band.width;
     let height = cells.len() / width;
     for row in 0..band.rows() {
         for column in 0..width {
             let i = row * width + column;
-            let filtered = Filter::new(scene, cells, (width, height), (column, band.first_row + row)).run();
+            let filter = Filter::new(scene, cells, (width, height), (column, band.first_row + row));
+            let filtered = filter.run::<CLEAR>();
             let [r, g, b] = (filtered.color * filtered.covered).to_array();
             let alpha = filtered.covered * filtered.opacity;
             band.color[i] = [r, g, b, alpha];
@@ -188,7 +197,7 @@ impl<'a> Filter<'a> {
         Self { camera: &scene.camera, cells, size, at }
     }
 
-    fn run(&self) -> Filtered {
+    fn run<const CLEAR: bool>(&self) -> Filtered {
         let cell = &self.cells[self.at.1 * self.size.0 + self.at.0];
         let depth = if cell.near[0] < f32::INFINITY { cell.near[0] } else { cell.near[1] };
         let blank = Filtered { color: Vec3::ZERO, opacity: 0.0, normal: Vec3::ZERO, depth, covered: 0.0 };
@@ -213,7 +222,7 @@ impl<'a> Filter<'a> {
             // Not from another surface behind or before, where only one is meant.
             let same = differ || (other.link.depth - depth).abs() <= thickness;
             if other.link.depth < f32::INFINITY && same {
-                sums.add(&other.link, weight);
+                sums.add::<CLEAR>(&other.link, weight);
             }
         });
         if sums.weight == 0.0 {
@@ -222,7 +231,8 @@ impl<'a> Filter<'a> {
         }
         let covered = if blurred || differ { sums.covered / sums.all } else { 1.0 };
         let (color, normal) = (sums.color / sums.weight, sums.normal / sums.weight);
-        Filtered { color, opacity: sums.opacity / sums.weight, normal, depth, covered }
+        let opacity = if CLEAR { sums.opacity / sums.weight } else { 1.0 };
+        Filtered { color, opacity, normal, depth, covered }
     }
 
     /// Calls `each` with all pixels within `radius` and their squared distances.
@@ -271,10 +281,12 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, link: &PaperLink, weight: f32) {
+    fn add<const CLEAR: bool>(&mut self, link: &PaperLink, weight: f32) {
         self.weight += weight;
         self.color += link.color * weight;
-        self.opacity += link.opacity * weight;
+        if CLEAR {
+            self.opacity += link.opacity * weight;
+        }
         self.normal += link.normal * weight;
     }
 }

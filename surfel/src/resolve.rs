@@ -14,15 +14,15 @@ const LEAST_WEIGHT: f32 = 1e-30;
 const LEAST_INSIDE: f32 = 0.25;
 
 /// Composites a layer behind what is in `pixels` (nothing before the `FIRST` layer), and clears its sums. Returns the
-/// blocks in which pixels that it touched are not yet opaque. Normals are kept, and opacities looked at, if extras are
-/// `WANTED`.
-pub(crate) fn resolve<const FIRST: bool, const WANTED: bool>(
+/// blocks in which pixels that it touched are not yet opaque. Normals are kept if they are `WANTED`, and opacities
+/// looked at if the cloud is `CLEAR`.
+pub(crate) fn resolve<const FIRST: bool, const WANTED: bool, const CLEAR: bool>(
     layer: &mut Layer,
     pixels: &mut [Pixels],
     rect: &TileRect,
     touched: &Touched,
 ) -> Open {
-    Arch::new().dispatch(Resolve::<FIRST, WANTED> { layer, pixels, rect, touched })
+    Arch::new().dispatch(Resolve::<FIRST, WANTED, CLEAR> { layer, pixels, rect, touched })
 }
 
 /// Puts the pixels of a tile into the picture.
@@ -31,14 +31,16 @@ pub(crate) fn write(pixels: &[Pixels], shader: &Shader, rect: &TileRect, band: &
     Arch::new().dispatch(Write { pixels, shader, rect, band });
 }
 
-struct Resolve<'a, const FIRST: bool, const WANTED: bool> {
+struct Resolve<'a, const FIRST: bool, const WANTED: bool, const CLEAR: bool> {
     layer: &'a mut Layer,
     pixels: &'a mut [Pixels],
     rect: &'a TileRect,
     touched: &'a Touched,
 }
 
-impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANTED> {
+impl<const FIRST: bool, const WANTED: bool, const CLEAR: bool> WithSimd
+    for Resolve<'_, FIRST, WANTED, CLEAR>
+{
     type Output = Open;
 
     #[inline(always)]
@@ -67,7 +69,7 @@ impl<const FIRST: bool, const WANTED: bool> WithSimd for Resolve<'_, FIRST, WANT
                     let under = Under { alpha, is_there, i };
                     let color = [mean(&color[0]), mean(&color[1]), mean(&color[2])];
                     let pixels = &mut pixels[index];
-                    let (is_first, after) = if WANTED && layer.is_clear {
+                    let (is_first, after) = if CLEAR {
                         let opacity = mean(&layer.extras[index].opacity).at_most(1.0);
                         under.blend_clear::<FIRST>(simd, pixels, (color, opacity))
                     } else {

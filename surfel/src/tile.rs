@@ -69,7 +69,6 @@ impl Tile {
         let mut touched = Touched::NOTHING;
         nodes.clone().for_each(|s| touched.add(columns_of(&s, rect), rows_of(&s, rect)));
         self.layer.clear_near(&touched.in_squares());
-        self.layer.is_clear = scene.cloud.has_opacities();
         self.farthest = [[Some(f32::INFINITY); SQUARES[0]]; SQUARES[1]];
         for selected in nodes {
             if scene.culling && self.hides(&selected, rect) {
@@ -85,17 +84,23 @@ impl Tile {
             band.clear(rect.x / WIDTH);
             return;
         }
-        if scene.normals || self.layer.is_clear {
-            self.draw_layers::<true>(scene, rect, touched);
-        } else {
-            self.draw_layers::<false>(scene, rect, touched);
+        match (scene.normals, scene.cloud.has_opacities()) {
+            (false, false) => self.draw_layers::<false, false>(scene, rect, touched),
+            (true, false) => self.draw_layers::<true, false>(scene, rect, touched),
+            // Rarer: one more copy of the kernels is not worth what it saves.
+            (_, true) => self.draw_layers::<true, true>(scene, rect, touched),
         }
         write(&self.pixels, &scene.shader, rect, band);
     }
 
     /// Composites all layers, beginning with the splats of the first, which touch these pixels; with extras if they
     /// are `WANTED`.
-    fn draw_layers<const WANTED: bool>(&mut self, scene: &Scene<'_>, rect: &TileRect, mut touched: Touched) {
+    fn draw_layers<const WANTED: bool, const CLEAR: bool>(
+        &mut self,
+        scene: &Scene<'_>,
+        rect: &TileRect,
+        mut touched: Touched,
+    ) {
         for blocks in touched.others(rect.height) {
             self.pixels[blocks.clone()].fill(Pixels::EMPTY);
             self.layer.open(blocks);
@@ -103,15 +108,15 @@ impl Tile {
         self.behind.clear();
         let mut open = Open::NOWHERE;
         let all = 0..self.splats.as_slice().len() as u32;
-        kernel::add::<true, WANTED>(
+        kernel::add::<true, WANTED, CLEAR>(
             &mut self.layer,
             self.splats.as_slice(),
             all,
             &mut self.behind,
             (&open, 0.0),
         );
-        open = resolve::<true, WANTED>(&mut self.layer, &mut self.pixels, rect, &touched);
-        let most = if self.layer.is_clear { MOST_CLEAR_LAYERS } else { MOST_LAYERS };
+        open = resolve::<true, WANTED, CLEAR>(&mut self.layer, &mut self.pixels, rect, &touched);
+        let most = if CLEAR { MOST_CLEAR_LAYERS } else { MOST_LAYERS };
         for number in 1..most {
             if open.is_nowhere() {
                 break;
@@ -121,7 +126,7 @@ impl Tile {
                 break;
             }
             let slack = if number + 1 == most { f32::INFINITY } else { 0.0 };
-            open = self.next_layer::<WANTED>(rect, touched, (&open, slack));
+            open = self.next_layer::<WANTED, CLEAR>(rect, touched, (&open, slack));
         }
     }
 
@@ -164,7 +169,7 @@ impl Tile {
         touched
     }
 
-    fn next_layer<const WANTED: bool>(
+    fn next_layer<const WANTED: bool, const CLEAR: bool>(
         &mut self,
         rect: &TileRect,
         touched: Touched,
@@ -174,14 +179,14 @@ impl Tile {
         kernel::nearest_behind(&mut self.layer, self.splats.as_slice(), &self.behind, limits.0);
         let candidates = std::mem::take(&mut self.behind);
         let numbers = candidates.iter().copied();
-        kernel::add::<false, WANTED>(
+        kernel::add::<false, WANTED, CLEAR>(
             &mut self.layer,
             self.splats.as_slice(),
             numbers,
             &mut self.behind,
             limits,
         );
-        resolve::<false, WANTED>(&mut self.layer, &mut self.pixels, rect, &touched)
+        resolve::<false, WANTED, CLEAR>(&mut self.layer, &mut self.pixels, rect, &touched)
     }
 
     fn hides(&mut self, selected: &Selected, rect: &TileRect) -> bool {
