@@ -137,8 +137,9 @@ fn view(picture: &Picture, k: f64, most: [u8; 2]) -> Option<View> {
 fuzz_target!(|input: (Vec<Shape>, Attributes, Picture, Rules, u64)| {
     let (shapes, attributes, picture, rules, seed) = input;
     let k = f64::from(picture.power).exp2();
-    // The paper's filter takes thousands of steps per pixel where discs are large.
-    let most = if rules.paper { [40, 30] } else { [150, 80] };
+    // The paper's filter takes thousands of steps per pixel where discs are large, and a thousand discs of any radius may each cover all pixels in every
+    // layer: 5 s of processor time for one input.
+    let most = if rules.paper || attributes.raw_radius.is_some() { [40, 30] } else { [150, 80] };
     let Some(view) = view(&picture, k, most) else { return };
     let points = points(&shapes, &attributes).resized(k);
     let options = options(&rules, k);
