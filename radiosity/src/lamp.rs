@@ -25,6 +25,8 @@ const NEAR_ORDER: usize = 10;
 
 /// Most surfaces between a patch and a lamp whose shadows are cut exactly; past more, points of the patch are looked at.
 const MOST_CUT: usize = 96;
+/// The same between a patch and a lamp with an area, whose shadows take cells of many points each.
+const MOST_CUT_FOR_AREAS: usize = 24;
 /// How many points.
 const POINTS: u32 = 64;
 /// How many rays between a patch and a lamp with an area, and how many more for each of these where some are blocked and some are not. Past a ball
@@ -280,7 +282,8 @@ impl Scene {
         (sum, seen > 0 && seen < POINTS)
     }
 
-    /// Past more than [`MOST_CUT`] surfaces, exact but for the shadows: each surface is cut by all those before it.
+    /// Past more than [`MOST_CUT_FOR_AREAS`] surfaces, exact but for the shadows, which rays find: what each
+    /// surface hides is cut by all those before it.
     fn lit_by_area(
         &self,
         element: &Element,
@@ -291,7 +294,7 @@ impl Scene {
         let near = lamp.moved(self.by, self.scale);
         let shaft = Shaft::new(&element.polygon, &near).with_planes();
         let list = if shadow { self.boxes.in_shaft(&shaft, &self.occluders) } else { vec![] };
-        let is_crowded = list.len() > MOST_CUT;
+        let is_crowded = list.len() > MOST_CUT_FOR_AREAS;
         let cut = if is_crowded { &[][..] } else { &list };
         let all: Vec<&Polygon> = cut.iter().map(|&i| &self.occluders[i as usize]).collect();
         let goal = self.options.factors.goal(element.polygon.area(), 1);

@@ -108,3 +108,21 @@ impl Distances {
 fn short(value: f32) -> f32 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_of_distances_come_back_with_their_planes() {
+        let wall = [0.0, 0.5, 0.0];
+        let map = DistanceMap::new(2, &[[0.25, 0.125]; 9]).expect("nine nodes");
+        let plain = Distances::of(&map);
+        assert!(plain.planes.is_empty() && plain.map() == Ok(map.clone()));
+        let map = map.with_planes(&[wall; 9]).expect("nine planes");
+        let mut written = Distances::of(&map);
+        assert_eq!(written.map(), Ok(map));
+        written.planes.pop();
+        assert_eq!(written.map(), Err("has 9 of `nearness` and 8 of `planes`".to_owned()));
+    }
+}
