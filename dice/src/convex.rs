@@ -97,6 +97,12 @@ impl ConvexPolygon {
         self.len < 3
     }
 
+    /// Leaves no vertices.
+    #[inline]
+    pub(crate) fn clear(&mut self) {
+        self.len = 0;
+    }
+
     /// Appends a vertex; at capacity the flattest corner makes room.
     #[inline]
     pub fn push(&mut self, p: DVec2) {
@@ -179,7 +185,8 @@ impl ConvexPolygon {
             any_in |= *s > 0.0;
             any_out |= *s < 0.0;
         }
-        (inside.len, outside.len) = (0, 0);
+        inside.clear();
+        outside.clear();
         if !any_out {
             inside.copy(self);
             return;

@@ -90,6 +90,8 @@ struct Slab {
 }
 
 impl Slab {
+    const EMPTY: Self = Self { len: 0, vertices: [DVec2::ZERO; 16], edges: [None; 16] };
+
     #[inline]
     fn push(&mut self, p: DVec2, edge: Option<u8>) {
         // Corners on a grid line arrive once from each of their two edges.
@@ -172,10 +174,11 @@ fn cut_rows<const N: usize>(
     for i in 0..n {
         edges[i] = Edge::new(polygon[i], polygon[if i + 1 == n { 0 } else { i + 1 }]);
     }
+    let (mut slab, mut piece) = (Slab::EMPTY, ConvexPolygon::EMPTY);
     for row in rows {
-        let slab = clip_to_row(polygon, &edges[..n], row);
+        clip_to_row(polygon, &edges[..n], row, &mut slab);
         if slab.len >= 3 {
-            walk_row(&slab, &edges[..n], row, columns.clone(), visit);
+            walk_row(&slab, &edges[..n], row, columns.clone(), &mut piece, visit);
         }
     }
 }
@@ -189,9 +192,10 @@ fn cells_between(lo: f64, hi: f64, limits: Range<i32>) -> Range<i32> {
     first..end
 }
 
-fn clip_to_row(polygon: &[DVec2], edges: &[Edge], row: i32) -> Slab {
+/// The part of a polygon in a row, into a slab that is there already: clearing one costs as much as clipping.
+fn clip_to_row(polygon: &[DVec2], edges: &[Edge], row: i32, slab: &mut Slab) {
     let (top, bottom) = (f64::from(row), f64::from(row + 1));
-    let mut slab = Slab { len: 0, vertices: [DVec2::ZERO; 16], edges: [None; 16] };
+    slab.len = 0;
     let n = polygon.len();
     for i in 0..n {
         let (a, b) = (polygon[i], polygon[if i + 1 == n { 0 } else { i + 1 }]);
@@ -218,12 +222,18 @@ fn clip_to_row(polygon: &[DVec2], edges: &[Edge], row: i32) -> Slab {
     while slab.len > 1 && slab.vertices[slab.len - 1] == slab.vertices[0] {
         slab.len -= 1;
     }
-    slab
 }
 
-/// Walks a row's polygon from left to right.
+/// Walks a row's polygon from left to right. `piece` is memory for the part in a cell.
 #[inline]
-fn walk_row(slab: &Slab, edges: &[Edge], row: i32, columns: Range<i32>, visit: &mut impl FnMut(Cut<'_>)) {
+fn walk_row(
+    slab: &Slab,
+    edges: &[Edge],
+    row: i32,
+    columns: Range<i32>,
+    piece: &mut ConvexPolygon,
+    visit: &mut impl FnMut(Cut<'_>),
+) {
     let vertices = &slab.vertices[..slab.len];
     let (lo, hi) = crate::convex::bounds(vertices);
     let touched = cells_between(lo.x, hi.x, columns);
@@ -236,9 +246,9 @@ fn walk_row(slab: &Slab, edges: &[Edge], row: i32, columns: Range<i32>, visit: &
             column = end;
             continue;
         }
-        let piece = clip_to_column(slab, edges, row, column);
+        clip_to_column(slab, edges, row, column, piece);
         if !piece.is_empty() {
-            visit(Cut::Piece { cell: IVec2::new(column, row), polygon: &piece });
+            visit(Cut::Piece { cell: IVec2::new(column, row), polygon: piece });
         }
         column += 1;
     }
@@ -249,21 +259,22 @@ fn walk_row(slab: &Slab, edges: &[Edge], row: i32, columns: Range<i32>, visit: &
 fn covered_columns(vertices: &[DVec2], row: i32) -> Range<i32> {
     let span_on = |y: f64| {
         let on_line = vertices.iter().filter(|v| v.y == y).map(|v| v.x);
-        on_line.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, r), x| (l.min(x), r.max(x)))
+        let widen = |(l, r), x| (if x < l { x } else { l }, if x > r { x } else { r });
+        on_line.fold((f64::INFINITY, f64::NEG_INFINITY), widen)
     };
     let (top, bottom) = (span_on(f64::from(row)), span_on(f64::from(row + 1)));
     let (left, right) = (top.0.max(bottom.0), top.1.min(bottom.1));
     if left < right { left.ceil() as i32..right.floor() as i32 } else { 0..0 }
 }
 
-fn clip_to_column(slab: &Slab, edges: &[Edge], row: i32, column: i32) -> ConvexPolygon {
+fn clip_to_column(slab: &Slab, edges: &[Edge], row: i32, column: i32, piece: &mut ConvexPolygon) {
     let (left, right) = (f64::from(column), f64::from(column + 1));
     let (top, bottom) = (f64::from(row), f64::from(row + 1));
     let crossing = |edge: Option<u8>, from: DVec2, x: f64| {
         let y = edge.map_or(from.y, |e| edges[usize::from(e)].y_at(x));
         DVec2::new(x, y.clamp(top, bottom))
     };
-    let mut piece = ConvexPolygon::EMPTY;
+    piece.clear();
     let mut push = |p: DVec2| {
         if piece.vertices().last() != Some(&p) {
             piece.push(p);
@@ -288,5 +299,4 @@ fn clip_to_column(slab: &Slab, edges: &[Edge], row: i32, column: i32) -> ConvexP
             push(crossing(edge, a, right));
         }
     }
-    piece
 }

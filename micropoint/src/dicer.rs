@@ -391,23 +391,24 @@ impl Dicer {
     ) {
         self.counts.pieces += 1;
         let corner = cell.as_dvec2();
-        let mut local = [DVec2::ZERO; convex::MAX_VERTICES];
         let mut nearness = Interval::EMPTY;
-        for (to, &v) in local.iter_mut().zip(polygon.vertices()) {
-            *to = v - corner;
-            let q = face.nearness_at(v);
-            nearness.include(q);
-        }
-        let local = &local[..polygon.vertices().len()];
-        let (area, centroid) = convex::area_and_centroid(local);
+        polygon.vertices().iter().for_each(|&v| nearness.include(face.nearness_at(v)));
         let i = self.cell_index(cell);
-        if area <= 0.0 || area.is_nan() || self.refuses(job.lens, i, face, nearness.most) {
+        if self.refuses(job.lens, i, face, nearness.most) {
+            return;
+        }
+        let first = self.vertices.len();
+        self.vertices.extend(polygon.vertices().iter().map(|&v| v - corner));
+        let local = &self.vertices[first..];
+        let (area, centroid) = convex::area_and_centroid(local);
+        if area <= 0.0 || area.is_nan() {
+            self.vertices.truncate(first);
             return;
         }
         let opacity = opacity.unwrap_or_else(|| opacity_in_cell(job, face, corner, local));
         let part = Part {
             face: index,
-            first_vertex: self.vertices.len() as u32,
+            first_vertex: first as u32,
             vertex_count: local.len() as u32,
             area,
             centroid,
@@ -415,7 +416,6 @@ impl Dicer {
             nearness,
             opacity,
         };
-        self.vertices.extend_from_slice(local);
         self.link(i, part);
         if opacity >= 1.0 {
             self.cells[i].opaque_area += area;
@@ -467,12 +467,7 @@ impl Dicer {
             if part.opacity < 1.0 {
                 break;
             }
-            let outline = self.outline(part);
-            let disjoint = |&o: &u32| {
-                let other = &self.parts[o as usize];
-                !part.bounds.overlap(&other.bounds) || convex::are_disjoint(outline, self.outline(other))
-            };
-            if !order[..i].iter().all(disjoint) {
+            if order[..i].iter().any(|&o| self.overlap(p, o)) {
                 break;
             }
             area += part.area;
@@ -511,9 +506,10 @@ impl Dicer {
             return;
         }
         let mut least = f64::INFINITY;
+        let row_of_block = bx * BLOCK..((bx + 1) * BLOCK).min(columns);
         for y in by * BLOCK..((by + 1) * BLOCK).min(rows) {
-            for x in bx * BLOCK..((bx + 1) * BLOCK).min(columns) {
-                least = least.min(self.cells[y * columns + x].closed);
+            for c in &self.cells[y * columns..][row_of_block.clone()] {
+                least = if c.closed < least { c.closed } else { least };
             }
         }
         let block_before = std::mem::replace(&mut self.blocks[block], least);
@@ -620,6 +616,19 @@ impl Dicer {
         a.centroid == b.centroid
             && self.faces[a.face as usize].corners == self.faces[b.face as usize].corners
             && self.outline(a) == self.outline(b)
+    }
+
+    /// Whether two parts of a cell have a common interior, beyond rounding.
+    #[inline]
+    pub(crate) fn overlap(&self, a: u32, b: u32) -> bool {
+        let (a, b) = (self.part(a), self.part(b));
+        a.bounds.overlap(&b.bounds) && self.outlines_overlap(a, b)
+    }
+
+    /// Not inlined: the bounds decide most questions.
+    #[inline(never)]
+    fn outlines_overlap(&self, a: &Part, b: &Part) -> bool {
+        !convex::are_disjoint(self.outline(a), self.outline(b))
     }
 
     /// A part's outline relative to its cell.

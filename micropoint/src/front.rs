@@ -49,14 +49,16 @@ pub fn in_front(
     }
     let mut common = ConvexPolygon::from_vertices(lower.outline);
     for half in convex::half_planes(upper.outline) {
-        common = common.clipped(&half);
+        // Most half-planes hold the whole polygon, which takes less time to find out than to copy it.
+        if common.vertices().iter().any(|&v| half.value(v) < 0.0) {
+            common = common.clipped(&half);
+        }
     }
-    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut difference = Interval::EMPTY;
     for &v in common.vertices() {
-        let difference = upper.face.nearness_at(v + corner) - lower.face.nearness_at(v + corner);
-        least = least.min(difference);
-        most = most.max(difference);
+        difference.include(upper.face.nearness_at(v + corner) - lower.face.nearness_at(v + corner));
     }
+    let Interval { least, most } = difference;
     if common.is_empty() {
         Front::Nowhere
     } else if most <= tie {

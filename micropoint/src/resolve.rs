@@ -224,7 +224,8 @@ impl Others {
         self.stands.clear();
         if order.len() >= neighbours::WORTH_IT {
             self.stands.resize(order.len(), false);
-            self.neighbours.build(order.iter().map(|&p| dicer.outline(dicer.part(p))));
+            let overlap = |a: u32, b: u32| dicer.overlap(order[a as usize], order[b as usize]);
+            self.neighbours.build(order.iter().map(|&p| dicer.outline(dicer.part(p))), overlap);
         }
     }
 
@@ -281,17 +282,17 @@ impl ResolveScratch {
         let least = dicer.part(order[i]).nearness.least;
         // What lies behind by less than rounding coincides, and may be in front by its number.
         let behind = least - lens.tie(least, DVec2::ZERO);
-        // The parts are sorted by their nearest point: all that follow the first that is behind are behind, too.
-        let is_near = |rank: usize| dicer.part(order[rank]).nearness.most >= behind;
+        // The parts are sorted by their nearest point.
+        let near = i + 1 + order[i + 1..].partition_point(|&p| dicer.part(p).nearness.most >= behind);
+        let overlaps = |&rank: &u32| dicer.overlap(order[i], order[rank as usize]);
         if others.stands.is_empty() {
-            let following = (i + 1..order.len()).take_while(|&rank| is_near(rank)).map(|rank| order[rank]);
-            let standing = others.standing.iter().map(|&rank| order[rank as usize]);
-            return cut.hide(parts, order[i], standing.chain(following));
+            let ranks = others.standing.iter().copied().chain(i as u32 + 1..near as u32);
+            return cut.hide(parts, order[i], ranks.filter(overlaps).map(|rank| order[rank as usize]));
         }
         let Others { stands, neighbours, .. } = others;
-        let found = neighbours.of(i).iter().map(|&rank| rank as usize);
-        let counts = |&rank: &usize| if rank < i { stands[rank] } else { rank > i && is_near(rank) };
-        cut.hide(parts, order[i], found.filter(counts).map(|rank| order[rank]))
+        let counts = |rank: usize| if rank < i { stands[rank] } else { rank > i && rank < near };
+        let found = neighbours.of(i, counts, overlaps).iter();
+        cut.hide(parts, order[i], found.map(|&rank| order[rank as usize]))
     }
 }
 
@@ -323,7 +324,7 @@ impl Cut {
         Visible { part: p, weight, centroid, pieces, scale }
     }
 
-    /// What is seen of part `p` behind those of `others` that are in front of it.
+    /// What is seen of part `p` behind those of `others`, which overlap it, that are in front of it.
     fn hide(&mut self, parts: &Parts<'_>, p: u32, others: impl Iterator<Item = u32>) -> Sight {
         let (dicer, lens, corner) = (parts.dicer, parts.job.lens, parts.corner);
         let part = dicer.part(p);
@@ -331,9 +332,6 @@ impl Cut {
         self.blockers.clear();
         for o in others {
             let other = dicer.part(o);
-            if !part.bounds.overlap(&other.bounds) || convex::are_disjoint(outline, dicer.outline(other)) {
-                continue;
-            }
             let (fo, fp) = (&dicer.faces[other.face as usize], &dicer.faces[part.face as usize]);
             let upper = Layer { face: fo, outline: dicer.outline(other), nearness: other.nearness };
             let lower = Layer { face: fp, outline, nearness: part.nearness };

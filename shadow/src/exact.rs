@@ -2,7 +2,7 @@
 
 use crate::casters::Caster;
 use crate::lit_regions::LitRegions;
-use crate::query::{Measure, Query};
+use crate::query::{Measure, Query, values_on};
 use crate::target::Target;
 use glam::DVec2;
 use pointillist_dice::hide::{Blocker, Occluders, Regions};
@@ -138,15 +138,11 @@ enum Overlap {
 fn overlap(caster: &[HalfPlane], target: &[DVec2]) -> Overlap {
     let mut over = true;
     for half in caster {
-        let mut most = f64::NEG_INFINITY;
-        for &p in target {
-            let value = half.value(p);
-            over &= value >= 0.0;
-            most = most.max(value);
-        }
-        if most <= 0.0 {
+        let values = values_on(half, target);
+        if values.most <= 0.0 {
             return Overlap::Apart;
         }
+        over &= values.least >= 0.0;
     }
     if over { Overlap::Over } else { Overlap::Other }
 }

@@ -4,7 +4,7 @@
 //! it, matter to none of its receivers; what is left is all that these are asked of.
 
 use crate::casters::Nearby;
-use crate::query::Query;
+use crate::query::{Query, values_on};
 use crate::target::Target;
 use glam::{DVec2, DVec3};
 use pointillist_dice::convex;
@@ -75,12 +75,10 @@ pub(crate) fn casters_before(
         let sides = &query.sides[caster.sides.clone()];
         let (mut apart, mut over) = (false, true);
         for half in sides {
-            let values = outline.iter().map(|&p| half.value(p));
             let margin = MARGIN * half.normal.abs().max_element() * query.lens.scale;
-            let (least, most) =
-                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), v| (l.min(v), m.max(v)));
-            apart |= most <= 0.0;
-            over &= least > margin;
+            let values = values_on(half, outline);
+            apart |= values.most <= 0.0;
+            over &= values.least > margin;
         }
         if apart || convex::has_separating_edge(outline, shape) {
             continue;

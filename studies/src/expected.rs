@@ -8,7 +8,8 @@ use pointillist_cli::image_io::{Picture, read_picture};
 use serde_json::Value;
 
 use crate::common::data;
-use crate::common::report::{Outcome, machine, write};
+use crate::common::provenance::provenance;
+use crate::common::report::{Outcome, write};
 
 /// Pixels of the truth on a side of a pixel that is judged; each has 4 × 4 cells.
 const FINER: u32 = 4;
@@ -25,7 +26,7 @@ struct Run {
 pub(crate) fn run(out_dir: &Path) -> Outcome {
     let mut text = format!(
         "# What is expected, and what is true\n\n`cargo build --release && cargo run --release -p studies -- expected` made this ({}).\n\n",
-        machine()
+        provenance()
     );
     let program =
         std::env::current_exe()?.with_file_name(format!("pointillist{}", std::env::consts::EXE_SUFFIX));

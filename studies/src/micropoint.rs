@@ -19,10 +19,12 @@ use crate::common::draw;
 use crate::common::line_reference;
 use crate::common::picture::Picture;
 use crate::common::point_sampling;
+use crate::common::provenance::provenance;
 use crate::common::ray_reference::Tree;
 use crate::common::report::{
-    Outcome, Row, chart, machine, on_one_thread, scenes, table, time_ratio, timed, write, write_csv,
+    Outcome, Row, chart, on_one_thread, scenes, table, time_ratio, write, write_csv,
 };
+use crate::common::timing::{HOW, Timing, timed};
 
 /// Pixels on a side.
 const SIZE: u32 = 256;
@@ -67,8 +69,8 @@ pub(crate) fn run_quick() -> Outcome {
     for case in cases(QUICK_LINES) {
         let rows =
             on_one_thread(|| [1, 2, 4].map(|cells| our_row(&case, Occlusion::Correlated, true, cells)));
-        for Row { scene, setting, rmse, largest, seconds, .. } in rows {
-            println!("| {scene} | {setting} | {rmse:.2e} | {largest:.2e} | {seconds:.4} |");
+        for Row { scene, setting, rmse, largest, time, .. } in rows {
+            println!("| {scene} | {setting} | {rmse:.2e} | {largest:.2e} | {time} |");
         }
     }
     print!("{}{}", growth::section(), bumps::section());
@@ -127,8 +129,8 @@ fn ours(case: &Case) -> Vec<Row> {
 }
 
 fn our_row(case: &Case, rule: Occlusion, cull: bool, cells: u32) -> Row {
-    let (seconds, picture) = timed(|| draw_ours(case, rule, cull, cells));
-    row(case, String::new(), format!("{cells}×{cells} cells"), seconds, &picture)
+    let (time, picture) = timed(|| draw_ours(case, rule, cull, cells));
+    row(case, String::new(), format!("{cells}×{cells} cells"), time, &picture)
 }
 
 fn draw_ours(case: &Case, rule: Occlusion, cull: bool, cells: u32) -> Picture {
@@ -147,7 +149,7 @@ fn points(case: &Case) -> Vec<Row> {
     // With shadow rays, 16 × 16 would take minutes.
     let sides: &[u32] = if casts { &[1, 2, 4, 8] } else { &[1, 2, 4, 8, 16] };
     let measure = |&n: &u32| {
-        let (seconds, picture) = timed(|| {
+        let (time, picture) = timed(|| {
             if !casts {
                 return point_sampling::render(&case.scene, n, &|_, _, _| 1.0);
             }
@@ -157,28 +159,27 @@ fn points(case: &Case) -> Vec<Row> {
                 |at: &_, light: usize, sample| tree.transmittance(at, lights[light].light.source(sample));
             point_sampling::render(&case.scene, n, &visible)
         });
-        row(case, "point samples".to_owned(), format!("{n}×{n}"), seconds, &picture)
+        row(case, "point samples".to_owned(), format!("{n}×{n}"), time, &picture)
     };
     sides.iter().map(measure).collect()
 }
 
-fn row(case: &Case, series: String, setting: String, seconds: f64, picture: &Picture) -> Row {
+fn row(case: &Case, series: String, setting: String, time: Timing, picture: &Picture) -> Row {
     let (rmse, largest) = (picture.rmse(&case.expected), picture.largest_error(&case.expected));
-    Row { scene: case.name.clone(), series, setting, seconds, rmse, largest, more: vec![] }
+    Row { scene: case.name.clone(), series, setting, time, rmse, largest, more: vec![] }
 }
 
 fn markdown(rows: &[Row]) -> String {
     let mut text = format!(
         "# Pictures: time against error\n\n`cargo run --release -p studies -- micropoint` made this, on one thread \
-         ({}). {SIZE}×{SIZE} pixels, linear colour, median of three runs (one, where a run takes more than a second), \
-         building the geometry included. Expected pictures: a closed form for the lone edge; lines that are exact \
+         ({}). {SIZE}×{SIZE} pixels, linear colour. {HOW} Building the geometry is included. Expected pictures: a closed form for the lone edge; lines that are exact \
          along themselves, {LINES} a pixel, for the other scenes made by code (each texel a quad of its own for the \
          checker); the pictures that come with the reference scenes. Point samples go through a z-buffer, with a \
          shadow ray through a tree of boxes where a light casts shadows. *Backs kept*: back faces of closed opaque \
          parts are not culled.\n\n## Defaults against point samples\n\n\
          | scene | RMSE | seconds | 4×4 points: RMSE | seconds | most points: RMSE | seconds | same error by points |\n\
          | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
-        machine()
+        provenance()
     );
     for scene in scenes(rows) {
         let of = |series: &str| -> Vec<&Row> {
@@ -188,13 +189,13 @@ fn markdown(rows: &[Row]) -> String {
         let ours = of("correlated")[0];
         let (four, most) = (points[2], points[points.len() - 1]);
         let ratio = time_ratio(ours, &points).map_or_else(
-            || format!("not reached in {:.1}× our time", most.seconds / ours.seconds),
+            || format!("not reached in {:.1}× our time", most.time.seconds / ours.time.seconds),
             |r| format!("{r:.1}× our time"),
         );
         let _ = writeln!(
             text,
-            "| {scene} | {:.2e} | {:.4} | {:.2e} | {:.4} | {:.2e} | {:.4} | {ratio} |",
-            ours.rmse, ours.seconds, four.rmse, four.seconds, most.rmse, most.seconds
+            "| {scene} | {:.2e} | {} | {:.2e} | {} | {:.2e} | {} | {ratio} |",
+            ours.rmse, ours.time, four.rmse, four.time, most.rmse, most.time
         );
     }
     if data::folder().is_none() {

@@ -1,6 +1,7 @@
 //! `shade`: what every reflection model does with the light that it gets, by quadrature, and what an evaluation costs.
 
-use crate::common::report::{Outcome, machine, write};
+use crate::common::provenance::provenance;
+use crate::common::report::{Outcome, write};
 use glam::{DVec3, Vec3, vec3};
 use pointillist_shade::{CubeMap, Environment, Material, MerlTable, Model, coat_albedo, directional_albedo};
 use std::fmt::Write as _;
@@ -35,7 +36,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
          the angle of the eye to the normal: ∫ f (n·l) dl with {STEPS}² cells packed towards the mirror direction. White \
          surfaces: 1 is all light. *Exchanged*: the largest relative difference after exchanging light and eye, over {PAIRS} pairs. *ns*: an \
          evaluation, called through a pointer.\n\n| BRDF |",
-        machine()
+        provenance()
     );
     for angle in ANGLES {
         write!(text, " {angle}° |")?;

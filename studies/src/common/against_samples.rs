@@ -6,7 +6,9 @@ use pointillist_render::{RenderError, Scene};
 
 use crate::common::draw;
 use crate::common::picture::Picture;
-use crate::common::report::{Clock, Row, machine, on_one_thread, scenes, time_ratio, timed_by};
+use crate::common::provenance::provenance;
+use crate::common::report::{Row, on_one_thread, scenes, time_ratio};
+use crate::common::timing::{Clock, HOW, timed_by};
 
 /// Further columns of the tables.
 pub(crate) const MORE: [&str; 1] = ["bias %"];
@@ -36,12 +38,12 @@ impl Subject {
 
     /// Measures one picture on one thread.
     pub(crate) fn row(&self, series: &str, setting: String, draw: impl FnMut() -> Picture + Send) -> Row {
-        let (seconds, picture) = on_one_thread(|| timed_by(Clock::Processor, draw));
+        let (time, picture) = on_one_thread(|| timed_by(Clock::Processor, draw));
         Row {
             scene: self.name.clone(),
             series: series.to_owned(),
             setting,
-            seconds,
+            time,
             rmse: picture.rmse(&self.expected),
             largest: picture.largest_error(&self.expected),
             more: vec![format!("{:+.3}", 100.0 * picture.bias(&self.expected))],
@@ -70,12 +72,12 @@ pub(crate) fn draw_cells(scene: &Scene, cells: u32) -> Result<Picture, RenderErr
 /// What the times are, as all these tables have it.
 pub(crate) fn conditions(command: &str) -> String {
     format!(
-        "`cargo run --release -p studies -- {command}` made this, on one thread ({}). Processor seconds, median of three runs (one, where a \
-         run takes more than a second), everything included that depends on the geometry. Errors are of linear radiance; the bias is the \
+        "`cargo run --release -p studies -- {command}` made this, on one thread ({}). Processor seconds, with everything that depends on \
+         the geometry. {HOW} Errors are of linear radiance; the bias is the \
          light of the whole picture against that of the expected one, in per cent. Samples go one into each stratum of the pixel, with shadow \
          rays, through a tree of boxes in double precision: their errors are those of any ray tracer, their times are not those of the \
          fastest.",
-        machine()
+        provenance()
     )
 }
 
@@ -94,8 +96,8 @@ pub(crate) fn summary(subjects: &[Subject], rows: &[Row]) -> String {
                 .map_or_else(|| not_reached(ours, samples[0], most), |r| format!("{r:.2}× the time"));
             let _ = writeln!(
                 text,
-                "| {scene} | {floor:.1e} | {}, {} | {:.2e} | {} | {:.4} | {:.2e} | {:.4} | {ratio} |",
-                ours.series, ours.setting, ours.rmse, ours.more[0], ours.seconds, most.rmse, most.seconds
+                "| {scene} | {floor:.1e} | {}, {} | {:.2e} | {} | {} | {:.2e} | {} | {ratio} |",
+                ours.series, ours.setting, ours.rmse, ours.more[0], ours.time, most.rmse, most.time
             );
         }
     }
@@ -106,5 +108,5 @@ fn not_reached(ours: &Row, fewest: &Row, most: &Row) -> String {
     if ours.rmse > fewest.rmse {
         return "one sample has less".to_owned();
     }
-    format!("not in {:.1}× the time", most.seconds / ours.seconds)
+    format!("not in {:.1}× the time", most.time.seconds / ours.time.seconds)
 }

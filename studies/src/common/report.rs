@@ -2,9 +2,8 @@
 
 use std::fmt::Write as _;
 use std::path::Path;
-use std::time::Instant;
 
-use cpu_time::ThreadTime;
+use super::timing::Timing;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -18,85 +17,11 @@ pub(crate) struct Row {
     /// Rows of one series are joined in the chart.
     pub(crate) series: String,
     pub(crate) setting: String,
-    pub(crate) seconds: f64,
+    pub(crate) time: Timing,
     pub(crate) rmse: f64,
     pub(crate) largest: f64,
     /// Further columns, as the study names them.
     pub(crate) more: Vec<String>,
-}
-
-/// Cores and processor, as text.
-pub(crate) fn machine() -> String {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = info.lines().find_map(|l| l.strip_prefix("model name")?.split_once(':'));
-    let name = name.map_or("unknown processor", |(_, name)| name.trim());
-    format!("{cores} cores, {name}")
-}
-
-/// Median time of three runs, or the time of one that takes seconds, and the result of the last.
-pub(crate) fn timed<T>(work: impl FnMut() -> T) -> (f64, T) {
-    timed_by(Clock::Wall, work)
-}
-
-/// [`timed`] by another clock.
-pub(crate) fn timed_by<T>(clock: Clock, mut work: impl FnMut() -> T) -> (f64, T) {
-    /// Seconds beyond which one run has to do.
-    const LONG: f64 = 1.0;
-    let now = clock.start();
-    let mut once = || {
-        let begin = now();
-        let result = work();
-        (now() - begin, result)
-    };
-    let (first, result) = once();
-    if first > LONG {
-        return (first, result);
-    }
-    let (second, (third, result)) = (once().0, once());
-    let mut seconds = [first, second, third];
-    seconds.sort_by(f64::total_cmp);
-    (seconds[1], result)
-}
-
-/// What times are taken with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Clock {
-    /// Processor time of this thread.
-    Processor,
-    /// Time that passes.
-    Wall,
-}
-
-impl Clock {
-    /// A function that says how many seconds this clock has run.
-    fn start(self) -> impl Fn() -> f64 {
-        let start = Instant::now();
-        move || match self {
-            Self::Processor => ThreadTime::now().as_duration().as_secs_f64(),
-            Self::Wall => start.elapsed().as_secs_f64(),
-        }
-    }
-}
-
-/// Seconds of the fastest of several runs, because the machine has other work: at least `runs`, and more while they take no
-/// longer than `together` seconds.
-pub(crate) fn least_seconds<E>(
-    clock: Clock,
-    runs: usize,
-    together: f64,
-    mut work: impl FnMut() -> Result<(), E>,
-) -> Result<f64, E> {
-    let start = Instant::now();
-    let now = clock.start();
-    let (mut least, mut done) = (f64::INFINITY, 0);
-    while done < runs || start.elapsed().as_secs_f64() < together {
-        let begin = now();
-        work()?;
-        least = least.min(now() - begin);
-        done += 1;
-    }
-    Ok(least)
 }
 
 /// What a figure must not pass.
@@ -159,14 +84,14 @@ pub(crate) fn on_threads<T: Send>(count: usize, work: impl FnOnce() -> T + Send)
 
 /// Writes `NAME.csv`; `more` names the further columns.
 pub(crate) fn write_csv(out_dir: &Path, name: &str, more: &[&str], rows: &[Row]) -> std::io::Result<()> {
-    let mut text = "scene,series,setting,seconds,rmse,largest_error".to_owned();
+    let mut text = "scene,series,setting,seconds,spread,noisy,rmse,largest_error".to_owned();
     more.iter().for_each(|column| text += &format!(",{column}"));
     text.push('\n');
     for r in rows {
         let _ = write!(
             text,
-            "{},{},{},{:.6},{:e},{:e}",
-            r.scene, r.series, r.setting, r.seconds, r.rmse, r.largest
+            "{},{},{},{:.6},{:.3},{},{:e},{:e}",
+            r.scene, r.series, r.setting, r.time.seconds, r.time.spread, r.time.noisy, r.rmse, r.largest
         );
         r.more.iter().for_each(|value| text += &format!(",{value}"));
         text.push('\n');
@@ -184,8 +109,8 @@ pub(crate) fn table(more: &[&str], rows: &[Row]) -> String {
     for r in rows {
         let _ = write!(
             text,
-            "| {} | {} | {} | {:.4} | {:.2e} | {:.1e} |",
-            r.scene, r.series, r.setting, r.seconds, r.rmse, r.largest
+            "| {} | {} | {} | {} | {:.2e} | {:.1e} |",
+            r.scene, r.series, r.setting, r.time, r.rmse, r.largest
         );
         r.more.iter().for_each(|value| text += &format!(" {value} |"));
         text.push('\n');
@@ -225,7 +150,7 @@ pub(crate) fn chart_of(
     chart_along(out_dir, name, ["seconds", error], rows)
 }
 
-/// The same along another axis than time: `along` says what each row's `seconds` are, and what its errors.
+/// The same along another axis than time: `along` says what each row's `time` is, and what its errors.
 pub(crate) fn chart_along(
     out_dir: &Path,
     name: &str,
@@ -263,7 +188,7 @@ fn panel(
     series: &[&str],
     rows: &[&Row],
 ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-    let point = |r: &&Row| (r.seconds.max(1e-6), r.rmse.clamp(SMALLEST, 10.0));
+    let point = |r: &&Row| (r.time.seconds.max(1e-6), r.rmse.clamp(SMALLEST, 10.0));
     let range = |values: Vec<f64>| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(0.0, f64::max);
@@ -299,10 +224,10 @@ fn panel(
 ///
 /// `None` where `other` never gets as good as the row: then it is slower than its slowest row by an unknown factor.
 pub(crate) fn time_ratio(row: &Row, other: &[&Row]) -> Option<f64> {
-    let mut points: Vec<(f64, f64)> = other.iter().map(|r| (r.rmse.max(SMALLEST), r.seconds)).collect();
+    let mut points: Vec<(f64, f64)> = other.iter().map(|r| (r.rmse.max(SMALLEST), r.time.seconds)).collect();
     points.sort_by(|a, b| b.0.total_cmp(&a.0));
     let reached = points.windows(2).find(|w| w[0].0 >= row.rmse && row.rmse >= w[1].0)?;
     let [(e0, t0), (e1, t1)] = [reached[0], reached[1]];
     let s = if e0 > e1 { (row.rmse.ln() - e0.ln()) / (e1.ln() - e0.ln()) } else { 1.0 };
-    Some((t0.ln() + s * (t1.ln() - t0.ln())).exp() / row.seconds)
+    Some((t0.ln() + s * (t1.ln() - t0.ln())).exp() / row.time.seconds)
 }

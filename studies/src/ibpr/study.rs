@@ -7,7 +7,8 @@ use pointillist_ibpr::{Cloud, Frame, FrameCounts, IbprError, Options, Renderer, 
 
 use crate::common::frame_error::{FrameError, Measure};
 use crate::common::layers::Layers;
-use crate::common::report::{Clock, Outcome, Row, chart_of, least_seconds, on_one_thread, write, write_csv};
+use crate::common::report::{Outcome, Row, chart_of, on_one_thread, write, write_csv};
+use crate::common::timing::{Clock, Timing, timed_by};
 use crate::common::true_surface::{Surface, Truth, point_at};
 use crate::ibpr::scans::{Faults, RangeScan, Survey};
 use crate::ibpr::settings::{Group, again, groups};
@@ -21,9 +22,6 @@ const POINTS: usize = 362_272;
 
 /// Noise of depth, in spacings.
 const NOISES: [f64; 5] = [0.0, 0.1, 0.25, 0.5, 1.0];
-
-/// Frames per time; the fastest counts.
-const FRAMES: usize = 5;
 
 /// Scans that settings are tried on are made with the first of these seeds; the defaults with all.
 const SEEDS: [u64; 4] = [1, 2, 3, 4];
@@ -112,24 +110,29 @@ impl Bench {
         let mut results = vec![];
         for group in groups {
             for (setting, options) in &group.settings {
-                let (counts, seconds, error) = self.frame(&cloud, options)?;
+                let (counts, time, error) = self.frame(&cloud, options)?;
                 let (faults, setting) = (name.to_owned(), setting.clone());
-                results.push(Measured { faults, group: group.name, setting, counts, seconds, error });
+                results.push(Measured { faults, group: group.name, setting, counts, time, error });
             }
         }
         Ok(results)
     }
 
     /// What one frame drew, its processor seconds, and its errors.
-    fn frame(&self, cloud: &Cloud, options: &Options) -> Result<(FrameCounts, f64, FrameError), IbprError> {
+    fn frame(
+        &self,
+        cloud: &Cloud,
+        options: &Options,
+    ) -> Result<(FrameCounts, Timing, FrameError), IbprError> {
         let (mut renderer, mut frame) = (Renderer::new(), Frame::default());
         renderer.draw(cloud, &self.view, options, &mut frame)?;
         let draw = || renderer.draw(cloud, &self.view, options, &mut frame);
-        let seconds = least_seconds(Clock::Processor, FRAMES, 0.0, draw)?;
+        let (time, drawn) = timed_by(Clock::Processor, draw);
+        drawn?;
         let mut layered = *options;
         layered.surface_layers = true;
         renderer.draw(cloud, &self.view, &layered, &mut frame)?;
-        Ok((*frame.counts(), seconds, self.measure.of(&Layers::of(&frame))))
+        Ok((*frame.counts(), time, self.measure.of(&Layers::of(&frame))))
     }
 }
 

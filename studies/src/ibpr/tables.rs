@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use pointillist_ibpr::FrameCounts;
 
 use crate::common::frame_error::FrameError;
-use crate::common::report::{Limit, Row, distinct, machine, verdict};
+use crate::common::provenance::provenance;
+use crate::common::report::{Limit, Row, distinct, verdict};
+use crate::common::timing::{HOW, Timing};
 
 /// A frame of one setting on one set of scans.
 pub(crate) struct Measured {
@@ -14,7 +16,7 @@ pub(crate) struct Measured {
     pub(crate) setting: String,
     pub(crate) counts: FrameCounts,
     /// Processor time.
-    pub(crate) seconds: f64,
+    pub(crate) time: Timing,
     pub(crate) error: FrameError,
 }
 
@@ -59,7 +61,7 @@ impl Measured {
             scene: self.faults.clone(),
             series: self.group.to_owned(),
             setting: self.setting.replace(',', ""),
-            seconds: self.seconds,
+            time: self.time,
             rmse: rmse(e),
             largest: e.depth_p95,
             more: values.iter().map(|v| format!("{v:.4}")).collect(),
@@ -117,9 +119,9 @@ fn goals(results: &[Measured]) -> String {
         let fastest = results
             .iter()
             .filter(|m| goal.reached(m))
-            .min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+            .min_by(|a, b| a.time.seconds.total_cmp(&b.time.seconds))
             .map_or("none".to_owned(), |m| {
-                format!("{}: {:.3}, {:.1} ms", m.setting, value(m), 1e3 * m.seconds)
+                format!("{}: {:.3}, {:.1} ms", m.setting, value(m), 1e3 * m.time.seconds)
             });
         let word = verdict(defaults.clone().all(|m| goal.reached(m)));
         let (limit, unit, got) = (goal.limit, goal.unit, value(first));
@@ -143,7 +145,7 @@ fn line(m: &Measured) -> String {
         m.setting,
         m.counts.scale,
         m.skipped(),
-        1e3 * m.seconds,
+        m.time.in_ms(),
         e.normal_mean,
         e.normal_median,
         e.depth_rmse,
@@ -162,14 +164,14 @@ pub(crate) fn markdown(setup: &str, results: &[Measured]) -> String {
     let mut text = format!(
         "# Raw range scans: time against error\n\n`cargo run --release -p studies -- ibpr` made this ({}). {setup}\n\n\
          σ is the standard deviation of depth noise along each scan, in spacings of its rays. *CPU ms*: processor time of one \
-         frame on one thread, the fastest of five. Normals and depth are compared at pixel centres with rays cast at the \
+         frame on one thread. {HOW} Normals and depth are compared at pixel centres with rays cast at the \
          surface, over pixels more than 2 inside the outline; depth is in spacings, *depth RMSE* leaves out pixels within 2 of \
          a depth step (there half a pixel decides between two surfaces), *with steps* does not; *bias* is the median, positive \
          behind the surface. *Holes*: interior pixels without a surface. *PSNR*: sRGB, over the surface's box and 8 pixels around, \
          against a picture with 4×4 samples at edges. *Spill*: pixels more than 2 outside the outline, per pixel of the surface. \
          *Outline*: root mean square distance of the drawn outline (coverage 1/2) from the true one, in pixels. \
          *Skipped*: points that the frame need not look at. *S* is the size of a buffer pixel in picture pixels, *factor* that of `Scale::Auto`.\n\n## Goals\n\n{}",
-        machine(),
+        provenance(),
         goals(results)
     );
     let mut group = "";

@@ -2,7 +2,8 @@
 
 use crate::common::draw;
 use crate::common::picture::Picture;
-use crate::common::report::{on_one_thread, timed};
+use crate::common::report::on_one_thread;
+use crate::common::timing::{Timing, timed};
 use glam::{DVec2, DVec3, Vec2, Vec3, dvec2, dvec3};
 use pointillist_render::{
     Bump, BumpHeight, Camera, LightSource, Map, Material, Part, Scene, Texels, Texture,
@@ -48,8 +49,8 @@ pub(super) fn section() -> String {
     text += "\n| --- | ---: |";
     BANDS.iter().for_each(|_| text += " ---: | ---: |");
     text.push('\n');
-    let mut row = |name: String, seconds: f64, picture: &Picture| {
-        write!(text, "| {name} | {seconds:.3} |").expect("writing to a string");
+    let mut row = |name: String, time: Timing, picture: &Picture| {
+        write!(text, "| {name} | {time} |").expect("writing to a string");
         for (first, end, _) in BANDS {
             let (rmse, bias) = errors(picture, &reference, first, end);
             write!(text, " {rmse:.3} | {:+.1} % |", 100.0 * bias).expect("writing to a string");
@@ -59,13 +60,13 @@ pub(super) fn section() -> String {
     for cells in [1, 2, 4] {
         let mut scene = scene.clone();
         scene.render.cells_per_pixel = Some(cells);
-        let (seconds, picture) =
+        let (time, picture) =
             on_one_thread(|| timed(|| draw::with_pipeline(&scene).expect("the scene is valid")));
-        row(format!("{cells}×{cells} cells"), seconds, &picture);
+        row(format!("{cells}×{cells} cells"), time, &picture);
     }
     for samples in [1, 4, 16] {
-        let (seconds, picture) = on_one_thread(|| timed(|| sampled(&scene, samples)));
-        row(format!("{samples}×{samples} samples"), seconds, &picture);
+        let (time, picture) = on_one_thread(|| timed(|| sampled(&scene, samples)));
+        row(format!("{samples}×{samples} samples"), time, &picture);
     }
     text
 }

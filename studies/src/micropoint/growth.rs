@@ -1,8 +1,9 @@
 //! How time grows with the number of parts in a cell: ever more stripes to the horizon.
 
 use crate::common::draw;
-use crate::common::report::{on_one_thread, timed};
+use crate::common::report::on_one_thread;
 use crate::common::scenes;
+use crate::common::timing::timed;
 use pointillist_micropoint::MicropointOptions;
 use std::fmt::Write as _;
 
@@ -22,12 +23,12 @@ pub(super) fn section() -> String {
     for count in COUNTS {
         let scene = scenes::stripes(SIZE, count);
         let draw = || draw::emissive(&scene, MicropointOptions::DEFAULT).expect("the scene is valid");
-        let (seconds, _) = on_one_thread(|| timed(draw));
+        let (time, _) = on_one_thread(|| timed(draw));
         let exponent = before.map_or("–".to_owned(), |(n, s)| {
-            format!("{:.2}", (seconds / s).ln() / (f64::from(count) / f64::from(n)).ln())
+            format!("{:.2}", (time.seconds / s).ln() / (f64::from(count) / f64::from(n)).ln())
         });
-        writeln!(text, "| {count} | {seconds:.4} | {exponent} |").expect("writing to a string");
-        before = Some((count, seconds));
+        writeln!(text, "| {count} | {time} | {exponent} |").expect("writing to a string");
+        before = Some((count, time.seconds));
     }
     text
 }

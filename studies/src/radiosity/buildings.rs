@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 use crate::common::data::{SKIPPED, folder};
 use crate::common::report::{Outcome, Row, chart_along};
+use crate::common::timing::Timing;
 use crate::radiosity::memory;
 use crate::radiosity::paths::{Error, PATHS, POINTS, Reference, room_around, size_of};
 
@@ -262,14 +263,14 @@ pub(crate) fn growth(text: &mut String, out_dir: &Path) -> Outcome {
             scene: "halls of columns".to_owned(),
             series: series.to_owned(),
             setting: side.to_string(),
-            seconds,
+            time: Timing::exactly(seconds),
             rmse: value,
             largest: value,
             more: vec![],
         };
         rows.push(row("processor seconds", count, cost.seconds));
     }
-    let points: Vec<(f64, f64)> = rows.iter().map(|r| (r.seconds.ln(), r.rmse.ln())).collect();
+    let points: Vec<(f64, f64)> = rows.iter().map(|r| (r.time.seconds.ln(), r.rmse.ln())).collect();
     let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / points.len() as f64;
     let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
     let slope = mean(&|p| (p.0 - x) * (p.1 - y)) / mean(&|p| (p.0 - x) * (p.0 - x));

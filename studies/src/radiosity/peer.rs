@@ -5,7 +5,8 @@ use std::process::{Command, Stdio};
 
 use pointillist_radiosity::{FactorOptions, Scene, SceneOptions, Transport};
 
-use crate::common::report::{Outcome, timed};
+use crate::common::report::Outcome;
+use crate::common::timing::timed;
 use crate::radiosity::boxes::cornell;
 
 /// All form factors of the patches that standard input holds, with visibility and obstruction; the first call, of two
@@ -121,8 +122,8 @@ fn list((open, relative, absolute): (f64, f64, f64)) -> String {
 fn linked(factors: FactorOptions, (open, relative, absolute): (f64, f64, f64)) -> Fallible<(f64, Transport)> {
     let factors = factors.with_unoccluded(open).with_occluded(relative).with_absolute(absolute);
     let scene = Scene::new(&cornell(), &SceneOptions::DEFAULT.with_patch(PATCH).with_factors(factors))?;
-    let (seconds, found) = timed(|| scene.clone().transport(&[]));
-    Ok((seconds, found?))
+    let (time, found) = timed(|| scene.clone().transport(&[]));
+    Ok((time.seconds, found?))
 }
 
 /// Form factors, row by row.

@@ -9,7 +9,9 @@ use pointillist_radiosity::{
     FactorOptions, Hemicube, HemicubeKind, Polygon, Scene, SceneOptions, SolveOptions, form_factor,
 };
 
-use crate::common::report::{Outcome, machine, timed, write};
+use crate::common::provenance::provenance;
+use crate::common::report::{Outcome, write};
+use crate::common::timing::timed;
 use crate::radiosity::boxes::{cornell, quad, room};
 use crate::radiosity::buildings;
 use crate::radiosity::moved;
@@ -74,7 +76,7 @@ fn run_part(out_dir: &Path, name: &str, part: impl Fn(&mut String) -> Outcome) -
     let mut whole = format!(
         "# Radiosity: time against error\n\n`cargo run --release -p studies -- radiosity`, on {}. Times are wall-clock unless they are said to be the \
          processor's, on a machine that does other things, too. `radiosity PART…` runs some parts alone.\n",
-        machine()
+        provenance()
     );
     sections.iter().for_each(|section| whole += &format!("\n## {}\n", section.trim_end()));
     write(out_dir, "radiosity.md", &whole)?;
@@ -213,7 +215,7 @@ fn boxes(text: &mut String) -> Outcome {
                 let error = solved.radiosity.iter().flatten().fold(0.0, |m: f64, b| m.max((b - exact).abs()));
                 writeln!(
                     text,
-                    "| {name} | {reflectance} | {} | {off:.1e} | {seconds:.2} | {method} | {} | {time:.3} | {error:.1e} | {:.1e} |",
+                    "| {name} | {reflectance} | {} | {off:.1e} | {seconds:.2} | {method} | {} | {time} | {error:.1e} | {:.1e} |",
                     transport.patch_count(),
                     solved.steps,
                     solved.bound
@@ -261,7 +263,7 @@ fn rooms(text: &mut String) -> Outcome {
         let megabytes = links as f64 * 64.0 / 1e6;
         writeln!(
             text,
-            "| {patch} | {kind} | {} | {links} | {megabytes:.0} | {seconds:.1} | {time:.3} | {error:.1e} |",
+            "| {patch} | {kind} | {} | {links} | {megabytes:.0} | {seconds:.1} | {time} | {error:.1e} |",
             transport.patch_count()
         )?;
     }

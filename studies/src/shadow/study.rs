@@ -14,11 +14,11 @@ use crate::common::casters;
 use crate::common::closed_form;
 use crate::common::draw;
 use crate::common::picture::Picture;
+use crate::common::provenance::provenance;
 use crate::common::ray_reference::{self, Tree, with_shadows};
-use crate::common::report::{
-    Outcome, Row, chart, machine, on_one_thread, table, time_ratio, timed, write, write_csv,
-};
+use crate::common::report::{Outcome, Row, chart, on_one_thread, table, time_ratio, write, write_csv};
 use crate::common::scenes::{SurfaceSample, radiance};
+use crate::common::timing::{Clock, HOW, Timing, timed_part};
 use crate::shadow::shadow_map::ShadowMap;
 
 /// Pixels on a side.
@@ -141,19 +141,17 @@ fn ours(case: &Case) -> Vec<Row> {
         for cells in [0, 64, 256, 1024, 4096] {
             let resolution = if cells == 0 { Resolution::Auto } else { Resolution::Cells(cells) };
             let options = ShadowOptions::default().with_occlusion(rule).with_resolution(resolution);
-            let mut seconds = vec![];
-            let (_, picture) = timed(|| {
+            let (time, picture) = timed_part(Clock::Wall, || {
                 let start = Instant::now();
                 let light =
                     ShadowLight::new(&geometry, &PlainOpacity, emitter, options).expect("a valid light");
                 let set_up = start.elapsed().as_secs_f64();
                 let mut scratch = Scratch::default();
                 let found = draw_lit(&case.scene, 1, &mut |tile, lit| scratch.find(&light, tile, lit));
-                seconds.push(set_up + found.1);
-                found.0
+                (set_up + found.1, found.0)
             });
             let setting = if cells == 0 { "auto".to_owned() } else { format!("{cells} cells") };
-            rows.push(row(case, name, setting, median(seconds), &picture));
+            rows.push(row(case, name, setting, time, &picture));
         }
     }
     rows
@@ -199,18 +197,16 @@ fn maps(case: &Case) -> Vec<Row> {
     {
         for &kernel in kernels {
             for &side in sides {
-                let mut seconds = vec![];
-                let (_, picture) = timed(|| {
+                let (time, picture) = timed_part(Clock::Wall, || {
                     let start = Instant::now();
                     let map = ShadowMap::new(scene, source, side, kernel);
                     let set_up = start.elapsed().as_secs_f64();
                     let (picture, found) =
                         draw_lit(scene, cells, &mut |tile, lit| look_up(scene, &map, tile, lit));
-                    seconds.push(set_up + found);
-                    picture
+                    (set_up + found, picture)
                 });
                 let series = format!("map {kernel}×{kernel}, {lookups}");
-                rows.push(row(case, &series, format!("{side} texels"), median(seconds), &picture));
+                rows.push(row(case, &series, format!("{side} texels"), time, &picture));
             }
         }
     }
@@ -230,18 +226,13 @@ fn look_up(scene: &Scene, map: &ShadowMap, tile: &Tile, lit: &mut Vec<f64>) {
     }
 }
 
-fn median(mut seconds: Vec<f64>) -> f64 {
-    seconds.sort_by(f64::total_cmp);
-    seconds[seconds.len() / 2]
-}
-
-fn row(case: &Case, series: &str, setting: String, seconds: f64, picture: &Picture) -> Row {
+fn row(case: &Case, series: &str, setting: String, time: Timing, picture: &Picture) -> Row {
     let (acne, leak) = wrong_pixels(case, picture);
     Row {
         scene: case.name.to_owned(),
         series: series.to_owned(),
         setting,
-        seconds,
+        time,
         rmse: picture.rmse(&case.expected),
         largest: picture.largest_error(&case.expected),
         more: vec![acne.to_string(), leak.to_string()],
@@ -266,8 +257,8 @@ fn wrong_pixels(case: &Case, picture: &Picture) -> (usize, usize) {
 fn markdown(cases: &[Case], rows: &[Row]) -> String {
     let mut text = format!(
         "# Shadows: time against error\n\n`cargo run --release -p studies -- shadow` made this, on one thread ({}). \
-         {SIZE}×{SIZE} pixels. Seconds are those of the shadow pass alone: everybody sees the same micropoints. Median \
-         of three runs (one, where a run takes more than a second). Errors are of linear radiance, where a white surface in full light has about 1.\n\nThe half-plane \
+         {SIZE}×{SIZE} pixels. Seconds are those of the shadow pass alone: everybody sees the same micropoints. \
+         {HOW} Errors are of linear radiance, where a white surface in full light has about 1.\n\nThe half-plane \
          has a closed form. The other expected pictures are by rays, 2 × {} a pixel at edges; the error that they have \
          themselves is the *floor*. *Acne* pixels are in full light and came out darker by 5 % or more, *leak* pixels are \
          in full shadow and got 5 % of the light or more. The shadow map covers the whole scene, its lookups are \
@@ -275,7 +266,7 @@ fn markdown(cases: &[Case], rows: &[Row]) -> String {
          micropoints of 4×4 cells a pixel. It has no answer for translucent panes.\n\n\
          ## Default beside the best shadow maps\n\n| scene | floor | RMSE | seconds | acne | leak | smallest RMSE of a map | which | seconds | acne | leak | fastest map of that error |\n\
          | --- | ---: | ---: | ---: | ---: | ---: | ---: | --- | ---: | ---: | ---: | --- |\n",
-        machine(),
+        provenance(),
         FINE * FINE
     );
     for case in cases {
@@ -283,8 +274,8 @@ fn markdown(cases: &[Case], rows: &[Row]) -> String {
         let ours = of_scene[0];
         let _ = write!(
             text,
-            "| {} | {:.1e} | {:.2e} | {:.4} | {} | {} |",
-            case.name, case.floor, ours.rmse, ours.seconds, ours.more[0], ours.more[1]
+            "| {} | {:.1e} | {:.2e} | {} | {} | {} |",
+            case.name, case.floor, ours.rmse, ours.time, ours.more[0], ours.more[1]
         );
         let maps: Vec<&Row> = of_scene.iter().copied().filter(|r| r.series.starts_with("map")).collect();
         match maps.iter().min_by(|a, b| a.rmse.total_cmp(&b.rmse)) {
@@ -294,8 +285,8 @@ fn markdown(cases: &[Case], rows: &[Row]) -> String {
                     .map_or_else(|| "none gets there".to_owned(), |r| format!("{r:.1}× our time"));
                 let _ = writeln!(
                     text,
-                    " {:.2e} | {}, {} | {:.4} | {} | {} | {reached} |",
-                    best.rmse, best.series, best.setting, best.seconds, best.more[0], best.more[1]
+                    " {:.2e} | {}, {} | {} | {} | {} | {reached} |",
+                    best.rmse, best.series, best.setting, best.time, best.more[0], best.more[1]
                 );
             }
         }

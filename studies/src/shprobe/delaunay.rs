@@ -8,7 +8,8 @@ use glam::{DVec3, dvec3};
 use pointillist_delaunay::{Delaunay, Hint, Locator, Partition};
 use pointillist_shprobe::{ProbeError, place};
 
-use crate::common::report::{Clock, Limit, least_seconds, on_one_thread, on_threads, verdict};
+use crate::common::report::{Limit, on_one_thread, on_threads, verdict};
+use crate::common::timing::{Clock, least_seconds};
 use crate::shprobe::peer::{Peer, Took};
 
 /// Points in the unit cube.

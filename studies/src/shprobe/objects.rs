@@ -8,7 +8,8 @@ use glam::{DVec3, Vec3, dvec3};
 use pointillist_sh::{Irradiance, Sh, ShError};
 use pointillist_shprobe::{DistanceMap, Field, LitObject, ProbeError, place};
 
-use crate::common::report::{Clock, Limit, least_seconds, on_one_thread, on_threads, verdict};
+use crate::common::report::{Limit, on_one_thread, on_threads, verdict};
+use crate::common::timing::{Clock, least_seconds};
 use crate::shprobe::site::directions;
 
 const OBJECTS: usize = 10_000;

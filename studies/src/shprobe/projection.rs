@@ -8,7 +8,8 @@ use pointillist_sh::{
     CubeMap, CubeProjector, Sh, ShError, SphereQuadrature, Weights, basis, coefficient_count, gauss_legendre,
 };
 
-use crate::common::report::{Clock, Row, least_seconds, on_one_thread};
+use crate::common::report::{Row, on_one_thread};
+use crate::common::timing::{Clock, timed_by};
 
 const SIZES: [usize; 6] = [8, 16, 32, 64, 128, 256];
 const ORDERS: [usize; 4] = [1, 2, 3, 4];
@@ -60,7 +61,7 @@ fn of_edge(order: usize) -> Result<Sh, ShError> {
 }
 
 /// Rows: the sky, the rule, the setting; the error is that of the worst coefficient over L00 of its colour.
-pub(crate) fn rows(runs: usize) -> Result<Vec<Row>, ShError> {
+pub(crate) fn rows() -> Result<Vec<Row>, ShError> {
     let mut rows = vec![];
     for (sky, name) in [smooth, with_edge].into_iter().zip(SKIES) {
         for size in SIZES {
@@ -73,7 +74,7 @@ pub(crate) fn rows(runs: usize) -> Result<Vec<Row>, ShError> {
                 };
                 for (rule, series) in RULES {
                     let setting = format!("{size} px, order {order}");
-                    let row = row(&map, &truth, rule, runs)?;
+                    let row = row(&map, &truth, rule)?;
                     rows.push(Row { scene: name.to_owned(), series: series.to_owned(), setting, ..row });
                 }
             }
@@ -82,16 +83,16 @@ pub(crate) fn rows(runs: usize) -> Result<Vec<Row>, ShError> {
     Ok(rows)
 }
 
-fn row(map: &CubeMap, truth: &Sh, rule: Weights, runs: usize) -> Result<Row, ShError> {
+fn row(map: &CubeMap, truth: &Sh, rule: Weights) -> Result<Row, ShError> {
     let projector = CubeProjector::new(map.size(), truth.order(), rule)?;
     let found = projector.project(map)?;
-    let seconds =
-        on_one_thread(|| least_seconds(Clock::Processor, runs, 0.0, || projector.project(map).map(|_| ())))?;
+    let (time, projected) = on_one_thread(|| timed_by(Clock::Processor, || projector.project(map)));
+    projected?;
     let l00 = truth.coefficients()[0];
     let pairs = found.coefficients().iter().zip(truth.coefficients());
     let worst = pairs.map(|(a, b)| ((*a - *b) / l00).abs().max_element()).fold(0.0, f64::max);
     let (scene, series, setting) = Default::default();
-    Ok(Row { scene, series, setting, seconds, rmse: worst, largest: worst, more: vec![] })
+    Ok(Row { scene, series, setting, time, rmse: worst, largest: worst, more: vec![] })
 }
 
 /// Sizes at order 2, and orders at 128 pixels.
@@ -105,8 +106,11 @@ pub(crate) fn table(rows: &[Row]) -> String {
         let of = |sky: &str, rule: &str| {
             rows.iter().find(|r| r.scene == sky && r.series == rule && r.setting == setting)
         };
-        let least =
-            rows.iter().filter(|r| r.setting == setting).map(|r| r.seconds).fold(f64::INFINITY, f64::min);
+        let least = rows
+            .iter()
+            .filter(|r| r.setting == setting)
+            .map(|r| r.time.seconds)
+            .fold(f64::INFINITY, f64::min);
         let _ = write!(text, "| {setting} | {:.1} |", 1e6 * least);
         for (sky, (_, rule)) in SKIES.iter().flat_map(|s| RULES.iter().map(move |r| (s, r))) {
             let _ = write!(text, " {:.1e} |", of(sky, rule).map_or(f64::NAN, |r| r.rmse));
@@ -121,5 +125,5 @@ pub(crate) fn at_128(rows: &[Row]) -> Option<(f64, f64)> {
     let row = rows
         .iter()
         .find(|r| r.scene == SKIES[0] && r.series == "Gregory" && r.setting == "128 px, order 2")?;
-    Some((1e3 * row.seconds, row.rmse))
+    Some((1e3 * row.time.seconds, row.rmse))
 }

@@ -7,7 +7,9 @@ use std::time::Instant;
 use pointillist_shprobe::place;
 
 use crate::common::data;
-use crate::common::report::{Limit, Outcome, Row, chart_along, chart_of, machine, verdict, write, write_csv};
+use crate::common::provenance::provenance;
+use crate::common::report::{Limit, Outcome, Row, chart_along, chart_of, verdict, write, write_csv};
+use crate::common::timing::Timing;
 use crate::shprobe::bounces;
 use crate::shprobe::delaunay;
 use crate::shprobe::layouts::{ADAPTIVE, FITTED, GRID, HEAD, Layout, Survey, TRILINEAR, line};
@@ -123,7 +125,7 @@ fn measure(wish: &Wish, out_dir: &Path) -> Outcome {
     let start = Instant::now();
     std::fs::create_dir_all(out_dir)?;
     let mut report = Report::default();
-    projection(&mut report, wish, out_dir)?;
+    projection(&mut report, out_dir)?;
     maps(&mut report, wish)?;
     points(&mut report, wish)?;
     bounced(&mut report, wish)?;
@@ -159,7 +161,7 @@ impl Report {
             "# `shprobe`: light probes\n\n`cargo run --release -p studies -- shprobe` made this ({}). Times are the fastest of several \
              runs, on one thread in processor time. Errors are root mean squares over those of what is true.\n\n\
              ## Goals\n\n| goal | wanted | found | |\n| --- | ---: | ---: | --- |\n{}\n{}",
-            machine(),
+            provenance(),
             self.goals,
             self.body
         )
@@ -171,9 +173,9 @@ fn short(value: f64) -> String {
     if value != 0.0 && value.abs() < 1e-3 { format!("{value:.1e}") } else { format!("{value:.3}") }
 }
 
-fn projection(report: &mut Report, wish: &Wish, out_dir: &Path) -> Result<(), Fault> {
+fn projection(report: &mut Report, out_dir: &Path) -> Result<(), Fault> {
     eprintln!("shprobe: projection");
-    let rows = projection::rows(if wish.quick { 3 } else { 20 })?;
+    let rows = projection::rows()?;
     write_csv(out_dir, "shprobe", &[], &rows)?;
     let charted: Vec<Row> = rows.iter().filter(|r| r.setting.ends_with("order 2")).cloned().collect();
     chart_of(out_dir, "shprobe", "worst coefficient over L00", &charted)?;
@@ -357,7 +359,7 @@ fn row(scene: &str, l: &Layout) -> Row {
         scene: scene.to_owned(),
         series: format!("{}{distances}", l.placement),
         setting: l.wanted.to_string(),
-        seconds: l.probes as f64,
+        time: Timing::exactly(l.probes as f64),
         rmse: l.wrong.all,
         largest: l.wrong.dark.unwrap_or(f64::NAN),
         more: vec![],

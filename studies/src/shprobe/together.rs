@@ -14,8 +14,9 @@ use crate::common::data::SKIPPED;
 use crate::common::draw;
 use crate::common::paths;
 use crate::common::picture::Picture;
+use crate::common::provenance::provenance;
 use crate::common::ray_reference::Tree;
-use crate::common::report::{Outcome, machine, write};
+use crate::common::report::{Outcome, write};
 use crate::radiosity::buildings::{SUN, Sizes, bake};
 use crate::shprobe::canvas::{save, sheet};
 use crate::shprobe::known::{Counts, Known};
@@ -146,7 +147,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     let table = measure(None)?;
     let text = format!(
         "# Light between surfaces, in whole pictures\n\n`cargo run --release -p studies -- together` made this ({}).\n\n{table}",
-        machine()
+        provenance()
     );
     write(out_dir, "together.md", &text)?;
     Ok(true)

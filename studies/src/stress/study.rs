@@ -6,7 +6,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::report::{Outcome, machine, write};
+use crate::common::provenance::provenance;
+use crate::common::report::{Outcome, write};
 use crate::stress::check::Verdict;
 use crate::stress::rows;
 
@@ -29,7 +30,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
         "# Stress\n\n`cargo run --release -p studies -- stress` made this ({}). Each row ran in a process of its own. \
          {} of {} rows passed. Two errors are called the same if they differ by 5 % or by less than 3e-8, which is what \
          the pictures' `f32` resolves.\n\n| input | expected | what happened | |\n| --- | --- | --- | --- |\n",
-        machine(),
+        provenance(),
         checks.len() - failed,
         checks.len()
     );

@@ -1,5 +1,6 @@
 //! What is measured of a frame.
 
+use crate::common::timing::Timing;
 use crate::surfel::layer_error::LayerError;
 
 /// A frame of one setting in one scene.
@@ -11,8 +12,8 @@ pub(crate) struct Measured {
     /// Points drawn, links included.
     pub(crate) points: usize,
     /// Processor seconds on one thread, and seconds on all.
-    pub(crate) cpu: f64,
-    pub(crate) wall: f64,
+    pub(crate) cpu: Timing,
+    pub(crate) wall: Timing,
     /// Processor time over that of the row that the section names; NaN if it names none.
     pub(crate) ratio: f64,
     pub(crate) error: LayerError,

@@ -6,7 +6,8 @@ use pointillist_surfel::{
 };
 
 use crate::common::picture_layers::PictureLayers;
-use crate::common::report::{Clock, least_seconds, on_one_thread};
+use crate::common::report::on_one_thread;
+use crate::common::timing::{Clock, Timing, timed, timed_by};
 use crate::common::true_surface::Surface;
 use crate::surfel::layer_error::LayerMeasure;
 use crate::surfel::lens_camera::{LensCamera, Matt};
@@ -24,9 +25,6 @@ const SEED: u64 = 1;
 pub(crate) struct Effort {
     /// Rays per pixel of the truth, without a lens and with one.
     pub(crate) rays: [u32; 2],
-    /// Least number of runs per time, and seconds for which they go on.
-    pub(crate) runs: usize,
-    pub(crate) together: f64,
     /// How large clouds are sampled.
     pub(crate) method: Method,
     /// Points of the largest cloud.
@@ -36,32 +34,22 @@ pub(crate) struct Effort {
 }
 
 impl Effort {
-    pub(crate) const FULL: Self = Self {
-        rays: [64, 256],
-        runs: 5,
-        together: 0.5,
-        method: Method::Poisson,
-        most_points: 1_274_573,
-        views: &[4, 16, 64],
-    };
+    pub(crate) const FULL: Self =
+        Self { rays: [64, 256], method: Method::Poisson, most_points: 1_274_573, views: &[4, 16, 64] };
     /// Enough to see that all works.
-    pub(crate) const QUICK: Self = Self {
-        rays: [4, 16],
-        runs: 2,
-        together: 0.05,
-        method: Method::Ldi,
-        most_points: 500_000,
-        views: &[4, 16],
-    };
+    pub(crate) const QUICK: Self =
+        Self { rays: [4, 16], method: Method::Ldi, most_points: 500_000, views: &[4, 16] };
+}
 
-    /// Processor seconds on one thread, and seconds on all.
-    pub(crate) fn times(
-        &self,
-        mut work: impl FnMut() -> Result<(), SurfelError> + Send,
-    ) -> Result<[f64; 2], SurfelError> {
-        let cpu = on_one_thread(|| least_seconds(Clock::Processor, self.runs, self.together, &mut work))?;
-        Ok([cpu, least_seconds(Clock::Wall, self.runs, self.together, work)?])
-    }
+/// Processor seconds on one thread, and seconds on all.
+pub(crate) fn times(
+    mut work: impl FnMut() -> Result<(), SurfelError> + Send,
+) -> Result<[Timing; 2], SurfelError> {
+    let (cpu, done) = on_one_thread(|| timed_by(Clock::Processor, &mut work));
+    done?;
+    let (wall, done) = timed(work);
+    done?;
+    Ok([cpu, wall])
 }
 
 /// Something to draw, with its truth.
@@ -70,7 +58,6 @@ pub(crate) struct Stage {
     pub(crate) camera: LensCamera,
     pub(crate) matt: Matt,
     pub(crate) measure: LayerMeasure,
-    pub(crate) effort: Effort,
 }
 
 impl Stage {
@@ -84,7 +71,7 @@ impl Stage {
         let rays = effort.rays[usize::from(camera.aperture > 0.0)];
         let truth = trace(surface, &camera, &|p, n| matt.radiance(p, n), rays, SEED);
         let measure = LayerMeasure::new(truth);
-        Self { name: name.to_owned(), camera, matt, measure, effort: *effort }
+        Self { name: name.to_owned(), camera, matt, measure }
     }
 
     /// The defaults in the light of this scene, through its lens.
@@ -100,7 +87,7 @@ impl Stage {
         options: &Options,
     ) -> Result<Measured, SurfelError> {
         let (view, mut renderer, mut frame) = (view(&self.camera), Renderer::new(), Frame::default());
-        let times = self.effort.times(|| renderer.draw(cloud, &view, options, &mut frame))?;
+        let times = times(|| renderer.draw(cloud, &view, options, &mut frame))?;
         let (picture, counts) = drawn(cloud, &self.camera, options)?;
         let series = name(options.procedure);
         Ok(self.row(cloud, (series, setting), counts.points, times, &picture))
@@ -112,7 +99,7 @@ impl Stage {
         cloud: &Cloud,
         (series, setting): (&'static str, String),
         points: usize,
-        [cpu, wall]: [f64; 2],
+        [cpu, wall]: [Timing; 2],
         picture: &PictureLayers,
     ) -> Measured {
         let error = self.measure.of(picture);

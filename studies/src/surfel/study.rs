@@ -9,6 +9,7 @@ use pointillist_surfel::{Cloud, Method, Points, Procedure, SampleOptions, Surfel
 use crate::common::data;
 use crate::common::picture_layers::PictureLayers;
 use crate::common::report::{Outcome, chart_of, write, write_csv};
+use crate::common::timing::HOW;
 use crate::common::true_surface::Surface;
 use crate::surfel::coloured_cloud::ColouredCloud;
 use crate::surfel::lens_scenes::{above, front, front_from, lens_name};
@@ -96,11 +97,10 @@ impl Bench {
         let [rays, lens_rays] = self.effort.rays;
         format!(
             "Surface: {} ({} triangles), with colours that wave along the axes, a sun, and a tenth of the light from everywhere. \
-             Large clouds are sampled by {:?}. Truth: {rays} rays a pixel, {lens_rays} through a lens. Times are the fastest of {} frames or more. {}",
+             Large clouds are sampled by {:?}. Truth: {rays} rays a pixel, {lens_rays} through a lens. {HOW} {}",
             self.surface.name,
             self.surface.triangle_count(),
             self.effort.method,
-            self.effort.runs,
             self.notes.join(" "),
         )
     }
@@ -255,8 +255,9 @@ fn procedures_at(level: f32) -> impl Iterator<Item = Procedure> {
 
 /// Sets each row's ratio to the first row that it is compared with.
 fn compare_times(rows: &mut [Measured], is_compared: impl Fn(&Measured, &Measured) -> bool) {
-    let of =
-        |row: &Measured| rows.iter().find(|other| is_compared(row, other)).map(|other| row.cpu / other.cpu);
+    let of = |row: &Measured| {
+        rows.iter().find(|other| is_compared(row, other)).map(|other| row.cpu.seconds / other.cpu.seconds)
+    };
     let ratios: Vec<_> = rows.iter().map(of).collect();
     rows.iter_mut().zip(ratios).for_each(|(row, ratio)| row.ratio = ratio.unwrap_or(f64::NAN));
 }

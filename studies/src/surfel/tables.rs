@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::common::report::{Limit, Row, machine, verdict};
+use crate::common::provenance::provenance;
+use crate::common::report::{Limit, Row, verdict};
 use crate::surfel::lens_scenes::lens_name;
 use crate::surfel::measured::Measured;
 use crate::surfel::same::Same;
@@ -39,7 +40,7 @@ impl Measured {
         let e = &self.error;
         let values = [
             self.points as f64,
-            self.wall,
+            self.wall.seconds,
             self.ratio,
             e.psnr,
             e.ssim,
@@ -54,7 +55,7 @@ impl Measured {
             scene: self.scene.clone(),
             series: self.series.to_owned(),
             setting: self.setting.clone(),
-            seconds: self.cpu,
+            time: self.cpu,
             // PSNR is −20 log₁₀ of it.
             rmse: 10f64.powf(-e.psnr / 20.0),
             largest: e.largest,
@@ -71,8 +72,8 @@ impl Measured {
             self.series,
             self.setting,
             self.points,
-            1e3 * self.cpu,
-            1e3 * self.wall,
+            self.cpu.in_ms(),
+            self.wall.in_ms(),
             e.psnr,
             e.ssim,
             e.holes,
@@ -156,9 +157,10 @@ fn paper_table(sections: &[Section]) -> String {
     );
     for (series, px) in ["paper", "blended"].into_iter().flat_map(|s| [(s, 6), (s, 16)]) {
         let (Some(sharp), Some(deep)) = (find(0, series), find(px, series)) else { continue };
-        for (clock, sharp, deep) in
-            [("one thread, CPU time", sharp.cpu, deep.cpu), ("all cores", sharp.wall, deep.wall)]
-        {
+        for (clock, sharp, deep) in [
+            ("one thread, CPU time", sharp.cpu.seconds, deep.cpu.seconds),
+            ("all cores", sharp.wall.seconds, deep.wall.seconds),
+        ] {
             let (a, b, more) = (1.0 / sharp, 1.0 / deep, 100.0 * (deep / sharp - 1.0));
             let _ = writeln!(text, "| {series}, {px} px, {clock} | {a:.1} | {b:.1} | {more:+.0} % |");
         }
@@ -197,7 +199,7 @@ pub(crate) fn markdown(setup: &str, sections: &[Section], same: &[Same]) -> Stri
          through the middle of a lens, over pixels more than 2 inside the outline; depth is in spacings of the cloud. \
          *Holes*: such pixels without a surface. Clouds are blue noise unless the row says otherwise.\n\n## Goals\n\n{}\n\
          ## Beside the paper\n\n{}",
-        machine(),
+        provenance(),
         goals(sections, same),
         paper_table(sections),
     );

@@ -7,7 +7,7 @@ use crate::common::picture_layers::PictureLayers;
 use crate::surfel::lens_camera::LensCamera;
 use crate::surfel::lens_samples::LensSamples;
 use crate::surfel::measured::Measured;
-use crate::surfel::stage::{Stage, drawn, view};
+use crate::surfel::stage::{Stage, drawn, times, view};
 
 /// Where the spread of places on the lens begins.
 const SEED: u64 = 1;
@@ -83,7 +83,7 @@ impl Stage {
         let views = lens_views(&self.camera, count)?;
         let size = [self.camera.width, self.camera.height].map(|n| n as usize);
         let mut mean = Mean::default();
-        let times = self.effort.times(|| mean.take(cloud, &options, &views, size))?;
+        let times = times(|| mean.take(cloud, &options, &views, size))?;
         let (sharp, _) = drawn(cloud, &self.camera, &options)?;
         let picture = PictureLayers { colour: mean.colour, ..sharp };
         Ok(self.row(cloud, ("lens views", format!("{count} views")), mean.points, times, &picture))
