@@ -9,7 +9,7 @@ use crate::error::RadiosityError;
 use crate::factor;
 use crate::kernel::gauss;
 use crate::polygon::{Polygon, edges};
-use crate::rays::sequence::{lattice, point_of};
+use crate::rays::sequence::{lattice, lattice_of_pairs, point_of};
 use crate::rgb::{Rgb, add, is_light};
 use crate::scene::Scene;
 use crate::tree::{Element, ElementId};
@@ -25,8 +25,15 @@ const NEAR_ORDER: usize = 10;
 
 /// Most surfaces between a patch and a lamp whose shadows are cut exactly; past more, points of the patch are looked at.
 const MOST_CUT: usize = 96;
+/// The same between a patch and a lamp with an area, whose shadows take cells of many points each. Direct light of
+/// `book/scenes/guests.toml` takes 1.3 s, and 9 s with 96.
+const MOST_CUT_FOR_AREAS: usize = 24;
 /// How many points.
 const POINTS: u32 = 64;
+/// How many rays between a patch and a lamp with an area, and how many more for each of these where some are blocked and some are not. Past a ball
+/// of 1150 triangles the light of patches errs by at most 2.3 % of what arrives unshadowed (`regressions.rs`).
+const AREA_RAYS: u32 = 256;
+const IN_HALF_SHADOW: u32 = 4;
 
 /// Irradiance at an unshadowed point with this unit normal.
 pub type Irradiance<'l> = &'l (dyn Fn(DVec3, DVec3) -> Rgb + Sync);
@@ -166,7 +173,7 @@ impl Scene {
                     (rays, &mut *pieces),
                 ),
                 Lamp::Area { polygon, exitance, shadow } => {
-                    (self.lit_by_area(element, polygon, exitance, shadow, pieces), false)
+                    (self.lit_by_area(element, (polygon, exitance), shadow, (rays, &mut *pieces)), false)
                 }
             };
             edge |= cut;
@@ -276,21 +283,49 @@ impl Scene {
         (sum, seen > 0 && seen < POINTS)
     }
 
+    /// Past more than [`MOST_CUT_FOR_AREAS`] surfaces, exact but for the shadows, which rays find: what each
+    /// surface hides is cut by all those before it.
     fn lit_by_area(
         &self,
         element: &Element,
-        lamp: &Polygon,
-        exitance: Rgb,
+        (lamp, exitance): (&Polygon, Rgb),
         shadow: bool,
-        pieces: &mut Pieces,
+        (rays, pieces): (&Surroundings, &mut Pieces),
     ) -> Rgb {
         let near = lamp.moved(self.by, self.scale);
         let shaft = Shaft::new(&element.polygon, &near).with_planes();
         let list = if shadow { self.boxes.in_shaft(&shaft, &self.occluders) } else { vec![] };
-        let all: Vec<&Polygon> = list.iter().map(|&i| &self.occluders[i as usize]).collect();
+        let is_crowded = list.len() > MOST_CUT_FOR_AREAS;
+        let cut = if is_crowded { &[][..] } else { &list };
+        let all: Vec<&Polygon> = cut.iter().map(|&i| &self.occluders[i as usize]).collect();
         let goal = self.options.factors.goal(element.polygon.area(), 1);
         let (mutual, _) = cubature::mutual(&element.polygon, &near, &all, goal, pieces);
         let share = factor::of_mutual(mutual, element.polygon.area()).value;
-        exitance.map(|e| e * share)
+        let open = if is_crowded && share > 0.0 { open_share(&element.polygon, &near, rays) } else { 1.0 };
+        exitance.map(|e| e * share * open)
     }
+}
+
+/// The share of the light from a lamp to a patch that arrives, by [`AREA_RAYS`] between points spread evenly over both, or
+/// [`IN_HALF_SHADOW`] times as many.
+fn open_share(patch: &Polygon, lamp: &Polygon, rays: &Surroundings) -> f64 {
+    let (mut arriving, mut sent) = (0.0, 0.0);
+    for k in 0..AREA_RAYS * IN_HALF_SHADOW {
+        if k == AREA_RAYS && (arriving == 0.0 || arriving == sent) {
+            break;
+        }
+        let [on_patch, on_lamp] = lattice_of_pairs(k);
+        let from = point_of(patch.vertices(), on_patch);
+        let to = point_of(lamp.vertices(), on_lamp);
+        let way = to - from;
+        let cosines = patch.normal().dot(way).max(0.0) * (-lamp.normal().dot(way)).max(0.0);
+        if cosines <= 0.0 {
+            continue;
+        }
+        let weight = cosines / way.length_squared().powi(2);
+        sent += weight;
+        arriving += if rays.is_blocked(from + patch.normal() * LIFT, to) { 0.0 } else { weight };
+    }
+    // Where no point of the patch sees the front of the lamp, what the whole patch gets is next to nothing.
+    if sent > 0.0 { arriving / sent } else { 0.0 }
 }

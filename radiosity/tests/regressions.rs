@@ -289,3 +289,71 @@ fn progress_is_told_while_light_and_links_are_found() {
     let told = told.into_inner().expect("no panic");
     assert!(told.len() > lit + 6 && told.iter().all(|share| (0.0..=1.0).contains(share)));
 }
+
+/// A sphere of latitudes and longitudes.
+fn ball(centre: DVec3, radius: f64, rings: usize) -> Vec<Surface> {
+    let at = |i: usize, j: usize| {
+        let (sin, cos) = (std::f64::consts::PI * i as f64 / rings as f64).sin_cos();
+        let (y, x) = (std::f64::consts::PI * j as f64 / rings as f64).sin_cos();
+        centre + radius * dvec3(sin * x, sin * y, cos)
+    };
+    let mut surfaces = vec![];
+    for (i, j) in (0..rings).flat_map(|i| (0..2 * rings).map(move |j| (i, j))) {
+        let ring = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        let corners = match i {
+            0 => vec![ring[0], ring[1], ring[2]],
+            _ if i + 1 == rings => vec![ring[0], ring[1], ring[3]],
+            _ => ring.to_vec(),
+        };
+        surfaces.push(Surface::new(&corners, [0.5; 3]));
+    }
+    surfaces
+}
+
+/// Every triangle of a ball between a patch and a lamp with an area was cut by all those before it: rooms with two balls took minutes, and
+/// this 25 times as long. Rays must find what cutting found.
+#[test]
+fn light_of_a_lamp_past_a_ball_of_many_triangles_is_right() {
+    let (centre, radius) = (dvec3(0.1, 0.0, 1.0), 0.4);
+    let lamp = quad(dvec3(-0.4, -0.4, 2.4), dvec3(0.0, 0.8, 0.0), dvec3(0.8, 0.0, 0.0));
+    let tiles: Vec<_> = (0..16 * 16)
+        .map(|i| dvec3(-2.0 + 0.25 * f64::from(i % 16), -2.0 + 0.25 * f64::from(i / 16), 0.0))
+        .map(|low| quad(low, DVec3::X * 0.25, DVec3::Y * 0.25))
+        .collect();
+    let mut surfaces = ball(centre, radius, 24);
+    surfaces.extend(tiles.iter().map(|tile| Surface::new(tile.vertices(), [0.5; 3])));
+    let mut scene = Scene::new(&surfaces, &SceneOptions::DEFAULT.with_squarer(false)).expect("a room");
+    let lamps = [Lamp::Area { polygon: &lamp, exitance: [1.0; 3], shadow: true }];
+    let light = scene.direct(&lamps).expect("lit");
+    assert_eq!(light.len(), surfaces.len());
+    let (mut largest, mut penumbra) = (0.0_f64, 0);
+    for (tile, light) in tiles.iter().zip(&light[surfaces.len() - tiles.len()..]) {
+        let (all, open) = past_sphere(tile.vertices(), lamp.vertices(), centre, radius);
+        penumbra += i32::from(open > 0.02 * all && open < 0.98 * all);
+        largest = largest.max((light[0] - open).abs() / all);
+    }
+    assert!(penumbra > 20 && largest < 0.025, "{penumbra} patches in half shadow, {largest}");
+}
+
+/// What a square patch gets of a square lamp, without and with a sphere between, by 24⁴ points.
+fn past_sphere(patch: &[DVec3], lamp: &[DVec3], centre: DVec3, radius: f64) -> (f64, f64) {
+    const N: usize = 24;
+    let at = |ring: &[DVec3], i: usize, j: usize| {
+        let [u, v] = [i, j].map(|k| (k as f64 + 0.5) / N as f64);
+        ring[0] + (ring[1] - ring[0]) * u + (ring[3] - ring[0]) * v
+    };
+    let area = (lamp[1] - lamp[0]).cross(lamp[3] - lamp[0]).length();
+    let (mut all, mut open) = (0.0, 0.0);
+    for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
+        for (k, l) in (0..N).flat_map(|k| (0..N).map(move |l| (k, l))) {
+            let from = at(patch, i, j);
+            let way = at(lamp, k, l) - from;
+            let share = way.z * way.z / way.length_squared().powi(2);
+            all += share;
+            let nearest = (centre - from).dot(way) / way.length_squared();
+            open += if (from + way * nearest - centre).length() > radius { share } else { 0.0 };
+        }
+    }
+    let scale = area / (std::f64::consts::PI * (N * N * N * N) as f64);
+    (all * scale, open * scale)
+}

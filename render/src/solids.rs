@@ -6,7 +6,8 @@ use pointillist_micropoint::Geometry;
 use pointillist_shade::Source;
 
 /// Distances that are tried to get out of a solid, as shares of the scene's diagonal.
-const STEPS: [f64; 10] = [0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064, 0.128, 0.256, 0.512];
+const STEPS: [f64; 14] =
+    [0.001, 0.002, 0.004, 0.008, 0.012, 0.016, 0.024, 0.032, 0.048, 0.064, 0.096, 0.128, 0.256, 0.512];
 
 /// The closed components of a scene's triangles that are matter.
 ///
@@ -19,6 +20,10 @@ pub struct Solids<'a> {
 }
 
 impl<'a> Solids<'a> {
+    /// How far places that [`Solids::nearest_free`] finds are from solids, over the scene's diagonal. A probe in a surface holds what lights
+    /// that one place, and shows it around.
+    pub const MARGIN: f64 = 0.01;
+
     /// Those of a scene.
     #[must_use]
     pub fn new(prepared: &'a Prepared<'_>) -> Self {
@@ -41,15 +46,14 @@ impl<'a> Solids<'a> {
         self.geometry.solids_around(p).iter().all(|solid| self.rooms.contains(solid))
     }
 
-    /// The first free place on ever larger spheres around `p`, and as far again from where it gets free.
+    /// The first place on ever larger spheres around `p` that is free and [`Solids::MARGIN`] times the scene's diagonal away from all
+    /// solids; where there is none, as in gaps narrower than that, the first free one.
     #[must_use]
     pub fn nearest_free(&self, p: DVec3) -> Option<DVec3> {
-        let steps = STEPS.iter().map(|s| s * self.diagonal);
-        let place = |step: f64| directions().map(move |d| p + d * step);
-        steps.flat_map(place).find(|&q| self.is_free(q)).map(|q| {
-            let further = q + (q - p) * 0.5;
-            if self.is_free(further) { further } else { q }
-        })
+        let margin = Self::MARGIN * self.diagonal;
+        let places = || STEPS.iter().flat_map(|s| directions().map(move |d| p + d * (s * self.diagonal)));
+        let is_clear = |q: &DVec3| self.is_free(*q) && directions().all(|d| self.is_free(*q + d * margin));
+        places().find(is_clear).or_else(|| places().find(|&q| self.is_free(q)))
     }
 }
 

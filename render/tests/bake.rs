@@ -90,6 +90,28 @@ fn matter_is_told_from_rooms_and_has_a_way_out() {
     assert!(solids.nearest_free(DVec3::ZERO).is_some());
 }
 
+/// Probes that were just inside of a solid were moved into its surface, which then showed what lights that one place as a dark square.
+#[test]
+fn what_is_moved_out_of_matter_keeps_off_its_surface() {
+    let mut scene = glowing_room();
+    let (positions, triangles) = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5), false);
+    scene.mesh.add(&Part::new("block", &positions, &triangles)).unwrap();
+    let prepared = Prepared::new(&scene, &()).unwrap();
+    let bounds = prepared.geometry().bounds();
+    let margin = Solids::MARGIN * (bounds.high - bounds.low).length();
+    let solids = Solids::new(&prepared);
+    for depth in [1e-6, 1e-3, 0.01, 0.1, 0.4] {
+        for at in
+            [dvec3(0.5 - depth, 0.1, -0.2), dvec3(0.5 - depth, 0.5 - depth, 0.0), DVec3::splat(0.5 - depth)]
+        {
+            let out = solids.nearest_free(at).unwrap();
+            let off = (out.abs() - 0.5).max_element();
+            // Within a step of the least there must be.
+            assert!(off > 0.9 * margin && (out - at).length() < 3.0 * (depth + margin), "{at} to {out}");
+        }
+    }
+}
+
 #[test]
 fn which_probes_are_buried_is_asked_of_all_at_once() {
     use pointillist_render::buried;

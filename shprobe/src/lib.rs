@@ -63,6 +63,7 @@ mod field;
 mod glossy;
 #[cfg(feature = "invariants")]
 pub mod invariants;
+mod near_cube;
 mod octahedron;
 pub mod place;
 mod sight;

@@ -14,11 +14,18 @@ fn radiance() -> impl Strategy<Value = Sh> {
     vec(color, coefficient_count(2)).prop_map(|c| Sh::new(c).expect("nine coefficients"))
 }
 
-/// What a probe sees: from nothing but a wall in front of it to nothing at all, whose texels differ.
+/// What a probe sees: from nothing but a wall in front of it to nothing at all, whose texels differ; in half of the cases with planes
+/// at some of the nodes that have nothing to do with one another.
 fn distances() -> impl Strategy<Value = DistanceMap> {
     let distance = prop_oneof![3 => 0.0..8.0_f32, 1 => Just(f32::INFINITY), 1 => Just(0.0)];
-    (1..5_usize, vec(distance, 24))
-        .prop_map(|(size, d)| DistanceMap::from_cube(size, 2, &d, 100.0).expect("six faces of four"))
+    let plane = prop_oneof![3 => [-4.0..4.0_f32, -4.0..4.0, -4.0..4.0], 1 => Just([0.0; 3])];
+    (1..5_usize, vec(distance, 24), vec(plane, 25), any::<bool>()).prop_map(
+        |(size, d, planes, has_planes)| {
+            let map = DistanceMap::from_cube(size, 2, &d, 100.0).expect("six faces of four");
+            let planes = &planes[..(size + 1) * (size + 1)];
+            if has_planes { map.with_planes(planes).expect("finite planes") } else { map }
+        },
+    )
 }
 
 /// Probes at lattice points, each with its light and, in half of the cases, what it sees.

@@ -128,7 +128,7 @@ pub enum Strategy {
 /// `--inside`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Inside {
-    /// Move it to the nearest place outside
+    /// Move it to the nearest place outside, a hundredth of the scene's diagonal off the surface
     Move,
     /// Leave it out
     Drop,

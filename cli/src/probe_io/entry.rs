@@ -1,6 +1,6 @@
 //! A probe as it stands in a file.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use pointillist_sh::Sh;
 use pointillist_shprobe::DistanceMap;
 use serde::{Deserialize, Serialize};
@@ -44,6 +44,10 @@ pub struct Distances {
     pub nearness: Vec<f32>,
     /// How far it departs about each node from what is interpolated between them.
     pub deviation: Vec<f32>,
+    /// The plane q·x = 1 of the surface at each node, offsets x from the probe; 0 where none is known. Without it, light along
+    /// edges of rooms is patchy.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub planes: Vec<[f32; 3]>,
 }
 
 impl ProbeEntry {
@@ -74,7 +78,9 @@ impl Distances {
     /// As it is written.
     pub fn of(map: &DistanceMap) -> Self {
         let (nearness, deviation) = map.nodes().iter().map(|n| (short(n[0]), short(n[1]))).unzip();
-        Self { size: map.size(), nearness, deviation }
+        let known = map.planes().iter().any(|q| *q != Vec3::ZERO);
+        let planes = map.planes().iter().filter(|_| known).map(|q| q.to_array().map(short)).collect();
+        Self { size: map.size(), nearness, deviation, planes }
     }
 
     /// As it is used.
@@ -87,11 +93,36 @@ impl Distances {
             return Err(format!("has {} of `nearness` and {} of `deviation`", near.len(), off.len()));
         }
         let nodes: Vec<[f32; 2]> = near.iter().zip(off).map(|(n, d)| [*n, *d]).collect();
-        DistanceMap::new(self.size, &nodes).map_err(|error| error.to_string())
+        let map = DistanceMap::new(self.size, &nodes).map_err(|error| error.to_string())?;
+        if self.planes.is_empty() {
+            return Ok(map);
+        }
+        if self.planes.len() != near.len() {
+            return Err(format!("has {} of `nearness` and {} of `planes`", near.len(), self.planes.len()));
+        }
+        map.with_planes(&self.planes).map_err(|error| format!("`planes`: {error}"))
     }
 }
 
 /// With four digits: distances of surfaces are not known better than a texel is wide.
 fn short(value: f32) -> f32 {
     format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_of_distances_come_back_with_their_planes() {
+        let wall = [0.0, 0.5, 0.0];
+        let map = DistanceMap::new(2, &[[0.25, 0.125]; 9]).expect("nine nodes");
+        let plain = Distances::of(&map);
+        assert!(plain.planes.is_empty() && plain.map() == Ok(map.clone()));
+        let map = map.with_planes(&[wall; 9]).expect("nine planes");
+        let mut written = Distances::of(&map);
+        assert_eq!(written.map(), Ok(map));
+        written.planes.pop();
+        assert_eq!(written.map(), Err("has 9 of `nearness` and 8 of `planes`".to_owned()));
+    }
 }

@@ -29,6 +29,13 @@ pub(crate) fn lattice(index: u32, shift: [f64; 2]) -> [f64; 2] {
     [at(0), at(1)]
 }
 
+/// Two pairs that are spread evenly together: the golden ratio's relatives in four dimensions, powers of the root of x⁵ = x + 1.
+pub(crate) fn lattice_of_pairs(index: u32) -> [[f64; 2]; 2] {
+    const ROOT: f64 = 1.167_303_978_261_418_7;
+    let at = |power: i32| (0.5 + f64::from(index) * ROOT.powi(-power)).fract();
+    [[at(1), at(2)], [at(3), at(4)]]
+}
+
 /// A shift for [`lattice`].
 pub(crate) fn shift_of(place: u64) -> [f64; 2] {
     let unit = |bits: u64| (bits >> 40) as f64 / (1_u64 << 24) as f64;

@@ -1,10 +1,9 @@
 //! Facts about lines that shine.
 
 use super::area::{
-    SeenPicture, Shape, picture_of_shape, tiles_do_not_matter_to, transmittance,
+    SeenPicture, Shape, agrees_with_rays_to, picture_of_shape, tiles_do_not_matter_to,
     triangle_order_does_not_matter_to,
 };
-use super::check;
 use crate::AreaOptions;
 use glam::DVec3;
 use pointillist_micropoint::View;
@@ -51,9 +50,7 @@ pub fn agrees_with_rays(
     let Some(picture) = seen_picture(soup, view, [from, to]) else { return Ok(()) };
     for p in picture.iter().flatten() {
         let targets = (0..n).map(|k| from + (to - from) * ((f64::from(k) + 0.5) / f64::from(n)));
-        let above = targets.filter(|t| p.normal.dot(*t - p.position) > 0.0);
-        let seen = above.map(|t| transmittance(soup, p.position, t)).sum::<f64>() / f64::from(n);
-        check((seen - p.area).abs() <= tolerance, || format!("{p:?}: {seen} by rays"))?;
+        agrees_with_rays_to(soup, p, targets, tolerance)?;
     }
     Ok(())
 }

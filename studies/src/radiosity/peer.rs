@@ -1,10 +1,11 @@
-//! Pairs a second and errors beside pyviewfactor, if `POINTILLIST_PYVIEWFACTOR` names a Python that has it.
+//! Pairs a second and errors beside pyviewfactor, if there is a Python that has it.
 
 use std::fmt::Write as _;
 use std::process::{Command, Stdio};
 
 use pointillist_radiosity::{FactorOptions, Scene, SceneOptions, Transport};
 
+use crate::common::peers;
 use crate::common::report::Outcome;
 use crate::common::timing::timed;
 use crate::radiosity::boxes::cornell;
@@ -31,6 +32,9 @@ found = factors(mesh)
 rate = count * (count - 1) / 2 / (time.perf_counter() - start)
 print(json.dumps([rate, found.T.ravel().tolist()]))
 "#;
+
+/// Names a Python that has it.
+const PYTHON: &str = "POINTILLIST_PYVIEWFACTOR";
 
 /// Longest edge of the patches.
 const PATCH: f64 = 0.126;
@@ -106,10 +110,9 @@ pub(crate) fn compare(text: &mut String) -> Outcome {
             peer.rate,
             Errors::of(&peer.factors, &truth, count).columns()
         )?,
-        None => writeln!(
-            text,
-            "\npyviewfactor was not run: `POINTILLIST_PYVIEWFACTOR` names no Python that has it."
-        )?,
+        None => {
+            writeln!(text, "\n{} `studies/peers/build python` does.", peers::skipped("pyviewfactor", PYTHON))?
+        }
     }
     Ok(true)
 }
@@ -136,7 +139,7 @@ fn matrix(transport: &Transport) -> Vec<f64> {
 
 /// What pyviewfactor says of the same patches; none without it.
 fn peer(transport: &Transport) -> Fallible<Option<Peer>> {
-    let Some(python) = std::env::var_os("POINTILLIST_PYVIEWFACTOR") else { return Ok(None) };
+    let Some(python) = peers::find(PYTHON, "python/bin/python") else { return Ok(None) };
     let mut child =
         Command::new(python).args(["-c", SCRIPT]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
     let faces: Vec<Vec<[f64; 3]>> =

@@ -8,6 +8,7 @@ use glam::{DVec3, dvec3};
 use pointillist_delaunay::{Delaunay, Hint, Locator, Partition};
 use pointillist_shprobe::{ProbeError, place};
 
+use crate::common::peers;
 use crate::common::report::{Limit, on_one_thread, on_threads, verdict};
 use crate::common::timing::{Clock, least_seconds};
 use crate::shprobe::peer::{Peer, Took};
@@ -76,6 +77,9 @@ fn sets(quick: bool) -> Vec<Set> {
     list
 }
 
+/// Names a program that takes points as `studies/peers/cgal` does.
+pub(crate) const CGAL: &str = "POINTILLIST_CGAL";
+
 /// What building took.
 struct Built {
     /// Processor seconds on one thread, and seconds that passed on two.
@@ -120,9 +124,14 @@ fn built(set: &Set, peer: Option<&Peer>, rounds: usize) -> Result<Built, ProbeEr
     Ok(best)
 }
 
+/// CGAL's sequential triangulation, if it is there.
+pub(crate) fn cgal() -> Option<Peer> {
+    Peer::find(CGAL, "cgal")
+}
+
 /// Tables of building, and lines about goals.
 pub(crate) fn build_table(quick: bool) -> Result<[String; 2], ProbeError> {
-    let peer = Peer::named("POINTILLIST_CGAL");
+    let peer = cgal();
     let mut text = "| points | tetrahedra | CPU ms, 1 thread | list of cells, CPU ms | ms, 2 threads | peer, CPU ms | CPU, in the peer's | 2 threads, in the peer's |\n\
                     | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
         .to_owned();
@@ -168,8 +177,9 @@ pub(crate) fn build_table(quick: bool) -> Result<[String; 2], ProbeError> {
 
 /// What the crate `delaunay` takes for as many points as the smallest sets have: larger ones take it minutes.
 fn other_crate() -> String {
-    let Some(peer) = Peer::named("POINTILLIST_DELAUNAY") else {
-        return "\nThe crate `delaunay` was skipped: `POINTILLIST_DELAUNAY` names no program; `studies/peers/delaunay` is one.\n".to_owned();
+    let variable = "POINTILLIST_DELAUNAY";
+    let Some(peer) = Peer::find(variable, "delaunay") else {
+        return format!("\n{}\n", peers::skipped("The crate `delaunay`", variable));
     };
     let sets = [("random 432", random(432)), ("grid 12×6×6", grid([12, 6, 6]))];
     let found = sets.map(|(name, points)| match peer.run(&points, &[]) {
@@ -214,7 +224,7 @@ fn found(points: &[DVec3], queries: &[DVec3], path: &[DVec3]) -> Result<[f64; 2]
 
 /// The table of finding, and lines about goals.
 pub(crate) fn locate_table(quick: bool) -> Result<[String; 2], ProbeError> {
-    let peers = [Peer::named("POINTILLIST_CGAL"), Peer::named("POINTILLIST_CGAL_FAST")];
+    let peers = [cgal(), Peer::find("POINTILLIST_CGAL_FAST", "cgal_fast")];
     let count = if quick { 100_000 } else { 500_000 };
     let queries = place::random(DVec3::splat(INNER[0]), DVec3::splat(INNER[1]), count, 23);
     let path = path(count);

@@ -7,7 +7,9 @@ use std::process::Command;
 
 use glam::DVec3;
 
-/// An executable that the environment names.
+use crate::common::peers;
+
+/// An executable.
 pub(crate) struct Peer(PathBuf);
 
 /// What it took.
@@ -36,9 +38,9 @@ impl Took {
 }
 
 impl Peer {
-    /// The program that a variable names, if any.
-    pub(crate) fn named(variable: &str) -> Option<Self> {
-        std::env::var_os(variable).map(PathBuf::from).filter(|p| p.is_file()).map(Self)
+    /// The program of [`peers::find`].
+    pub(crate) fn find(variable: &str, name: &str) -> Option<Self> {
+        peers::find(variable, name).map(Self)
     }
 
     /// Runs it; `None`, with a word about it, if that fails.

@@ -7,6 +7,7 @@ use std::time::Instant;
 use pointillist_shprobe::place;
 
 use crate::common::data;
+use crate::common::peers;
 use crate::common::provenance::provenance;
 use crate::common::report::{Limit, Outcome, Row, chart_along, chart_of, verdict, write, write_csv};
 use crate::common::timing::Timing;
@@ -209,10 +210,11 @@ fn points(report: &mut Report, wish: &Wish) -> Result<(), Fault> {
     report.goals += &goals;
     let [finding, goals] = delaunay::locate_table(wish.quick)?;
     report.goals += &goals;
-    let peer = if std::env::var_os("POINTILLIST_CGAL").is_some() {
-        "The peer is CGAL's sequential `Delaunay_triangulation_3`, on the same points in the same run, rounds of both in turn."
-    } else {
-        "The peer was skipped: `POINTILLIST_CGAL` names no program."
+    let peer = match delaunay::cgal() {
+        Some(_) => {
+            "The peer is CGAL's sequential `Delaunay_triangulation_3`, on the same points in the same run, rounds of both in turn.".to_owned()
+        }
+        None => peers::skipped("The peer, CGAL,", delaunay::CGAL),
     };
     report.section("Dividing space", &format!("{peer}\n\n{building}"));
     let text = "Weights are computed, too; the peer only finds the cell. Queries are in the inner four fifths of the cube.\n\n";

@@ -188,6 +188,9 @@ fn part(count: usize, options: &BakeOptions) -> Result<Range<usize>, CliError> {
     Ok(count * part.first as usize / parts..count * (part.last as usize + 1) / parts)
 }
 
+/// Raised when something else is made of the same sight, so that probes of before are baked again. 1: maps of distances with planes.
+const MADE: u8 = 1;
+
 /// Stands for the scene, the settings and light that is known already.
 fn fingerprint(scene: &Scene, options: &BakeOptions, known: Option<&KnownLight>) -> String {
     let mut hash = XxHash3_64::default();
@@ -202,6 +205,7 @@ fn fingerprint(scene: &Scene, options: &BakeOptions, known: Option<&KnownLight>)
     hash.write(&[options.thorough, options.dering, keep].map(u8::from));
     hash.write(options.what.name().as_bytes());
     hash.write(env!("CARGO_PKG_VERSION").as_bytes());
+    hash.write(&[MADE]);
     format!("{:016x}", hash.finish())
 }
 
@@ -285,7 +289,8 @@ impl Bake<'_> {
         // With settings that change what is made of the same sight.
         let settings =
             [self.options.distances, u32::from(self.options.thorough) + 2 * u32::from(self.options.dering)];
-        Ok(numbers.into_iter().map(|n| format!("{n:016x}{:02x}{}", settings[0], settings[1])).collect())
+        let mark = |n: u64| format!("{n:016x}{:02x}{}{MADE}", settings[0], settings[1]);
+        Ok(numbers.into_iter().map(mark).collect())
     }
 
     /// What `--dry-run` tells. All probes count as new, whatever the output holds.

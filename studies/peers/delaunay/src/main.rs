@@ -1,6 +1,6 @@
 //! Reads points as little-endian `f64`s, divides space with the crate `delaunay`, and prints what that took.
 //!
-//! `cargo build --release`, then `POINTILLIST_DELAUNAY=target/release/delaunay-peer cargo run --release -p studies -- shprobe`.
+//! `studies/peers/build` builds it; then `cargo run --release -p studies -- shprobe` runs it.
 
 use std::time::Instant;
 

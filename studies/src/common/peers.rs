@@ -1,0 +1,22 @@
+//! Programs of others that results are compared with, if they are there.
+
+use std::path::PathBuf;
+
+/// A program that a variable names, or that `studies/peers/build` made under this name.
+pub(crate) fn find(variable: &str, name: &str) -> Option<PathBuf> {
+    let named = std::env::var_os(variable).map(PathBuf::from);
+    named.or_else(|| built(name)).filter(|path| path.is_file())
+}
+
+/// Why a peer is not in a table, as a sentence.
+pub(crate) fn skipped(what: &str, variable: &str) -> String {
+    format!(
+        "{what} was skipped: neither did `studies/peers/build` make it, nor does `{variable}` name a program."
+    )
+}
+
+/// This program is in `target/release`, peers are in `target/peers`.
+fn built(name: &str) -> Option<PathBuf> {
+    let program = std::env::current_exe().ok()?;
+    Some(program.parent()?.parent()?.join("peers").join(name))
+}
