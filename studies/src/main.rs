@@ -57,7 +57,7 @@ fn usage() -> String {
     for (name, what, _) in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`micropoint quick` prints a trial of a minute; `surfel quick` and `shprobe quick` take as long and write elsewhere. `shprobe --pictures DIR` and `together DIR` draw, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`.\n"
+    text + "  all         all of these\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`micropoint quick` prints a trial of a minute; `surfel quick` and `shprobe quick` take some minutes and write elsewhere. `shprobe --pictures DIR` and `together DIR` draw, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`.\n"
 }
 
 fn main() -> ExitCode {

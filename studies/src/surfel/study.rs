@@ -58,7 +58,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     measure(Effort::FULL, out_dir)
 }
 
-/// The same in a minute, with fewer rays and runs, into the temporary folder.
+/// The same in some minutes, with fewer rays and runs, into the temporary folder.
 pub(crate) fn run_quick() -> Outcome {
     let out_dir = std::env::temp_dir().join("pointillist-studies");
     eprintln!("surfel: a trial; its tables go to {}", out_dir.display());
