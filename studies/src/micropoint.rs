@@ -2,6 +2,7 @@
 
 mod bumps;
 pub(crate) mod checker;
+mod embree;
 pub(crate) mod foliage;
 mod growth;
 mod leaves;
@@ -55,7 +56,9 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
         on_one_thread(|| {
             rows.extend(ours(case));
             rows.extend(points(case));
-        });
+            rows.extend(embree::rows(case)?);
+            Ok::<(), std::io::Error>(())
+        })?;
     }
     write_csv(out_dir, "micropoint", &[], &rows)?;
     chart(out_dir, "micropoint", &rows)?;
@@ -201,6 +204,7 @@ fn markdown(rows: &[Row]) -> String {
     if data::folder().is_none() {
         let _ = writeln!(text, "\n{}", data::SKIPPED);
     }
+    text += &embree::section(rows);
     let _ = write!(text, "\n## All settings\n\n{}", table(&[], rows));
     text
 }

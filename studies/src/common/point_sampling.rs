@@ -29,6 +29,16 @@ impl Pinhole {
         Self { eye: scene.camera.eye, right, up, forward: -backward, scale, centre: 0.5 * size }
     }
 
+    /// Right, down and forward, of unit length.
+    pub(crate) fn axes(&self) -> [DVec3; 3] {
+        [self.right, -self.up, self.forward]
+    }
+
+    /// Pixels per unit of x/depth.
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
     /// Pixel position and nearness (1/depth) of a point in front of the eye.
     fn project(&self, local: DVec3) -> DVec3 {
         (dvec2(local.x, -local.y) / local.z * self.scale + self.centre).extend(1.0 / local.z)
