@@ -134,8 +134,9 @@ static double next_random(std::uint64_t& state) {
 }
 
 constexpr unsigned LANES = 16;
-// How far off a surface rays begin, relative to the distance from the eye.
-constexpr double OFF = 1e-5;
+// How far off a surface rays begin, relative to the distance from the eye. With 1e-5 the bias on the reference terrain is eight times as large;
+// with 1e-7 surfaces would shadow themselves by the rounding of floats.
+constexpr double OFF = 1e-6;
 
 // What one sample of a packet sees so far.
 struct Sample {
