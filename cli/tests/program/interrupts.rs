@@ -26,8 +26,8 @@ translate = [0.3, 0.2, 0.5]
 name = "lamp"
 type = "rect"
 position = [1, 2, 3]
-edge_u = [1, 0, 0]
-edge_v = [0, 1, 0]
+edge_u = [0, 1, 0]
+edge_v = [1, 0, 0]
 radiance = [3, 3, 3]
 samples = 64
 "#;
