@@ -25,11 +25,14 @@ const NEAR_ORDER: usize = 10;
 
 /// Most surfaces between a patch and a lamp whose shadows are cut exactly; past more, points of the patch are looked at.
 const MOST_CUT: usize = 96;
+
 /// The same between a patch and a lamp with an area, whose shadows take cells of many points each. Direct light of
 /// `book/scenes/guests.toml` takes 1.3 s, and 9 s with 96.
 const MOST_CUT_FOR_AREAS: usize = 24;
+
 /// How many points.
 const POINTS: u32 = 64;
+
 /// How many rays between a patch and a lamp with an area, and how many more for each of these where some are blocked and some are not. Past a ball
 /// of 1150 triangles the light of patches errs by at most 2.3 % of what arrives unshadowed (`regressions.rs`).
 const AREA_RAYS: u32 = 256;

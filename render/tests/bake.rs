@@ -76,11 +76,17 @@ fn what_glows_bounces_even_if_probes_are_not_to_hold_it() {
     assert!((light / PI - Vec3::splat(0.5)).abs().max_element() < 2e-3, "{light}");
 }
 
-#[test]
-fn matter_is_told_from_rooms_and_has_a_way_out() {
+/// A block of side 1 in the middle of the room.
+fn room_with_block() -> Scene {
     let mut scene = glowing_room();
     let (positions, triangles) = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5), false);
     scene.mesh.add(&Part::new("block", &positions, &triangles)).unwrap();
+    scene
+}
+
+#[test]
+fn matter_is_told_from_rooms_and_has_a_way_out() {
+    let scene = room_with_block();
     let prepared = Prepared::new(&scene, &()).unwrap();
     let solids = Solids::new(&prepared);
     // The camera is in the room, so the room is none.
@@ -93,9 +99,7 @@ fn matter_is_told_from_rooms_and_has_a_way_out() {
 /// Probes that were just inside of a solid were moved into its surface, which then showed what lights that one place as a dark square.
 #[test]
 fn what_is_moved_out_of_matter_keeps_off_its_surface() {
-    let mut scene = glowing_room();
-    let (positions, triangles) = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5), false);
-    scene.mesh.add(&Part::new("block", &positions, &triangles)).unwrap();
+    let scene = room_with_block();
     let prepared = Prepared::new(&scene, &()).unwrap();
     let bounds = prepared.geometry().bounds();
     let margin = Solids::MARGIN * (bounds.high - bounds.low).length();

@@ -53,8 +53,8 @@ const MOST_STEPS: usize = 500;
 /// A probe that holds what it saw is exact at its own position, but biased all around it where light has a peak or a
 /// minimum there. A fitted probe has a small error everywhere and a much smaller one on the whole. \[6\] does the same
 /// for vertices of meshes. The normal equations Σ wₛ aₛaₛᵀ X = Σ wₛ aₛ Tₛ, with a row aₛ of shares for each candidate,
-/// are solved by conjugate gradients from what the probes saw. A candidate counts as far as a probe sees it, on a surface from in front. On a surface the row is that of the irradiance for its
-/// normal, which ties all coefficients of its probes together; the error in free space is the mean over all normals.
+/// are solved by conjugate gradients from what the probes saw. A candidate counts as far as a probe sees it, on a surface from in
+/// front. On a surface the row is that of the irradiance for its normal, which ties all coefficients of its probes together; the error in free space is the mean over all normals.
 ///
 /// # Errors
 /// As [`adaptive`](super::adaptive), and [`ProbeError::NoSuchProbe`] for a number that is no candidate.

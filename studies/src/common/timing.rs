@@ -25,7 +25,7 @@ const LONG: f64 = 1.0;
 
 /// What a report says of its times.
 pub(crate) const HOW: &str = "Times are medians of three quiet runs, or one if it takes more than a second: fixed work before and after each takes no more \
-    than 5 % longer than on the idle machine. ± is half of what they differ by; *noisy* times found too few quiet runs.";
+    than 5 % longer than the fastest that the study has seen. ± is half of what they differ by; *noisy* times found too few quiet runs.";
 
 /// What times are taken with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
