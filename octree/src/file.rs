@@ -14,7 +14,8 @@ use glam::DVec3;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use twox_hash::XxHash3_64;
 
-const MARK: &[u8; 8] = b"PTOCTRE1";
+/// How every file begins.
+pub const MARK: &[u8; 8] = b"PTOCTRE1";
 const END_MARK: &[u8; 8] = b"1ERTCOTP";
 const HEADER_BYTES: usize = 56;
 const ENTRY_BYTES: usize = 40;
@@ -29,6 +30,8 @@ pub struct TreeHeader {
     pub cube: Cube,
     /// Bytes of each point behind its position.
     pub payload: u32,
+    /// What those bytes are: any number of the caller's.
+    pub layout: u32,
 }
 
 impl TreeHeader {
@@ -39,15 +42,16 @@ impl TreeHeader {
         let cube = self.cube.low.to_array().into_iter().chain([self.cube.side]);
         bytes[16..48].chunks_exact_mut(8).zip(cube).for_each(|(b, v)| b.copy_from_slice(&v.to_le_bytes()));
         bytes[48..52].copy_from_slice(&self.payload.to_le_bytes());
+        bytes[52..].copy_from_slice(&self.layout.to_le_bytes());
         bytes
     }
 
     fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let number = |at: usize| f64::from_bits(u64_at(bytes, at));
         let cube = Cube { low: DVec3::new(number(16), number(24), number(32)), side: number(40) };
-        let payload = u64_at(bytes, 48);
+        let (payload, layout) = (u64_at(bytes, 48) as u32, (u64_at(bytes, 48) >> 32) as u32);
         let is_sound = bytes.starts_with(MARK) && cube.is_valid() && payload <= 1 << 16;
-        is_sound.then(|| Self { fingerprint: u64_at(bytes, 8), cube, payload: payload as u32 })
+        is_sound.then(|| Self { fingerprint: u64_at(bytes, 8), cube, payload, layout })
     }
 }
 

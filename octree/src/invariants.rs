@@ -20,7 +20,7 @@ pub fn file_of(points: &[DVec3], names: &[u32], in_memory: u64) -> Result<Vec<u8
     for (point, name) in points.iter().zip(names) {
         builder.push(*point, &name.to_le_bytes())?;
     }
-    let mut writer = TreeWriter::new(vec![], &TreeHeader { fingerprint: 1, cube, payload: 4 })?;
+    let mut writer = TreeWriter::new(vec![], &TreeHeader { fingerprint: 1, cube, payload: 4, layout: 0 })?;
     builder.finish(&mut |key, records| writer.node(key, records), &mut |_| ())?;
     Ok(writer.finish()?)
 }

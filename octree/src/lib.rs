@@ -15,7 +15,7 @@
 //! for i in 0..1000 {
 //!     builder.push(DVec3::splat(f64::from(i) / 1000.0), &[i as u8])?;
 //! }
-//! let mut writer = TreeWriter::new(vec![], &TreeHeader { fingerprint: 7, cube, payload: 1 })?;
+//! let mut writer = TreeWriter::new(vec![], &TreeHeader { fingerprint: 7, cube, payload: 1, layout: 0 })?;
 //! builder.finish(&mut |key, records| writer.node(key, records), &mut |_| ())?;
 //! let reader = TreeReader::new(Cursor::new(writer.finish()?))?;
 //! // Few enough for one node.
@@ -61,6 +61,6 @@ pub use cache::NodeCache;
 pub use cube::Cube;
 pub use cut::{Cut, CutOptions, cut};
 pub use error::OctreeError;
-pub use file::{TreeHeader, TreeReader, TreeWriter};
+pub use file::{MARK as TREE_MARK, TreeHeader, TreeReader, TreeWriter};
 pub use key::NodeKey;
 pub use tree::{Node, Tree};

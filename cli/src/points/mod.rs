@@ -7,6 +7,7 @@ mod legend;
 mod palette;
 mod reading;
 mod selection;
+mod tree;
 
 pub use cloud::PointSet;
 pub use colouring::{ColorBy, Colouring, Key, Legend, Part};
@@ -14,4 +15,5 @@ pub use layers::{Drawn, PointLayer, window_of};
 pub use legend::draw_legend;
 pub use palette::{ColorMap, MapTable, class_name};
 pub use reading::{PointOptions, PointSink, read_points};
+pub use tree::{Trees, is_large};
 pub use selection::{Selection, Selector, WorldBox};
