@@ -15,5 +15,5 @@ pub use layers::{Drawn, PointLayer, window_of};
 pub use legend::draw_legend;
 pub use palette::{ColorMap, MapTable, class_name};
 pub use reading::{PointOptions, PointSink, read_points};
-pub use tree::{Trees, is_large};
 pub use selection::{Selection, Selector, WorldBox};
+pub use tree::{Trees, is_large};

@@ -128,8 +128,9 @@ fn of_build(cloud: &Path, path: &Path, points: u64, fields: Fields, error: Octre
 }
 
 fn refusal(cloud: &Path, error: &OctreeError) -> InputError {
-    InputError::of_file(input::name_of(cloud), format!("no octree can be made of it: {error}"))
-        .with_help("remove points that are there many times, or give it more --memory so that it is drawn without")
+    InputError::of_file(input::name_of(cloud), format!("no octree can be made of it: {error}")).with_help(
+        "remove points that are there many times, or give it more --memory so that it is drawn without",
+    )
 }
 
 fn cannot_write(path: &Path, points: u64, fields: Fields, error: &io::Error) -> InputError {
@@ -140,4 +141,3 @@ fn cannot_write(path: &Path, points: u64, fields: Fields, error: &io::Error) -> 
         "making it takes {needed} in this folder, half of which stay; make room, or link the cloud into a folder with room (`ln -s`)"
     ))
 }
-

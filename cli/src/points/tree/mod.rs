@@ -64,14 +64,17 @@ pub fn is_large(path: &Path, wanted: bool) -> bool {
     }
     let length = file.seek(SeekFrom::End(0)).unwrap_or(0);
     let available = memory::available_bytes().unwrap_or(u64::MAX);
-    head.starts_with(TREE_MARK) || wanted || expected_points(&head, length).saturating_mul(DRAWN_BYTES) > available
+    head.starts_with(TREE_MARK)
+        || wanted
+        || expected_points(&head, length).saturating_mul(DRAWN_BYTES) > available
 }
 
 /// Points of a file: those that a LAS announces, or what would fit into as many bytes.
 fn expected_points(head: &[u8], length: u64) -> u64 {
     /// Bytes of a point of other files, at least.
     const LEAST: u64 = 15;
-    let number = |at: usize| head.get(at..at + 8).map_or(0, |b| u64::from_le_bytes(b.try_into().unwrap_or_default()));
+    let number =
+        |at: usize| head.get(at..at + 8).map_or(0, |b| u64::from_le_bytes(b.try_into().unwrap_or_default()));
     if head.starts_with(b"LASF") {
         // The number of points is in two places: an old one with 32 bits, which are 0 if they do not suffice.
         let old = number(107) & 0xffff_ffff;
@@ -212,7 +215,8 @@ impl TreeCloud {
         let name = input::name_of(path);
         let reader = if is_tree(path) {
             let damaged = |error: pointillist_octree::OctreeError| {
-                InputError::of_file(&name, error.to_string()).with_help("remove it, and draw from the cloud that it was made from")
+                InputError::of_file(&name, error.to_string())
+                    .with_help("remove it, and draw from the cloud that it was made from")
             };
             let file = File::open(path).map_err(|error| input::cannot_read(&name, &error))?;
             TreeReader::new(file).map_err(damaged)?
@@ -221,7 +225,8 @@ impl TreeCloud {
         };
         let header = *reader.header();
         let fields = Fields::from_layout(header.layout, header.payload).ok_or_else(|| {
-            InputError::of_file(&name, "the octree is of another version").with_help("remove it; it is made again from the cloud")
+            InputError::of_file(&name, "the octree is of another version")
+                .with_help("remove it; it is made again from the cloud")
         })?;
         Ok(Self { path: path.to_owned(), name, reader, fields })
     }
@@ -241,7 +246,8 @@ impl TreeCloud {
         if let Some(reader) = make::open(&tree, fingerprint) {
             return Ok(reader);
         }
-        let why = if tree.exists() { "is damaged or of another file, and is made anew" } else { "is made, once" };
+        let why =
+            if tree.exists() { "is damaged or of another file, and is made anew" } else { "is made, once" };
         tell(&format!("{} {why}", tree.display()));
         make::make(path, options.drop_invalid, fingerprint, memory / 2, progress)?;
         make::open(&tree, fingerprint).ok_or_else(|| {

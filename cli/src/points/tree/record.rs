@@ -16,8 +16,15 @@ const OPACITIES: u32 = 8;
 const SCALARS: u32 = 16;
 
 /// Bytes of each.
-const SIZES: [(u32, usize); 7] =
-    [(COLOURS, 6), (NORMALS, 12), (RADII, 4), (OPACITIES, 4), (SCALARS, 2), (SCALARS << 1, 2), (SCALARS << 2, 2)];
+const SIZES: [(u32, usize); 7] = [
+    (COLOURS, 6),
+    (NORMALS, 12),
+    (RADII, 4),
+    (OPACITIES, 4),
+    (SCALARS, 2),
+    (SCALARS << 1, 2),
+    (SCALARS << 2, 2),
+];
 
 /// Measured values have 16 bits, as in LAS; this one stands for none, and larger ones are moved below it.
 const NO_VALUE: u16 = u16::MAX;
