@@ -78,11 +78,16 @@ impl<F: Read + Write + Seek> Builder<F> {
     /// Takes a point.
     ///
     /// # Errors
-    /// [`OctreeError::BadPayload`]; [`OctreeError::Io`] of the temporary file.
+    /// [`OctreeError::BadPayload`], [`OctreeError::Outside`]; [`OctreeError::Io`] of the temporary file.
     pub fn push(&mut self, position: glam::DVec3, payload: &[u8]) -> Result<(), OctreeError> {
         let wanted = self.stride - POSITION_BYTES;
         if payload.len() != wanted {
             return Err(OctreeError::BadPayload { length: payload.len(), wanted });
+        }
+        let (low, high) = (self.cube.low, self.cube.low + self.cube.side);
+        // Not `<` or `>`, which NaN passes.
+        if !(position.cmpge(low).all() && position.cmple(high).all()) {
+            return Err(OctreeError::Outside { position });
         }
         for (bytes, c) in self.record.chunks_exact_mut(4).zip(self.cube.cell(position)) {
             bytes.copy_from_slice(&c.to_le_bytes());

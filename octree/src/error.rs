@@ -24,6 +24,12 @@ pub enum OctreeError {
         /** Bytes of the others. */
         wanted: usize,
     },
+    /// A point is outside of the cube that was announced, or not finite.
+    #[error("a point is at {position}, outside of the bounds that were announced")]
+    Outside {
+        /** Where it is. */
+        position: DVec3,
+    },
     /// More points are at one place than fit into memory together.
     #[error("{count} points are within {extent:e} of one another, at {position}; at most {most} can be")]
     TooDense {

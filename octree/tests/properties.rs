@@ -102,3 +102,11 @@ fn points_at_one_place_are_a_leaf_or_refused() {
     let error = invariants::file_of(&more, &names, 1 << 30).unwrap_err();
     assert!(matches!(error, OctreeError::TooDense { count: 20_001, most: 20_000, .. }), "{error}");
 }
+
+#[test]
+fn points_outside_of_the_bounds_are_refused() {
+    // Found by fuzzing: minima pass over NaN, and bounds were then those of the points behind it.
+    let points = [dvec3(-1.0, 0.0, 0.0), dvec3(f64::NAN, 0.0, 0.0), dvec3(1.0, 1.0, 1.0)];
+    let error = invariants::file_of(&points, &[0, 1, 2], 1 << 30).unwrap_err();
+    assert!(matches!(error, OctreeError::Outside { .. } | OctreeError::BadBounds { .. }), "{error}");
+}
