@@ -81,6 +81,7 @@ mod rules;
 mod scan;
 mod shade;
 mod spacing;
+mod stray;
 mod wanted;
 
 pub use cloud::{Cloud, ScanId};
