@@ -85,11 +85,7 @@ impl<'a> Taker<'a> {
     }
 
     /// Hands on the points of a block that are selected, with their values, if there are any.
-    pub(super) fn take(
-        &mut self,
-        mut block: CloudBlock<'_>,
-        sink: &mut dyn FnMut(CloudBlock<'_>, &[f32]) -> Result<(), InputError>,
-    ) -> Result<(), InputError> {
+    pub(super) fn take(&mut self, mut block: CloudBlock<'_>, sink: PointSink<'_>) -> Result<(), InputError> {
         if self.options.ignore_alpha {
             block.opacities = None;
         }
