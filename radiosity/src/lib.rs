@@ -48,6 +48,7 @@
 //! 7. A. Willmott, P. Heckbert, M. Garland: *Face cluster radiosity*, Eurographics Workshop on Rendering 1999.
 //! 8. G. J. Ward, F. M. Rubinstein, R. D. Clear: *A ray tracing solution for diffuse interreflection*, SIGGRAPH 1988.
 //! 9. S. Laine, T. Karras: *Stratified sampling for stochastic transparency*, Eurographics Symposium on Rendering 2011.
+//! 10. J. Neyman: *On the two different aspects of the representative method*, Journal of the Royal Statistical Society 97, 1934.
 #![forbid(unsafe_code)]
 mod assemble;
 mod bake;

@@ -55,7 +55,7 @@ pub struct RadiosityBakeOptions {
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub links: LinkKind,
     /// Largest error of one link between groups, as a fraction of the scene's mean radiosity (default 0.01); with rays, standard error of the light
-    /// at a vertex, as a fraction of it (default 0.06)
+    /// at a vertex, as a fraction of it (default 0.02)
     #[arg(long, value_name = "T", value_parser = values::positive)]
     pub tolerance: Option<f64>,
     /// Leave out form factors below this; what was left out is reported
