@@ -31,6 +31,8 @@ fn check(block: CloudBlock<'_>) {
     }));
     assert!(block.normals.is_none_or(|list| list.len() == count && list.iter().all(|n| n.is_finite())));
     assert!(block.radii.is_none_or(|list| list.len() == count && list.iter().all(|r| r.is_finite())));
+    // Measured values may be missing, that is, NaN.
+    assert!(block.scalars.iter().flatten().all(|list| list.len() == count));
 }
 
 fuzz_target!(|bytes: &[u8]| {
@@ -54,7 +56,8 @@ fuzz_target!(|bytes: &[u8]| {
             return;
         }
     };
-    let options = CloudOptions::default().with_drop_invalid(choice & 8 != 0).with_block_points(5);
+    let options =
+        CloudOptions::default().with_scalars(true).with_drop_invalid(choice & 8 != 0).with_block_points(5);
     let mut points = 0;
     let result = read_cloud_bytes::<InputError>(name, &file, &options, &mut |block| {
         points += block.positions.len() as u64;

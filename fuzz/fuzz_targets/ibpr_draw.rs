@@ -142,6 +142,7 @@ fuzz_target!(|input: (Vec<Part>, Picture, Rules, u64)| {
     let options = options(&rules);
     let facts = invariants::frames_are_sound(&scans, &view, &options)
         .and_then(|()| invariants::order_does_not_matter(&scans, &view, &options, seed))
+        .and_then(|()| invariants::history_does_not_matter(&scans, &view, &options, seed))
         .and_then(|()| {
             let [x0, y0, w, h] = seed.to_le_bytes()[..4] else { return Ok(()) };
             let (x0, y0) = (u32::from(x0 % 80), u32::from(y0 % 80));

@@ -21,7 +21,7 @@ pub(crate) fn view_blocks(cloud: &Cloud, visible: &[u32], map: &BufferMap, views
     views.clear();
     views.extend(visible.iter().map(|&i| {
         let block = &cloud.blocks[i as usize];
-        let rows = map.rows(block.origin);
+        let rows = map.rows(block.origin, block.unit);
         let (top, bottom) = row_range(&rows, block.half.to_array(), map);
         BlockView { rows, start: block.points.start, end: block.points.end, top, bottom }
     }));

@@ -50,9 +50,9 @@ impl BufferMap {
         (centre.x, centre.y)
     }
 
-    /// Rows `x·w, y·w, depth − reference` for points given in units relative to `origin` (in the
-    /// world); `w` is the depth, or 1 for an orthographic camera.
-    pub(crate) fn rows(&self, origin: DVec3) -> [f32; 12] {
+    /// Rows `x·w, y·w, depth − reference` for points given relative to `origin` (in the world) in a `unit` of their own; `w` is the depth,
+    /// or 1 for an orthographic camera.
+    pub(crate) fn rows(&self, origin: DVec3, unit: f64) -> [f32; 12] {
         let v = &self.view;
         let (to_right, upward, forward) = (v.right(), v.up(), v.forward());
         let (f, (cx, cy)) = (self.focal(), self.centre());
@@ -66,9 +66,12 @@ impl BufferMap {
             Projection::Orthographic { .. } => ((f * to_right, f * right + cx), (-f * upward, cy - f * up)),
         };
         let d = (forward, depth - self.reference);
+        // A power of 2: nothing is rounded.
+        let own = unit / self.unit;
         let mut rows = [0.0; 12];
         for (row, (n, offset)) in rows.chunks_exact_mut(4).zip([x, y, d]) {
-            row.copy_from_slice(&[n.x as f32, n.y as f32, n.z as f32, offset as f32]);
+            let n = (n * own).as_vec3();
+            row.copy_from_slice(&[n.x, n.y, n.z, offset as f32]);
         }
         rows
     }

@@ -1,9 +1,10 @@
 //! Selects the blocks that a frame draws.
 
 use crate::buffer_map::depth_of;
-use crate::cloud::{Block, Cloud};
+use crate::cloud::Cloud;
 use crate::frame::FrameCounts;
 use crate::options::Culling;
+use crate::prepared::Block;
 use glam::DVec3;
 use pointillist_view::{Projection, View};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -26,13 +27,13 @@ pub(crate) fn visible(
     *counts = FrameCounts::default();
     let frustum = Frustum::new(view);
     for (i, block) in cloud.blocks.iter().enumerate() {
-        let outside = frustum.misses(block, cloud.unit);
+        let outside = frustum.misses(block);
         if !outside {
             depths.push((depth_of(view, block.origin), block.points.len()));
         }
         let skipped = if outside {
             &mut counts.blocks_outside
-        } else if faces_away(block, view, culling, cloud.unit) {
+        } else if faces_away(block, view, culling) {
             &mut counts.blocks_facing_away
         } else {
             blocks.push(i as u32);
@@ -66,20 +67,20 @@ impl Frustum {
         Self { eye: view.eye(), planes: [a, b, c, d, (f, 0.0)] }
     }
 
-    fn misses(&self, block: &Block, unit: f64) -> bool {
+    fn misses(&self, block: &Block) -> bool {
         let centre = block.origin - self.eye;
-        let half = block.half.as_dvec3() * unit;
+        let half = block.half.as_dvec3() * block.unit;
         self.planes.iter().any(|(n, offset)| n.dot(centre) + n.abs().dot(half) < *offset)
     }
 }
 
 /// From the block to the eye: unit direction, and the angle that the block's own size adds.
-fn towards_eye(block: &Block, view: &View, unit: f64) -> (DVec3, f64) {
+fn towards_eye(block: &Block, view: &View) -> (DVec3, f64) {
     match view.projection() {
         Projection::Orthographic { .. } => (-view.forward(), 0.0),
         Projection::Perspective { .. } => {
             let to_eye = view.eye() - block.origin;
-            let (distance, radius) = (to_eye.length(), block.half.as_dvec3().length() * unit);
+            let (distance, radius) = (to_eye.length(), block.half.as_dvec3().length() * block.unit);
             // For an eye inside the block, all directions occur.
             let spread = if distance > radius { (radius / distance).asin() } else { PI };
             (to_eye / distance.max(f64::MIN_POSITIVE), spread)
@@ -87,8 +88,8 @@ fn towards_eye(block: &Block, view: &View, unit: f64) -> (DVec3, f64) {
     }
 }
 
-fn faces_away(block: &Block, view: &View, culling: Culling, unit: f64) -> bool {
-    let (to_eye, spread) = towards_eye(block, view, unit);
+fn faces_away(block: &Block, view: &View, culling: Culling) -> bool {
+    let (to_eye, spread) = towards_eye(block, view);
     let angle_to = |axis: DVec3| axis.dot(to_eye).clamp(-1.0, 1.0).acos();
     let scan_beyond = |angle: f64| block.towards_scanner.is_some_and(|d| angle_to(d) > angle + spread);
     match culling {

@@ -5,6 +5,9 @@ pub enum IbprError {
     /// No scan holds a point.
     #[error("there are no points to draw")]
     NoPoints,
+    /// A scan was removed before, or belongs to another cloud.
+    #[error("the cloud has no such scan; `Cloud::scans` lists those that it has")]
+    UnknownScan,
     /// A coordinate is NaN or infinite.
     #[error("point {index} of scan {scan} is not finite: {value:?}")]
     PointNotFinite {

@@ -284,6 +284,49 @@ pub fn order_does_not_matter(
     }
 }
 
+/// A cloud to which scans were added one by one, some twice, and from which what was too much was removed again, is the cloud of these
+/// scans.
+///
+/// # Errors
+/// As [`frames_are_identical`].
+pub fn history_does_not_matter(
+    scans: &[OwnedScan],
+    view: &View,
+    options: &Options,
+    seed: u64,
+) -> Result<(), String> {
+    let Ok(whole) = cloud(scans) else { return Ok(()) };
+    let mut random = Random(seed);
+    let mut order = shuffled(scans, seed);
+    order.retain(|scan| !scan.positions.is_empty());
+    let Some((first, others)) = order.split_first() else { return Ok(()) };
+    let failed = |error: IbprError| format!("{error}, but not all at once");
+    let mut grown = cloud(std::slice::from_ref(first)).map_err(failed)?;
+    for scan in others {
+        if random.share() < 0.5 {
+            let guest = &order[(random.share() * order.len() as f64) as usize];
+            let guest = grown.push(&guest.as_scan()).map_err(failed)?;
+            grown.push(&scan.as_scan()).map_err(failed)?;
+            grown.remove(guest).map_err(failed)?;
+            check(grown.remove(guest) == Err(IbprError::UnknownScan), || {
+                "a scan is removed twice".to_owned()
+            })?;
+        } else {
+            grown.push(&scan.as_scan()).map_err(failed)?;
+        }
+    }
+    let measures = |c: &Cloud| (c.len(), c.bounds(), c.spacing(), c.density_spacing(), c.block_count());
+    let (a, b) = (measures(&whole), measures(&grown));
+    check(a == b, || format!("all at once {a:?}, one by one {b:?}"))?;
+    let mut frames = [Frame::default(), Frame::default()];
+    for (cloud, frame) in [&whole, &grown].into_iter().zip(&mut frames) {
+        if Renderer::new().draw(cloud, view, options, frame).is_err() {
+            return Ok(());
+        }
+    }
+    frames_are_identical(&frames[0], &frames[1])
+}
+
 /// A renderer and a frame that drew something else before draw the same as new ones.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! The canonical order of points that every frame uses: it depends on the points, not on the order of the input.
+//! The canonical order of a scan's points that every frame uses: it depends on the points, not on the order of the input.
 
 use crate::scan::Scan;
 use glam::DVec3;
@@ -35,59 +35,21 @@ impl Lattice {
     }
 }
 
-/// One scan's points in Morton order; equal codes by coordinates, then by color.
-pub(crate) struct Ordered {
-    pub(crate) scan: usize,
-    pub(crate) codes: Vec<u64>,
-    pub(crate) points: Vec<u32>,
-}
-
-/// All scans that hold points, in an order that does not depend on the order they came in.
-pub(crate) fn in_order(scans: &[Scan<'_>], lattice: &Lattice) -> Vec<Ordered> {
-    let mut ordered: Vec<Ordered> = scans
-        .iter()
-        .enumerate()
-        .filter(|(_, s)| !s.positions.is_empty())
-        .map(|(i, s)| points_in_order(i, s, lattice))
-        .collect();
-    ordered.sort_by(|a, b| compare_scans(scans, a, b));
-    ordered
-}
-
-fn points_in_order(scan: usize, s: &Scan<'_>, lattice: &Lattice) -> Ordered {
+/// The numbers of a scan's points in Morton order; equal codes by coordinates, then by color, then by opacity.
+pub(crate) fn in_order(scan: &Scan<'_>, lattice: &Lattice) -> Vec<u32> {
     let mut keys: Vec<(u64, u32)> =
-        s.positions.iter().enumerate().map(|(i, p)| (lattice.code(*p), i as u32)).collect();
-    sort_by(&mut keys, |a, b| a.0.cmp(&b.0).then_with(|| compare_points((s, a.1), (s, b.1))));
-    let (codes, points) = keys.into_iter().unzip();
-    Ordered { scan, codes, points }
+        scan.positions.iter().enumerate().map(|(i, p)| (lattice.code(*p), i as u32)).collect();
+    sort_by(&mut keys, |a, b| a.0.cmp(&b.0).then_with(|| compare_points(scan, a.1, b.1)));
+    keys.into_iter().map(|(_, point)| point).collect()
 }
 
-type PointOf<'s, 'a> = (&'s Scan<'a>, u32);
-
-fn compare_points(a: PointOf<'_, '_>, b: PointOf<'_, '_>) -> Ordering {
-    let position = |(s, i): PointOf<'_, '_>| s.positions[i as usize].to_array();
-    let color = |(s, i): PointOf<'_, '_>| s.colors.map_or([-1.0; 3], |c| c[i as usize]);
-    let (p, q) = (position(a), position(b));
-    let by_position = p.iter().zip(&q).map(|(x, y)| x.total_cmp(y)).find(|o| o.is_ne());
-    by_position.unwrap_or_else(|| {
-        let (c, d) = (color(a), color(b));
-        c.iter().zip(&d).map(|(x, y)| x.total_cmp(y)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
-    })
-}
-
-fn compare_scans(scans: &[Scan<'_>], a: &Ordered, b: &Ordered) -> Ordering {
-    let (s, t) = (&scans[a.scan], &scans[b.scan]);
-    let rest = |s: &Scan<'_>| {
-        let d = s.towards_scanner.map_or([0.0; 4], |d| [1.0, d.x, d.y, d.z]);
-        [s.spacing.unwrap_or(0.0), d[0], d[1], d[2], d[3]]
+fn compare_points(scan: &Scan<'_>, a: u32, b: u32) -> Ordering {
+    let values = |i: u32| {
+        let i = i as usize;
+        let [x, y, z] = scan.positions[i].to_array();
+        let [r, g, b] = scan.colors.map_or([0.0; 3], |colors| colors[i]).map(f64::from);
+        [x, y, z, r, g, b, f64::from(scan.opacities.map_or(0.0, |all| all[i]))]
     };
-    let points = a.points.iter().zip(&b.points);
-    points
-        .map(|(&i, &j)| compare_points((s, i), (t, j)))
-        .find(|o| o.is_ne())
-        .unwrap_or_else(|| a.points.len().cmp(&b.points.len()))
-        .then_with(|| {
-            let (x, y) = (rest(s), rest(t));
-            x.iter().zip(&y).map(|(p, q)| p.total_cmp(q)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
-        })
+    let pairs = values(a).into_iter().zip(values(b));
+    pairs.map(|(x, y)| x.total_cmp(&y)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
 }

@@ -13,14 +13,16 @@ use crate::fill::{self, FillScratch};
 use crate::frame::{Frame, FrameCounts};
 use crate::noise::Histogram;
 use crate::normals;
-use crate::options::{Culling, Options, Passes, Scale};
+use crate::options::{Culling, Normals, Options, Passes, Scale};
 use crate::outline::Outlines;
 use crate::parallel::*;
 use crate::pixels::{Nearest, Stack};
 use crate::raster::{Pixels, Strip};
 use crate::rules::Rules;
 use crate::shade::{RowsOut, Shaded, Shader};
+use crate::stray;
 use crate::wanted::Wanted;
+use glam::Vec3;
 use pointillist_parallel::{Pool, threads};
 use pointillist_view::{Projection, View};
 use std::ops::Range;
@@ -58,6 +60,7 @@ struct Pass {
     views: Vec<BlockView>,
     buffer: Buffer,
     noise: Histogram,
+    strays: Vec<Vec<(usize, Vec3)>>,
     outlines: Outlines,
 }
 
@@ -288,7 +291,12 @@ impl Pass {
         // A quad's last corners are in the row after that which it is numbered by.
         let quads = faces::quads_about(&drawn.rows, map.scale as f32, map.height);
         let rows = quads.start.max(0) as usize..(quads.end.max(0) + 1) as usize;
-        normals::make_corners(&mut self.buffer, map, &scale, options.normals, rows, &mut self.noise);
+        // With the neighbours that stray normals are compared with.
+        let around = rows.start.saturating_sub(1)..rows.end + 1;
+        normals::make_corners(&mut self.buffer, map, &scale, options.normals, around, &mut self.noise);
+        if options.normals == Normals::Plane && self.buffer.layers == 1 {
+            stray::replace(&mut self.buffer, &scale, &rows, &mut self.strays);
+        }
         if options.outline > 0.0 && self.buffer.layers == 1 {
             self.outlines.find(&self.buffer, &scale);
         } else {

@@ -1,8 +1,6 @@
 //! How far points lie from their neighbours.
 
-use crate::order::{Lattice, Ordered};
 use crate::scan::Scan;
-use pointillist_view::MORTON_BITS;
 
 /// Number of points of which neighbours are measured.
 const SAMPLE: usize = 1024;
@@ -16,12 +14,12 @@ const WINDOW: usize = 96;
 const NEIGHBOUR: usize = 4;
 
 /// Median distance to the fourth neighbour that is not a duplicate; 0 if no point has any.
-pub(crate) fn of_scan(scan: &Scan<'_>, ordered: &Ordered) -> f64 {
+pub(crate) fn of_scan(scan: &Scan<'_>, order: &[u32]) -> f64 {
     if let Some(given) = scan.spacing {
         return given;
     }
-    let n = ordered.points.len();
-    let at = |i: usize| scan.positions[ordered.points[i] as usize];
+    let n = order.len();
+    let at = |i: usize| scan.positions[order[i] as usize];
     let nearest = |i: usize| {
         let window = i.saturating_sub(WINDOW)..(i + WINDOW + 1).min(n);
         let mut nearest = [f64::INFINITY; NEIGHBOUR];
@@ -47,9 +45,8 @@ fn median(values: &mut [f64]) -> f64 {
 }
 
 /// Median of the scans' spacings, each counted as often as it has points.
-pub(crate) fn typical(ordered: &[Ordered], spacings: &[f64]) -> f64 {
-    let mut by_spacing: Vec<(f64, usize)> =
-        spacings.iter().copied().zip(ordered.iter().map(|o| o.points.len())).collect();
+pub(crate) fn typical(scans: impl Iterator<Item = (f64, usize)>) -> f64 {
+    let mut by_spacing: Vec<(f64, usize)> = scans.collect();
     by_spacing.sort_by(|a, b| a.0.total_cmp(&b.0));
     let half = by_spacing.iter().map(|s| s.1).sum::<usize>() / 2;
     let mut seen = 0;
@@ -58,36 +55,4 @@ pub(crate) fn typical(ordered: &[Ordered], spacings: &[f64]) -> f64 {
         seen > half
     });
     middle.map_or(0.0, |s| s.0)
-}
-
-/// Distance between neighbours of all scans together: √(area / points), the area from the number of
-/// lattice cells of about 2.5 spacings that hold points.
-///
-/// A plane cuts |nₓ| + |n_y| + |n_z| cells of side h per h², 1.5 in the mean over directions.
-pub(crate) fn of_all(ordered: &[Ordered], lattice: &Lattice, spacing: f64, points: usize) -> f64 {
-    const CELLS_PER_AREA: f64 = 1.5;
-    if !(spacing > 0.0 && lattice.extent > spacing) {
-        return spacing;
-    }
-    let level = (lattice.extent / (2.5 * spacing)).log2().round().clamp(1.0, f64::from(MORTON_BITS)) as u32;
-    let shift = 3 * (MORTON_BITS - level);
-    let mut cells = vec![];
-    for o in ordered {
-        let start = cells.len();
-        cells.extend(o.codes.iter().map(|c| c >> shift));
-        // Codes of a scan are sorted: repeated ones are removed before the sort of all.
-        let mut kept = start;
-        for i in start..cells.len() {
-            if kept == start || cells[kept - 1] != cells[i] {
-                cells[kept] = cells[i];
-                kept += 1;
-            }
-        }
-        cells.truncate(kept);
-    }
-    cells.sort_unstable();
-    cells.dedup();
-    let side = lattice.extent / f64::from(1u32 << level);
-    // Not the root of the area: the square of `side` could overflow or underflow.
-    side * (cells.len() as f64 / CELLS_PER_AREA / points as f64).sqrt()
 }

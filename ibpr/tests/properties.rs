@@ -147,6 +147,11 @@ proptest! {
     }
 
     #[test]
+    fn a_cloud_does_not_depend_on_how_it_came_to_hold_its_scans(s in scans(), v in view(), o in options(), seed: u64) {
+        holds!(invariants::history_does_not_matter(&s, &v, &o, seed));
+    }
+
+    #[test]
     fn a_renderer_keeps_nothing_from_frame_to_frame(
         s in scans(), v in view(), o in options(), before_v in view(), before_o in options(),
     ) {

@@ -6,12 +6,15 @@ use std::process::ExitCode;
 mod common;
 mod dice;
 mod expected;
+mod growth;
 mod ibpr;
 mod micropoint;
 mod radiosity;
+mod report;
 mod shade;
 mod shadow;
 mod shprobe;
+mod skip;
 mod speed;
 mod stress;
 mod surfel;
@@ -21,7 +24,7 @@ use common::report::Outcome;
 /// Name, what it measures, and the study itself.
 type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
 
-const STUDIES: [Study; 12] = [
+const STUDIES: [Study; 15] = [
     ("dice", "areas of a triangle in the cells of a grid", run_dice),
     ("micropoint", "pictures against point sampling; foliage; shadows across texels", micropoint::run),
     ("shadow", "shadows against a shadow map, area lights against samples", shadow::run),
@@ -38,6 +41,9 @@ const STUDIES: [Study; 12] = [
     ("stress", "input at the limits of numbers; fails if a row does", stress::run),
     ("expected", "what `--dry-run` and `--error` say beside what is true", expected::run),
     ("speed", "whole pictures: seconds, threads, memory", speed::run),
+    ("growth", "time and memory of every stage against its size", growth::run),
+    ("skip", "what costs nothing where it has nothing to do", skip::run),
+    ("report", "report.html, one page of all that is there", report::run),
 ];
 
 fn run_dice(out_dir: &Path) -> Outcome {
@@ -72,6 +78,11 @@ fn main() -> ExitCode {
         // How the study starts its own rows.
         ["stress", row] if row.parse::<usize>().is_ok() => {
             let ended = row.parse().is_ok_and(stress::run_row);
+            return if ended { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+        }
+        ["growth", stage, size] => {
+            let row = stage.parse().ok().zip(size.parse().ok());
+            let ended = row.is_some_and(|(stage, size)| growth::run_row(stage, size));
             return if ended { ExitCode::SUCCESS } else { ExitCode::FAILURE };
         }
         ["surfel", "quick"] => return code(surfel::run_quick()),

@@ -1,6 +1,7 @@
 //! Delivers points in blocks: leaves out those that are not finite, and counts for the summary.
 
 use super::format::CloudFormat;
+use super::scalar::{SCALARS, Scalar, Scalars};
 use crate::coordinate::{LARGEST, is_usable};
 use crate::input_error::InputError;
 use glam::{DVec3, Vec3};
@@ -22,6 +23,16 @@ pub struct CloudBlock<'a> {
     pub normals: Option<&'a [Vec3]>,
     /// Property `radius` of surfels, in the unit of the positions, as in the file.
     pub radii: Option<&'a [f32]>,
+    /// By [`Scalar`], with [`CloudOptions::scalars`].
+    pub scalars: [Option<&'a [f32]>; SCALARS],
+}
+
+impl<'a> CloudBlock<'a> {
+    /// A measured value of each point, if the file has it and [`CloudOptions::scalars`] asks for it; NaN where a point has none.
+    #[must_use]
+    pub const fn scalar(&self, scalar: Scalar) -> Option<&'a [f32]> {
+        self.scalars[scalar as usize]
+    }
 }
 
 /// How [`super::read_cloud`] treats its input.
@@ -32,16 +43,25 @@ pub struct CloudOptions {
     pub drop_invalid: bool,
     /// Most points in a block, from 1 to [`MAX_BLOCK_POINTS`]; anything else is moved there. Default: [`MAX_BLOCK_POINTS`].
     pub block_points: usize,
+    /// Read intensities, classes and numbers of returns too. Default: `false`.
+    pub scalars: bool,
 }
 
 impl CloudOptions {
     /// The defaults, as a constant.
-    pub const DEFAULT: Self = Self { drop_invalid: false, block_points: MAX_BLOCK_POINTS };
+    pub const DEFAULT: Self = Self { drop_invalid: false, block_points: MAX_BLOCK_POINTS, scalars: false };
 
     /// Leaves out points that are not finite.
     #[must_use]
     pub const fn with_drop_invalid(mut self, drop_invalid: bool) -> Self {
         self.drop_invalid = drop_invalid;
+        self
+    }
+
+    /// Reads intensities, classes and numbers of returns too.
+    #[must_use]
+    pub const fn with_scalars(mut self, scalars: bool) -> Self {
+        self.scalars = scalars;
         self
     }
 
@@ -77,6 +97,8 @@ pub struct CloudSummary {
     pub has_normals: bool,
     /// Whether blocks have radii.
     pub has_radii: bool,
+    /// Whether the file has these, by [`Scalar`]; blocks have them with [`CloudOptions::scalars`].
+    pub has_scalars: Scalars<bool>,
     /// Lowest and highest coordinates of the points handed out.
     pub bounds: [DVec3; 2],
     /// Faces that the file announces and that were passed over; a file with some is a mesh.
@@ -147,6 +169,8 @@ pub(super) struct Point {
     pub(super) colour: [f32; 3],
     pub(super) opacity: f32,
     pub(super) radius: f32,
+    /// NaN where the point has none.
+    pub(super) scalars: Scalars<f32>,
 }
 
 /// What each point of a file has beside its position.
@@ -156,6 +180,7 @@ pub(super) struct Has {
     pub(super) opacities: bool,
     pub(super) normals: bool,
     pub(super) radii: bool,
+    pub(super) scalars: Scalars<bool>,
 }
 
 impl Point {
@@ -173,12 +198,14 @@ pub(super) struct Gather<'a> {
     sink: &'a mut dyn FnMut(CloudBlock<'_>) -> Result<(), Stop>,
     drop_invalid: bool,
     block_points: usize,
+    wants_scalars: bool,
     has: Has,
     positions: Vec<DVec3>,
     colours: Vec<[f32; 3]>,
     opacities: Vec<f32>,
     normals: Vec<Vec3>,
     radii: Vec<f32>,
+    scalars: Scalars<Vec<f32>>,
     seen: u64,
     handed_out: u64,
     invalid: u64,
@@ -196,12 +223,14 @@ impl<'a> Gather<'a> {
             sink,
             drop_invalid: options.drop_invalid,
             block_points: options.block_points.clamp(1, MAX_BLOCK_POINTS),
+            wants_scalars: options.scalars,
             has: Has::default(),
             positions: Vec::new(),
             colours: Vec::new(),
             opacities: Vec::new(),
             normals: Vec::new(),
             radii: Vec::new(),
+            scalars: Scalars::default(),
             seen: 0,
             handed_out: 0,
             invalid: 0,
@@ -244,6 +273,13 @@ impl<'a> Gather<'a> {
         if self.has.radii {
             self.radii.push(point.radius);
         }
+        if self.wants_scalars {
+            for ((values, value), has) in self.scalars.iter_mut().zip(point.scalars).zip(self.has.scalars) {
+                if has {
+                    values.push(value);
+                }
+            }
+        }
         if self.positions.len() >= self.block_points { self.hand_out() } else { Ok(()) }
     }
 
@@ -258,6 +294,9 @@ impl<'a> Gather<'a> {
             opacities: self.has.opacities.then_some(&*self.opacities),
             normals: self.has.normals.then_some(&*self.normals),
             radii: self.has.radii.then_some(&*self.radii),
+            scalars: std::array::from_fn(|i| {
+                (self.wants_scalars && self.has.scalars[i]).then_some(&*self.scalars[i])
+            }),
         };
         (self.sink)(block)?;
         self.positions.clear();
@@ -265,6 +304,7 @@ impl<'a> Gather<'a> {
         self.opacities.clear();
         self.normals.clear();
         self.radii.clear();
+        self.scalars.iter_mut().for_each(Vec::clear);
         Ok(())
     }
 
@@ -300,6 +340,7 @@ impl<'a> Gather<'a> {
             has_opacities: self.has.opacities,
             has_normals: self.has.normals,
             has_radii: self.has.radii,
+            has_scalars: self.has.scalars,
             bounds: [self.low, self.high],
             faces: 0,
             grid: None,

@@ -1,13 +1,13 @@
 //! E57 through the crate of that name.
 //!
 //! A file may hold several scans; they are handed out one after the other, each moved by its pose. Points that the file
-//! marks as invalid are holes of the scanner's grid and are left out with a warning. Intensities are not made into colours;
-//! a point without a colour among others that have one is white.
+//! marks as invalid are holes of the scanner's grid and are left out with a warning. A point without a colour among others that have one is white.
 
 use super::ReadSeek;
 use super::block::{At, CloudSummary, Gather, Has, Point, Stop};
 use super::colour::ColourCode;
 use super::format::CloudFormat;
+use super::scalar::{Scalar, Scalars};
 use crate::input_error::InputError;
 use e57::{CartesianCoordinate, Color, E57Reader};
 use glam::DVec3;
@@ -22,7 +22,12 @@ pub(super) fn read<R: ReadSeek>(
     input.rewind().map_err(io)?;
     let mut reader = E57Reader::new(input).map_err(|error| fault(name, &error, 0))?;
     let scans = reader.pointclouds();
-    gather.expect(Has { colours: scans.iter().any(e57::PointCloud::has_color), ..Has::default() });
+    let has_intensities = scans.iter().any(e57::PointCloud::has_intensity);
+    gather.expect(Has {
+        colours: scans.iter().any(e57::PointCloud::has_color),
+        scalars: Scalar::Intensity.alone(has_intensities),
+        ..Has::default()
+    });
     let mut number = 0;
     let mut holes = 0_u64;
     for scan in &scans {
@@ -33,7 +38,9 @@ pub(super) fn read<R: ReadSeek>(
             match point.cartesian {
                 CartesianCoordinate::Valid { x, y, z } => {
                     let colour = point.color.map_or([1.0; 3], linear);
-                    let point = Point { position: DVec3::new(x, y, z), colour, ..Point::default() };
+                    let mut scalars = Scalars::default();
+                    scalars[Scalar::Intensity as usize] = point.intensity.unwrap_or(f32::NAN);
+                    let point = Point { position: DVec3::new(x, y, z), colour, scalars, ..Point::default() };
                     gather.push(&point, At::Point(number))?;
                 }
                 _ => holes += 1,

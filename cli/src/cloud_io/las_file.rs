@@ -1,13 +1,15 @@
 //! LAS and LAZ through the crate `las`.
 //!
-//! Coordinates come out with scale and offset applied. Colours have 16 bits by the standard, but many programs write 8
+//! Coordinates come out with scale and offset applied, exact to the last digit ([`Axis`]). Colours have 16 bits by the standard, but many programs write 8
 //! into them: if the largest of the first block is from 1 to 255, they are taken as 8 bits.
 
 use super::ReadSeek;
 use super::block::{At, CloudSummary, Gather, Has, MAX_BLOCK_POINTS, Point, Stop};
 use super::colour::ColourCode;
 use super::format::CloudFormat;
+use super::las_axis::Axis;
 use super::las_check;
+use super::scalar::SCALARS;
 use crate::input_error::InputError;
 use glam::DVec3;
 use las::{PointData, PointDataBuilder, Reader};
@@ -28,7 +30,13 @@ pub(super) fn read<R: ReadSeek>(
     let mut chunk = PointDataBuilder::new().for_header(reader.header()).build();
     let announced = reader.header().number_of_points();
     let points_at_once = (CHUNK_BYTES / chunk.record_len().max(1)).clamp(1, MAX_BLOCK_POINTS);
-    gather.expect(Has { colours: reader.header().point_format().has_color, ..Has::default() });
+    gather.expect(Has {
+        colours: reader.header().point_format().has_color,
+        scalars: [true; SCALARS],
+        ..Has::default()
+    });
+    let transforms = reader.header().transforms();
+    let axes = [transforms.x, transforms.y, transforms.z].map(|axis| Axis::new(axis.scale, axis.offset));
     let mut code = None;
     let mut read = 0;
     while read < announced {
@@ -39,7 +47,7 @@ pub(super) fn read<R: ReadSeek>(
             break;
         }
         let code = *code.get_or_insert_with(|| colour_code(&chunk));
-        push(name, &chunk, code, read, gather)?;
+        push(name, &chunk, code, &axes, read, gather)?;
         read += count;
     }
     gather.finish(name, CloudFormat::Las)
@@ -63,13 +71,21 @@ fn push(
     name: &str,
     chunk: &PointData,
     code: ColourCode,
+    [x, y, z]: &[Axis; 3],
     before: u64,
     gather: &mut Gather<'_>,
 ) -> Result<(), Stop> {
     let mut colours = chunk.rgb();
-    for (index, ((x, y), z)) in chunk.x().zip(chunk.y()).zip(chunk.z()).enumerate() {
+    let stored = chunk.x_raw().zip(chunk.y_raw()).zip(chunk.z_raw());
+    let measured = chunk.intensity().zip(chunk.classification()).zip(chunk.return_number());
+    for (index, (((i, j), k), ((intensity, class), return_number))) in stored.zip(measured).enumerate() {
         let number = before + index as u64;
-        let mut point = Point { position: DVec3::new(x, y, z), ..Point::default() };
+        let mut point = Point {
+            position: DVec3::new(x.coordinate(i), y.coordinate(j), z.coordinate(k)),
+            // In the order of `Scalar`.
+            scalars: [f32::from(intensity), f32::from(class), f32::from(return_number)],
+            ..Point::default()
+        };
         if let Some((r, g, b)) = colours.as_mut().and_then(Iterator::next) {
             for (linear, stored) in point.colour.iter_mut().zip([r, g, b]) {
                 *linear = code.linear(f64::from(stored)).ok_or_else(|| {

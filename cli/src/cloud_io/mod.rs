@@ -12,12 +12,15 @@ mod e57_file;
 mod format;
 mod gunzip;
 #[cfg(feature = "las")]
+mod las_axis;
+#[cfg(feature = "las")]
 mod las_check;
 #[cfg(feature = "las")]
 mod las_file;
 mod number;
 mod ply;
 mod ply_write;
+mod scalar;
 mod source;
 mod xyz;
 mod xyz_header;
@@ -27,6 +30,7 @@ pub use block::{CloudBlock, CloudOptions, CloudSummary, MAX_BLOCK_POINTS, RangeG
 pub use conf::{Conf, ConfScan, Pose, read_conf, read_conf_bytes};
 pub use format::CloudFormat;
 pub use ply_write::{CloudPoint, PlyEncoding, write_ply};
+pub use scalar::{Scalar, Scalars};
 
 use crate::input;
 use crate::input_error::InputError;
@@ -54,6 +58,9 @@ pub(crate) const DRAW_CLOUD: &str = "`pointillist scan FILE` draws points as clo
 ///   described in the module that reads it and in the messages.
 /// * LAS and LAZ with the feature `las`, which is on by default; E57 with the feature `e57`.
 /// * Any PLY or text compressed with gzip.
+///
+/// Intensities, classes and numbers of returns come out of all of them as they are stored; [`Scalar`] says by what names PLY and
+/// text have them.
 ///
 /// Colours are stored sRGB-encoded in all of these and come out linear. Points that are not finite (NaN or infinite, in
 /// any number that is handed out) end the reading with an error that counts them, unless

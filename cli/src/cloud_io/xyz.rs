@@ -3,7 +3,7 @@
 //! Numbers are separated by blanks, commas or semicolons. The first line with numbers says how many there are in all:
 //!
 //! * 3: `x y z`
-//! * 4: `x y z i`, of which the last, an intensity, is left out
+//! * 4: `x y z i`, of which the last is an intensity
 //! * 6: `x y z r g b` or `x y z nx ny nz`
 //! * 7: `x y z i r g b`, as `.pts` has it
 //!
@@ -13,7 +13,7 @@
 //! guess.
 //!
 //! A first line of names, as CSV has it, says instead which number is what: `x`, `y`, `z`, `r`, `g`, `b` (or `red`, `green`, `blue`), `nx`,
-//! `ny`, `nz`; other columns are left out. A first line of words without `x`, `y` and `z` is passed over.
+//! `ny`, `nz`, and the names of [`Scalar`] but `label`; other columns are left out. A first line of words without `x`, `y` and `z` is passed over.
 //!
 //! A first line with one whole number is the count of points. Empty lines, and lines that begin with `#` or `//`, are
 //! passed over; so is the rest of a line from there on.
@@ -22,6 +22,7 @@ use super::block::{At, CloudSummary, Gather, Has, MAX_BLOCK_POINTS, Point, Stop}
 use super::colour::ColourCode;
 use super::format::CloudFormat;
 use super::number::{Words, parse_f64};
+use super::scalar::{Scalar, Scalars};
 use super::source::{Line, Source};
 use super::xyz_header::Header;
 use super::xyz_row::{Rest, Row, no_number};
@@ -59,8 +60,6 @@ pub(super) fn read(mut source: Source<'_>, gather: &mut Gather<'_>) -> Result<Cl
     let mut summary = gather.finish(name, CloudFormat::Xyz)?;
     if let Some(header) = &table.header {
         summary.warnings.extend(header.warning());
-    } else if matches!(table.columns, 4 | 7) {
-        summary.warnings.push("the fourth number of each line, an intensity, was left out".to_owned());
     }
     Ok(summary)
 }
@@ -115,7 +114,11 @@ impl Table {
         self.rows += 1;
         let three = |at: usize| DVec3::new(numbers[at], numbers[at + 1], numbers[at + 2]);
         let rest = if count >= 6 { three(count - 3) } else { DVec3::ZERO };
-        Ok(Some(Row { position: three(0), rest, normal: DVec3::ZERO, line: line.number }))
+        let mut scalars = Scalars::default();
+        if matches!(count, 4 | 7) {
+            scalars[Scalar::Intensity as usize] = numbers[3] as f32;
+        }
+        Ok(Some(Row { position: three(0), rest, normal: DVec3::ZERO, scalars, line: line.number }))
     }
 
     /// Whether this is a line of words before all numbers; keeps what it says of the columns.
@@ -176,7 +179,11 @@ impl Table {
         };
         let has_colours = matches!(rest, Rest::Colour(_) | Rest::Both(_));
         let normals = matches!(rest, Rest::Normal | Rest::Both(_));
-        gather.expect(Has { colours: has_colours, normals, ..Has::default() });
+        let scalars = match &self.header {
+            Some(header) => header.has_scalars(),
+            None => Scalar::Intensity.alone(matches!(self.columns, 4 | 7)),
+        };
+        gather.expect(Has { colours: has_colours, normals, scalars, ..Has::default() });
         for row in std::mem::take(rows) {
             push(name, row, rest, gather)?;
         }
@@ -196,7 +203,7 @@ fn decide(rows: &[Row], may_be_normals: bool) -> Rest {
 }
 
 fn push(name: &str, row: Row, rest: Rest, gather: &mut Gather<'_>) -> Result<(), Stop> {
-    let mut point = Point { position: row.position, ..Point::default() };
+    let mut point = Point { position: row.position, scalars: row.scalars, ..Point::default() };
     match rest {
         Rest::None => {}
         Rest::Normal => point.normal = row.rest.as_vec3(),

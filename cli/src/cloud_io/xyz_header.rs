@@ -1,6 +1,7 @@
 //! The first line of a text of points, if it names the columns.
 
 use super::number::{Word, Words, parse_f64};
+use super::scalar::{SCALARS, Scalar, Scalars};
 use super::source::Line;
 use super::xyz_row::{Rest, Row, no_number};
 use crate::input_error::InputError;
@@ -19,9 +20,12 @@ const NAMES: [&[&str]; 9] = [
     &["nz", "normal_z", "normalz"],
 ];
 
+/// Values of a line: by [`NAMES`], then by [`Scalar`].
+const VALUES: usize = NAMES.len() + SCALARS;
+
 /// Which column is what.
 pub(super) struct Header {
-    /// For each column an index into [`NAMES`], or nothing for one that is left out.
+    /// For each column which of the [`VALUES`] it is, or nothing for one that is left out.
     meanings: Vec<Option<usize>>,
     /// What is between values, if not blanks.
     separator: Option<u8>,
@@ -29,6 +33,7 @@ pub(super) struct Header {
     unused: Vec<String>,
     has_colours: bool,
     has_normals: bool,
+    has_scalars: Scalars<bool>,
 }
 
 /// The values of a line. Where the names have commas or semicolons between them, a value may be empty or have blanks in it.
@@ -68,9 +73,11 @@ impl Header {
     /// What a line of words says; nothing if it does not name x, y and z.
     pub(super) fn of(text: &[u8]) -> Option<Self> {
         let (words, separator) = words(text);
-        let mut found = [false; NAMES.len()];
+        let mut found = [false; VALUES];
         let meaning = |word: &String| {
-            let meaning = NAMES.iter().position(|names| names.contains(&word.as_str()))?;
+            // In text, labels are words as often as not.
+            let scalar = || Some(NAMES.len() + Scalar::of_name(word).filter(|_| word != "label")? as usize);
+            let meaning = NAMES.iter().position(|names| names.contains(&word.as_str())).or_else(scalar)?;
             // Of two columns with one name the first counts.
             (!std::mem::replace(&mut found[meaning], true)).then_some(meaning)
         };
@@ -81,12 +88,18 @@ impl Header {
         let whole = |three: usize| found[three..three + 3].iter().all(|&f| f);
         let (has_colours, has_normals) = (whole(3), whole(6));
         for meaning in &mut meanings {
-            let is_used = |m: &usize| *m < 3 || (*m < 6 && has_colours) || (*m >= 6 && has_normals);
+            let is_used = |m: &usize| match *m {
+                0..3 => true,
+                3..6 => has_colours,
+                6..9 => has_normals,
+                _ => true,
+            };
             *meaning = meaning.filter(is_used);
         }
         let unused =
             words.into_iter().zip(&meanings).filter(|(_, m)| m.is_none()).map(|(word, _)| word).collect();
-        Some(Self { meanings, separator, unused, has_colours, has_normals })
+        let has_scalars = std::array::from_fn(|i| found[NAMES.len() + i]);
+        Some(Self { meanings, separator, unused, has_colours, has_normals, has_scalars })
     }
 
     /// The point of a line; nothing if the line is empty or a comment.
@@ -94,7 +107,7 @@ impl Header {
         if line.is_blank() || line.text.trim_ascii_start().starts_with(b"#") {
             return Ok(None);
         }
-        let mut values = [0.0; NAMES.len()];
+        let mut values = [0.0; VALUES];
         let mut count = 0;
         for word in values_of(line.text, self.separator) {
             // Columns that are left out may hold anything.
@@ -111,7 +124,8 @@ impl Header {
         }
         let three = |at: usize| DVec3::new(values[at], values[at + 1], values[at + 2]);
         let rest = if self.has_colours { three(3) } else { three(6) };
-        Ok(Some(Row { position: three(0), rest, normal: three(6), line: line.number }))
+        let scalars = std::array::from_fn(|i| values[NAMES.len() + i] as f32);
+        Ok(Some(Row { position: three(0), rest, normal: three(6), scalars, line: line.number }))
     }
 
     /// What the rows have; `colours` decides how theirs are stored.
@@ -124,6 +138,11 @@ impl Header {
                 rest => rest,
             },
         }
+    }
+
+    /// Which measured values the rows have.
+    pub(super) const fn has_scalars(&self) -> Scalars<bool> {
+        self.has_scalars
     }
 
     /// Which columns were left out.

@@ -2,16 +2,18 @@
 
 use super::colour::ColourCode;
 use super::number::Word;
+use super::scalar::Scalars;
 use super::source::Line;
 use crate::input_error::InputError;
 use glam::DVec3;
 
-/// A line: its position, its colour or else its normal, its normal if it has both, its number.
+/// A line: its position, its colour or else its normal, its normal if it has both, what was measured, its number.
 #[derive(Clone, Copy)]
 pub(super) struct Row {
     pub(super) position: DVec3,
     pub(super) rest: DVec3,
     pub(super) normal: DVec3,
+    pub(super) scalars: Scalars<f32>,
     pub(super) line: u64,
 }
 

@@ -8,7 +8,8 @@ use crate::error::CliError;
 use crate::image_io::{Frame, PixelRect, Stamp};
 use crate::input::is_standard;
 use crate::memory;
-use crate::options::{CameraOptions, PictureOptions, Vector};
+use crate::options::{CameraOptions, CloudLook, PictureOptions, Vector};
+use crate::points::{Colouring, Legend, draw_legend};
 use crate::scene::description::{CameraDescription, DEFAULT_FOV_DEG};
 use crate::scene::{Camera, FRAME_MARGIN as MARGIN, Projection, frame_around};
 use cpu_time::ProcessTime;
@@ -138,6 +139,23 @@ impl<'a> Target<'a> {
         format.check(layers, options)?;
         check_output(&path)?;
         Ok(Self { path, format, options })
+    }
+
+    /// How points are coloured, if this picture can show it.
+    pub(super) fn colouring(&self, look: &CloudLook) -> Result<Colouring, CliError> {
+        if look.legend && self.format == OutputFormat::Exr {
+            let message = "--legend: an EXR holds what was drawn and nothing else; add -o picture.png";
+            return Err(CliError::Usage(message.to_owned()));
+        }
+        look.colouring()
+    }
+
+    /// Draws what colours mean into the picture, or says that there is no room.
+    pub(super) fn explain(&self, picture: &mut Frame, legend: Option<Legend>, report: &Report<'_>) {
+        let gain = self.format.gain(&self.options.display);
+        if legend.is_some_and(|legend| !draw_legend(picture, &legend, gain)) {
+            report.warn("--legend: the picture is too small for one; a larger --size has room");
+        }
     }
 
     /// Whether an earlier run wrote the same picture.

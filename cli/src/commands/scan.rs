@@ -15,12 +15,12 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?.reading(&options.files)?;
     let path = points::output_path(options.output.as_deref(), &options.files[0]);
     let target = Target::new(path, &options.picture, !options.layers.is_empty())?;
+    let colouring = target.colouring(&options.look)?;
     let (region, window) = points::check_view(&options.camera)?;
     let load = LoadOptions {
-        drop_invalid: options.drop_invalid,
+        points: options.reading(),
         spacing: options.surface.spacing,
         vertices: options.vertices,
-        ignore_alpha: options.surface.ignore_alpha,
     };
     let mut set = report.stats.stage("load", || ScanSet::load(&options.files, &load))?;
     let camera = points::camera(&options.camera, set.view.as_ref(), None, || set.positions())?;
@@ -30,11 +30,12 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     if set.dropped > 0 {
         report.warn(&format!("{} points that are not finite were left out", set.dropped));
     }
+    let legend = report.stats.stage("prepare", || set.colour(&colouring));
     let frame_options = options.frame_options(set.has_translucent());
     let cloud = report.stats.stage("prepare", || set.cloud(frame_options.base))?;
     let layers = layer_list(&options.layers, &LAYERS).unwrap_or_default();
-    let drawn =
-        format!("{:?}", (frame_options, &camera, size, &layers, options.picture.float, options.picture.bg));
+    let paint = (colouring.by, options.look.legend, options.picture.float, options.picture.bg);
+    let drawn = format!("{:?}", (frame_options, &camera, size, &layers, paint));
     let stamp = points::stamp(set.fingerprint(), &drawn, &options.camera, region);
     if target.is_done(&stamp, window, &report) {
         return report.finish();
@@ -45,7 +46,8 @@ pub(super) fn run(options: &ScanOptions) -> Result<(), CliError> {
     let frame_options = frame_options.with_window(window);
     report.stats.stage("draw", || draw(options, &cloud, &view, &frame_options, &mut frame, &report))?;
     tell_counts(&report, &cloud, &frame, points::is_whole(window, size));
-    let picture = window_of(&as_drawn(&frame), window, &layers, &view);
+    let mut picture = window_of(&as_drawn(&frame), window, &layers, &view, colouring.by);
+    target.explain(&mut picture, legend.filter(|_| options.look.legend), &report);
     report.stats.stage("write", || target.write(picture, stamp))?;
     let seconds = report.stats.elapsed().as_secs_f64();
     report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));

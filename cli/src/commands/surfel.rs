@@ -14,18 +14,20 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?.reading(&options.clouds)?;
     let path = points::output_path(options.output.as_deref(), &options.clouds[0]);
     let target = Target::new(path, &options.picture, !options.layers.is_empty())?;
+    let colouring = target.colouring(&options.look)?;
     let layers = layer_list(&options.layers, &LAYERS)
         .map_err(|_| CliError::Usage("layers of `surfel` are all, N and P".to_owned()))?;
     let frame_options = options.frame_options().map_err(CliError::Usage)?;
     let fov_deg = options.lens_fov_deg().map_err(CliError::Usage)?;
     let (region, window) = points::check_view(&options.camera)?;
-    let set = report.stats.stage("load", || PointSet::load(&options.clouds, options.reading()))?;
+    let mut set = report.stats.stage("load", || PointSet::load(&options.clouds, &options.reading()))?;
     set.warnings.iter().for_each(|warning| report.warn(warning));
+    let legend = report.stats.stage("prepare", || set.colour(&colouring));
     let cloud = report.stats.stage("prepare", || set.cloud(options.discs.estimate_normals))?;
     let camera = points::camera(&options.camera, None, fov_deg, || cloud.positions())?;
     let size = points::size(&options.camera);
-    let drawn =
-        format!("{:?}", (frame_options, &camera, size, &layers, options.picture.float, options.picture.bg));
+    let paint = (colouring.by, options.look.legend, options.picture.float, options.picture.bg);
+    let drawn = format!("{:?}", (frame_options, &camera, size, &layers, paint));
     let stamp = points::stamp(set.fingerprint(), &drawn, &options.camera, region);
     if target.is_done(&stamp, window, &report) {
         return report.finish();
@@ -44,7 +46,8 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
         })
     })?;
     tell_counts(&report, &cloud, &frame, points::is_whole(window, size));
-    let picture = window_of(&as_drawn(&frame), window, &layers, &view);
+    let mut picture = window_of(&as_drawn(&frame), window, &layers, &view, colouring.by);
+    target.explain(&mut picture, legend.filter(|_| options.look.legend), &report);
     report.stats.stage("write", || target.write(picture, stamp))?;
     let seconds = report.stats.elapsed().as_secs_f64();
     report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));

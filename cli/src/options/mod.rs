@@ -1,5 +1,6 @@
 //! The options of every command, as clap reads them.
 
+mod cloud_look;
 mod common;
 mod job;
 mod points;
@@ -11,6 +12,7 @@ mod scan;
 mod surfel;
 mod values;
 
+pub use cloud_look::{BoxValue, CloudLook, RangeValue};
 pub use common::{Common, Progressive, TextOutput};
 pub use job::JobOptions;
 pub use points::{PointLayerRequest, layer_list};
@@ -106,7 +108,8 @@ pub enum Command {
         pointillist scan rabbit.ply --edl --ambient 0.3 -o depth.png\n  \
         pointillist scan rabbit.ply --eye 0.3,0.15,0.4 --target 0,0.08,0 --fov 35 --passes 1 -o near.png\n  \
         pointillist scan rabbit.ply examples/ball.obj --alpha 0.4 -o inside.png\n  \
-        pointillist scan rabbit.ply -o rabbit.exr --layers all --float\n\n\
+        pointillist scan rabbit.ply -o rabbit.exr --layers all --float\n  \
+        pointillist scan rabbit.ply --color-by y --color-map turbo --legend --box -1,0.05,-1,1,1,1 -o height.png\n\n\
         Two scans, the second 0.2 to the right (tx ty tz qx qy qz qw):\n  \
         printf 'bmesh rabbit.ply 0 0 0 0 0 0 1\\nbmesh rabbit.ply 0.2 0 0 0 0 0 1\\n' > two.conf\n  \
         pointillist scan two.conf -o two.png")]

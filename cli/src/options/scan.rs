@@ -1,7 +1,8 @@
 //! `scan`.
 
 use super::values::{self, Vector};
-use super::{CameraOptions, Common, PictureOptions, PointLayerRequest};
+use super::{CameraOptions, CloudLook, Common, PictureOptions, PointLayerRequest};
+use crate::points::{ColorBy, PointOptions};
 use clap::ValueEnum;
 use pointillist_ibpr as ibpr;
 use std::path::PathBuf;
@@ -19,6 +20,9 @@ pub struct ScanOptions {
     /// How points become surfaces.
     #[command(flatten)]
     pub surface: SurfaceOptions,
+    /// Which points are drawn, and in which colours.
+    #[command(flatten)]
+    pub look: CloudLook,
     /// How surfaces are lit.
     #[command(flatten)]
     pub shading: ShadingOptions,
@@ -58,8 +62,8 @@ pub struct SurfaceOptions {
     /// Thickness of a surface in spacings
     #[arg(long, value_name = "G", default_value_t = 2.0, value_parser = values::positive)]
     pub gamma: f64,
-    /// Buffers per frame: 2 draws a finer one under the normal one
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = values::whole::<u8>(1..=2))]
+    /// Buffers per frame: 2 draws a finer one under the normal one, sharper where points are exact, grainy along outlines where they are not, in twice the time
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::whole::<u8>(1..=2))]
     pub passes: u8,
     /// With two passes, size of the finer buffer's pixels relative to the normal one's
     #[arg(long, value_name = "F", default_value_t = 0.83, value_parser = values::share_above_0)]
@@ -165,6 +169,17 @@ pub enum WeightsValue {
 }
 
 impl ScanOptions {
+    /// How clouds are read.
+    #[must_use]
+    pub fn reading(&self) -> PointOptions {
+        PointOptions {
+            drop_invalid: self.drop_invalid,
+            ignore_alpha: self.surface.ignore_alpha,
+            selection: self.look.selection(),
+            scalar: self.look.color_by.scalar(),
+        }
+    }
+
     /// What the renderer is asked for, for points of which some are translucent, or none.
     pub fn frame_options(&self, has_translucent: bool) -> ibpr::Options {
         let surface = &self.surface;
@@ -204,7 +219,7 @@ impl ScanOptions {
         }
         options.ambient = self.shading.ambient;
         options.eye_dome = self.shading.edl.map(|strength| ibpr::EyeDome::new(strength as f32, 2));
-        options.surface_layers = !self.layers.is_empty();
+        options.surface_layers = !self.layers.is_empty() || self.look.color_by == ColorBy::Normal;
         options
     }
 }

@@ -1,8 +1,8 @@
 //! `surfel`.
 
 use super::values::{self, Vector};
-use super::{CameraOptions, Common, PictureOptions, PointLayerRequest};
-use crate::points::PointOptions;
+use super::{CameraOptions, CloudLook, Common, PictureOptions, PointLayerRequest};
+use crate::points::{ColorBy, PointOptions};
 use clap::ValueEnum;
 use pointillist_surfel as surfel;
 use std::path::PathBuf;
@@ -22,6 +22,9 @@ pub struct SurfelOptions {
     /// How discs become a picture.
     #[command(flatten)]
     pub discs: DiscOptions,
+    /// Which points are drawn, and in which colours.
+    #[command(flatten)]
+    pub look: CloudLook,
     /// How surfaces are lit.
     #[command(flatten)]
     pub shading: SurfelShading,
@@ -121,7 +124,12 @@ impl SurfelOptions {
     /// How clouds are read.
     #[must_use]
     pub fn reading(&self) -> PointOptions {
-        PointOptions { drop_invalid: self.drop_invalid, ignore_alpha: self.discs.ignore_alpha }
+        PointOptions {
+            drop_invalid: self.drop_invalid,
+            ignore_alpha: self.discs.ignore_alpha,
+            selection: self.look.selection(),
+            scalar: self.look.color_by.scalar(),
+        }
     }
 
     /// The field of view of the lens in degrees, where nothing else says what is seen.
@@ -161,7 +169,7 @@ impl SurfelOptions {
             options.light = surfel::Light::Towards(light.into());
         }
         options.ambient = self.shading.ambient;
-        options.surface_layers = !self.layers.is_empty();
+        options.surface_layers = !self.layers.is_empty() || self.look.color_by == ColorBy::Normal;
         Ok(options)
     }
 }

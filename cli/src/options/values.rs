@@ -332,6 +332,6 @@ pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
-fn list<T: FromStr>(text: &str, separator: char, wanted: &str) -> Result<Vec<T>, String> {
+pub(super) fn list<T: FromStr>(text: &str, separator: char, wanted: &str) -> Result<Vec<T>, String> {
     text.split(separator).map(|part| part.trim().parse().map_err(|_| format!("must be {wanted}"))).collect()
 }

@@ -1,6 +1,7 @@
 //! Clouds for `surfel`: files in, points with what they have out.
 
-use crate::cloud_io::{self, CloudOptions};
+use super::colouring::{Colouring, Legend, Part};
+use super::reading::{PointOptions, read_points};
 use crate::input;
 use crate::input_error::InputError;
 use crate::memory::Meter;
@@ -18,6 +19,8 @@ pub struct PointSet {
     radii: Option<Vec<f32>>,
     /// None as long as no file has them; points of files without them are opaque.
     opacities: Option<Vec<f32>>,
+    /// What was measured, if points are coloured by it.
+    values: Vec<f32>,
     /// The files, and the number of the first point of each.
     files: Vec<(PathBuf, usize)>,
     /// What may be wrong, with the name of the file.
@@ -38,40 +41,32 @@ fn append<T: Clone>(all: &mut Option<Vec<T>>, part: Option<&[T]>) {
     }
 }
 
-/// How clouds are read.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct PointOptions {
-    /// Leave out points that are not finite.
-    pub drop_invalid: bool,
-    /// Take all points for opaque.
-    pub ignore_alpha: bool,
-}
-
 impl PointSet {
     /// Reads clouds.
     ///
     /// # Errors
     ///
     /// [`InputError`] for the first file that cannot be used.
-    pub fn load(paths: &[PathBuf], options: PointOptions) -> Result<Self, InputError> {
+    pub fn load(paths: &[PathBuf], options: &PointOptions) -> Result<Self, InputError> {
         let mut set =
             Self { normals: Some(vec![]), colours: Some(vec![]), radii: Some(vec![]), ..Self::default() };
         for path in paths {
             set.read(path, options)?;
         }
+        options.selection.check_any(set.positions.len(), paths)?;
         Ok(set)
     }
 
-    fn read(&mut self, path: &Path, options: PointOptions) -> Result<(), InputError> {
+    fn read(&mut self, path: &Path, options: &PointOptions) -> Result<(), InputError> {
         let first = self.positions.len();
         self.files.push((path.to_owned(), first));
-        let cloud_options = CloudOptions::default().with_drop_invalid(options.drop_invalid);
-        let summary = cloud_io::read_cloud::<InputError>(path, &cloud_options, &mut |block| {
+        let summary = read_points(path, options, None, &mut |block, values| {
+            self.values.extend_from_slice(values);
             self.positions.extend_from_slice(block.positions);
             append(&mut self.normals, block.normals);
             append(&mut self.colours, block.colours);
             append(&mut self.radii, block.radii);
-            let opacities = block.opacities.filter(|_| !options.ignore_alpha);
+            let opacities = block.opacities;
             if opacities.is_some() || self.opacities.is_some() {
                 let all = self.opacities.get_or_insert_default();
                 // Of files without.
@@ -105,6 +100,24 @@ impl PointSet {
             );
         }
         Ok(())
+    }
+
+    /// Gives the points the colours that are asked for; returns what they mean.
+    pub fn colour(&mut self, colouring: &Colouring) -> Option<Legend> {
+        let names: Vec<String> = self.files.iter().map(|(path, _)| input::name_of(path)).collect();
+        let firsts = self.files.iter().map(|(_, first)| *first);
+        let ends = firsts.clone().skip(1).chain([self.positions.len()]);
+        let parts: Vec<Part<'_>> = (firsts.zip(ends).zip(&names))
+            .map(|((first, end), name)| Part {
+                positions: &self.positions[first..end],
+                values: self.values.get(first..end).unwrap_or_default(),
+                name,
+            })
+            .collect();
+        let (colours, legend) = colouring.colours(&parts)?;
+        self.colours = Some(colours.concat());
+        self.values = vec![];
+        Some(legend)
     }
 
     /// Makes the points ready to be drawn.

@@ -1,5 +1,6 @@
 //! A drawn frame as the layers of a picture file.
 
+use super::colouring::{ColorBy, normal_colour};
 use crate::image_io::{Frame, Layer, PixelRect};
 use glam::DVec2;
 use pointillist_view::View;
@@ -32,8 +33,14 @@ pub struct Drawn<'a> {
     pub count: &'a [f32],
 }
 
-/// The part of a drawn frame in `window`, with the layers that were asked for.
-pub fn window_of(frame: &Drawn<'_>, window: PixelRect, layers: &[PointLayer], view: &View) -> Frame {
+/// The part of a drawn frame in `window`, with the layers that were asked for. Normals take the place of colours if it is coloured by them.
+pub fn window_of(
+    frame: &Drawn<'_>,
+    window: PixelRect,
+    layers: &[PointLayer],
+    view: &View,
+    coloured_by: ColorBy,
+) -> Frame {
     let rows = (window.y0..window.y1).map(|y| {
         let start = y as usize * frame.width;
         start + window.x0 as usize..start + window.x1 as usize
@@ -57,7 +64,12 @@ pub fn window_of(frame: &Drawn<'_>, window: PixelRect, layers: &[PointLayer], vi
     Frame {
         size: [frame.width as u32, frame.height as u32],
         window,
-        color: pixels.iter().map(|i| frame.colour[*i]).collect(),
+        color: match coloured_by {
+            ColorBy::Normal => {
+                pixels.iter().map(|i| normal_colour(frame.colour[*i], frame.normal[*i])).collect()
+            }
+            _ => pixels.iter().map(|i| frame.colour[*i]).collect(),
+        },
         depth: pixels.iter().map(|i| frame.depth[*i]).collect(),
         layers: layers.iter().map(layer).collect(),
     }

@@ -1,7 +1,17 @@
 //! Pictures of points: what `scan` and `surfel` share.
 
 mod cloud;
+mod colouring;
 mod layers;
+mod legend;
+mod palette;
+mod reading;
+mod selection;
 
-pub use cloud::{PointOptions, PointSet};
+pub use cloud::PointSet;
+pub use colouring::{ColorBy, Colouring, Key, Legend, Part};
 pub use layers::{Drawn, PointLayer, window_of};
+pub use legend::draw_legend;
+pub use palette::{ColorMap, MapTable, class_name};
+pub use reading::{PointOptions, PointSink, read_points};
+pub use selection::{Selection, Selector, WorldBox};

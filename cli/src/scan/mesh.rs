@@ -74,7 +74,7 @@ impl LoadedMesh {
         most: f64,
     ) -> (LoadedScan, Option<String>) {
         let (needed, coarser) = self.within(Needed::new(camera, size, least.unwrap_or_default()), most);
-        let mut scan = LoadedScan::default();
+        let mut scan = LoadedScan { name: self.name.clone(), ..LoadedScan::default() };
         let mut lengths = 0.0;
         for (corners, colour) in self.faces() {
             needed.pieces(corners, &mut |piece| {

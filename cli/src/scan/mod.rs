@@ -3,11 +3,12 @@
 mod mesh;
 mod mesh_points;
 
-use crate::cloud_io::{self, CloudOptions, Pose};
+use crate::cloud_io::{self, Pose};
 use crate::error::CliError;
 use crate::input;
 use crate::input_error::InputError;
 use crate::memory::Meter;
+use crate::points::{Colouring, Legend, Part, PointOptions, read_points};
 use crate::scene::Camera;
 use glam::{DVec3, Vec3};
 use mesh::LoadedMesh;
@@ -26,6 +27,10 @@ pub struct LoadedScan {
     colours: Vec<[f32; 3]>,
     /// From 0 to 1, or empty: opaque.
     opacities: Vec<f32>,
+    /// What was measured, if points are coloured by it.
+    values: Vec<f32>,
+    /// Name of the file.
+    name: String,
     spacing: Option<f64>,
     /// Direction to the scanner.
     towards_scanner: Option<DVec3>,
@@ -49,16 +54,14 @@ pub struct ScanSet {
 }
 
 /// How files become scans.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
-    /// Leave out points that are not finite.
-    pub drop_invalid: bool,
+    /// How their points are read.
+    pub points: PointOptions,
     /// Distance of neighbouring points in the place of an estimate.
     pub spacing: Option<f64>,
     /// Take the vertices of meshes in the place of points all over them.
     pub vertices: bool,
-    /// Take all points as opaque.
-    pub ignore_alpha: bool,
 }
 
 impl ScanSet {
@@ -90,7 +93,10 @@ impl ScanSet {
                 }
             }
         }
+        // What is selected may lie in other files.
+        set.scans.retain(|scan| !scan.positions.is_empty());
         for path in meshes {
+            options.points.refuse_mesh(path)?;
             let mesh = LoadedMesh::load(path)?;
             if options.vertices {
                 set.scans.push(mesh.into_vertices(options.spacing));
@@ -98,7 +104,23 @@ impl ScanSet {
                 set.meshes.push(mesh.with_area()?);
             }
         }
+        let count: usize = set.scans.iter().map(|scan| scan.positions.len()).sum();
+        if set.meshes.is_empty() {
+            options.points.selection.check_any(count, paths)?;
+        }
         Ok(set)
+    }
+
+    /// Gives the points the colours that are asked for; returns what they mean.
+    pub fn colour(&mut self, colouring: &Colouring) -> Option<Legend> {
+        let parts: Vec<Part<'_>> = (self.scans.iter())
+            .map(|LoadedScan { positions, values, name, .. }| Part { positions, values, name })
+            .collect();
+        let (colours, legend) = colouring.colours(&parts)?;
+        for (scan, colours) in self.scans.iter_mut().zip(colours) {
+            scan.colours = colours;
+        }
+        Some(legend)
     }
 
     /// All positions that there are so far: those of scans, and the corners of meshes.
@@ -129,17 +151,12 @@ impl ScanSet {
 
     /// Adds a file's points and returns how many faces it has beside.
     fn read(&mut self, path: &Path, pose: Option<Pose>, options: &LoadOptions) -> Result<u64, InputError> {
-        let mut scan = LoadedScan::default();
-        let cloud_options = CloudOptions::default().with_drop_invalid(options.drop_invalid);
-        let summary = cloud_io::read_cloud::<InputError>(path, &cloud_options, &mut |block| {
-            match pose {
-                Some(pose) => scan.positions.extend(block.positions.iter().map(|p| pose.to_world(*p))),
-                None => scan.positions.extend_from_slice(block.positions),
-            }
+        let mut scan = LoadedScan { name: input::name_of(path), ..LoadedScan::default() };
+        let summary = read_points(path, &options.points, pose.as_ref(), &mut |block, values| {
+            scan.positions.extend_from_slice(block.positions);
+            scan.values.extend_from_slice(values);
             scan.colours.extend_from_slice(block.colours.unwrap_or_default());
-            if !options.ignore_alpha {
-                scan.opacities.extend_from_slice(block.opacities.unwrap_or_default());
-            }
+            scan.opacities.extend_from_slice(block.opacities.unwrap_or_default());
             let taken = block.positions.len() as u64 * POINT_BYTES;
             self.meter
                 .add(taken, || "its points take".to_owned())

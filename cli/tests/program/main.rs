@@ -4,6 +4,7 @@ mod animation;
 mod bad_input;
 mod bad_numbers;
 mod capture;
+mod cloud_look;
 mod cloud_readers;
 #[cfg(any(feature = "las", feature = "e57"))]
 mod cloud_survey_formats;

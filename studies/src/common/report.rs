@@ -131,6 +131,9 @@ pub(crate) fn scenes(rows: &[Row]) -> Vec<&str> {
 /// Errors below this are drawn at it: a logarithmic axis has no zero.
 const SMALLEST: f64 = 1e-9;
 
+/// The same for what is not finite.
+const LARGEST: f64 = 1e3;
+
 /// Draws `NAME.svg`: for each scene time against error, both logarithmic.
 pub(crate) fn chart(
     out_dir: &Path,
@@ -188,7 +191,7 @@ fn panel(
     series: &[&str],
     rows: &[&Row],
 ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-    let point = |r: &&Row| (r.time.seconds.max(1e-6), r.rmse.clamp(SMALLEST, 10.0));
+    let point = |r: &&Row| (r.time.seconds.max(1e-6), r.rmse.clamp(SMALLEST, LARGEST));
     let range = |values: Vec<f64>| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(0.0, f64::max);

@@ -130,6 +130,52 @@ pub(crate) fn timed_part<T>(clock: Clock, mut work: impl FnMut() -> (f64, T)) ->
     }
 }
 
+/// By what factor one work takes longer than another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ratio {
+    /// Median over pairs of runs.
+    pub(crate) value: f64,
+    /// Half of the range that the middle half of the pairs lies in.
+    pub(crate) spread: f64,
+}
+
+impl Ratio {
+    /// What tables of goals say: a ratio that is nearer to its bound than its spread says nothing.
+    pub(crate) fn at_most(self, bound: f64) -> &'static str {
+        if (self.value - bound).abs() <= self.spread {
+            "undecided"
+        } else if self.value <= bound {
+            "reached"
+        } else {
+            "**missed**"
+        }
+    }
+
+    fn of(mut ratios: Vec<f64>) -> Self {
+        ratios.sort_by(f64::total_cmp);
+        let at = |share: f64| ratios[(share * (ratios.len() - 1) as f64).round() as usize];
+        Self { value: at(0.5), spread: 0.5 * (at(0.75) - at(0.25)) }
+    }
+}
+
+/// How much longer `work` takes than `other`: both in turns, so that what else the machine does meets both alike.
+pub(crate) fn ratio(clock: Clock, mut work: impl FnMut(), mut other: impl FnMut()) -> Ratio {
+    /// Pairs of runs, an odd number; the first pair warms up and does not count.
+    const PAIRS: usize = 15;
+    let now = clock.start();
+    let seconds = |work: &mut dyn FnMut()| {
+        let begin = now();
+        work();
+        now() - begin
+    };
+    let mut pair = |_| {
+        let own = seconds(&mut work);
+        own / seconds(&mut other)
+    };
+    pair(0);
+    Ratio::of((0..PAIRS).map(pair).collect())
+}
+
 /// Seconds of the fastest of several runs: at least `runs`, and more while they take no longer than `together` seconds.
 pub(crate) fn least_seconds<E>(
     clock: Clock,
@@ -200,6 +246,18 @@ mod tests {
         assert_eq!(timing.to_string(), "1.1000 ± 9 %");
         assert!(Timing::of(&runs[..3], 3).noisy);
         assert_eq!(Timing::of(&runs[..3], 3).to_string(), "1.2000, noisy");
+    }
+
+    #[test]
+    fn a_ratio_near_its_bound_is_undecided() {
+        let ratio = Ratio::of(vec![1.0, 5.0, 1.02, 1.04, 0.98]);
+        assert_eq!(ratio.value, 1.02);
+        assert!((ratio.spread - 0.02).abs() < 1e-12);
+        assert_eq!(
+            [1.0, 1.03, 1.05].map(|bound| ratio.at_most(bound)),
+            ["undecided", "undecided", "reached"]
+        );
+        assert_eq!(ratio.at_most(0.9), "**missed**");
     }
 
     #[test]

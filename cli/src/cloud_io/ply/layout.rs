@@ -2,6 +2,7 @@
 
 use super::super::block::{Has, Point};
 use super::super::colour::ColourCode;
+use super::super::scalar::{SCALARS, Scalar, Scalars};
 use super::header::Element;
 use crate::input_error::InputError;
 use glam::{DVec3, Vec3};
@@ -11,7 +12,10 @@ use ply_rs_bw::ply::{PropertyDef, PropertyType, ScalarType};
 pub(super) type Values = [f64; UNUSED + 1];
 
 /// Where a number without meaning goes.
-pub(super) const UNUSED: usize = 11;
+pub(super) const UNUSED: usize = FIRST_SCALAR + SCALARS;
+
+/// Where the first value by [`Scalar`] goes.
+const FIRST_SCALAR: usize = 11;
 
 const POSITION: [&str; 3] = ["x", "y", "z"];
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
@@ -29,7 +33,7 @@ const OPACITY: [&str; 2] = ["alpha", "a"];
 
 /// The meaning of each property of a vertex.
 pub(super) struct Layout {
-    /// For each property an index into [`Values`]: 0–2 position, 3–5 normal, 6–8 colour, 9 radius, 10 opacity.
+    /// For each property an index into [`Values`]: 0–2 position, 3–5 normal, 6–8 colour, 9 radius, 10 opacity, then by [`Scalar`].
     pub(super) slots: Vec<usize>,
     colour: Option<([&'static str; 3], [ColourCode; 3])>,
     opacity: Option<(&'static str, ColourCode)>,
@@ -54,13 +58,17 @@ impl Layout {
         let colour = COLOURS.into_iter().find_map(|names| Some((names, three(names)?)));
         let radius = scalar("radius");
         let opacity = OPACITY.into_iter().find_map(|name| Some((name, scalar(name)?)));
+        let scalars = Scalar::ALL.map(|wanted| {
+            vertex.properties.iter().position(|p| is_scalar(p) && Scalar::of_name(&p.name) == Some(wanted))
+        });
         let mut slots = vec![UNUSED; vertex.properties.len()];
         let wanted = position
             .into_iter()
             .map(Some)
             .chain(normal.map_or([None; 3], |n| n.map(Some)))
             .chain(colour.map_or([None; 3], |(_, c)| c.map(Some)))
-            .chain([radius, opacity.map(|(_, property)| property)]);
+            .chain([radius, opacity.map(|(_, property)| property)])
+            .chain(scalars);
         for (slot, property) in wanted.enumerate() {
             if let Some(property) = property {
                 slots[property] = slot;
@@ -74,13 +82,15 @@ impl Layout {
             opacities: opacity.is_some(),
             normals: normal.is_some(),
             radii: radius.is_some(),
+            scalars: scalars.map(|property| property.is_some()),
         };
         Ok(Self { slots, colour, opacity, has })
     }
 
     /// The point with these numbers, or what is wrong with them.
     pub(super) fn point(&self, values: &Values) -> Result<Point, String> {
-        let [x, y, z, nx, ny, nz, r, g, b, radius, opacity, _] = *values;
+        let [x, y, z, nx, ny, nz, r, g, b, radius, opacity, ..] = *values;
+        let scalars: Scalars<f32> = std::array::from_fn(|i| values[FIRST_SCALAR + i] as f32);
         let out_of_range = |name: &str, stored: f64, code: ColourCode| {
             format!("`{name}` is {stored}, not from 0 to {}", code.highest())
         };
@@ -105,6 +115,7 @@ impl Layout {
             colour,
             opacity,
             radius: radius as f32,
+            scalars,
         })
     }
 }

@@ -6,13 +6,7 @@ use glam::DVec3;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Broken points are counted and not an error: this command is for looking at files.
-pub(super) fn summary(path: &Path) -> Result<CloudSummary, InputError> {
-    let options = CloudOptions::default().with_drop_invalid(true);
-    cloud_io::read_cloud(path, &options, &mut |_| Ok(()))
-}
-
-pub(super) fn of_cloud(summary: &CloudSummary) -> Value {
+pub(super) fn of_summary(summary: &CloudSummary) -> Value {
     let mut value = json!({
         "kind": "cloud",
         "format": summary.format.as_str(),
@@ -23,7 +17,6 @@ pub(super) fn of_cloud(summary: &CloudSummary) -> Value {
         "normals": summary.has_normals,
         "radii": summary.has_radii,
         "bounds": summary.bounds.map(|corner| corner.to_array()),
-        "units": { "bounds": "as the file; clouds do not say their unit" },
         "warnings": summary.warnings,
     });
     if let Some(grid) = summary.grid {
@@ -51,7 +44,7 @@ pub(super) fn of_conf(path: &Path) -> Result<Value, InputError> {
             Ok(())
         })?;
         points += summary.points;
-        let mut value = of_cloud(&summary);
+        let mut value = of_summary(&summary);
         value["path"] = json!(scan.path.display().to_string());
         value["pose"] = of_pose(&scan.pose);
         scans.push(value);

@@ -1,8 +1,8 @@
 //! Meshes.
 
 use super::bounds;
-use super::cloud::{of_cloud, summary};
 use super::ply;
+use super::survey::Survey;
 use crate::cloud_io;
 use crate::input;
 use crate::input_error::InputError;
@@ -49,8 +49,8 @@ pub(super) fn of_ply(path: &Path, name: &str) -> Result<Value, InputError> {
     }
     let elements = ply::elements(name, &bytes)?;
     let mut value = if ply::has_positions(&elements) {
-        let summary = summary(path)?;
-        if summary.faces == 0 { of_cloud(&summary) } else { of_mesh("ply", &read_ply(name, &bytes)?) }
+        let survey = Survey::of(path)?;
+        if survey.summary.faces == 0 { survey.to_json() } else { of_mesh("ply", &read_ply(name, &bytes)?) }
     } else {
         json!({ "kind": "ply", "format": "ply", "warnings": ["it has no positions, so no command draws it"] })
     };

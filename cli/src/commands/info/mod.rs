@@ -6,6 +6,7 @@ mod mesh;
 mod picture;
 mod ply;
 mod scene;
+mod survey;
 mod tables;
 
 use super::Report;
@@ -20,13 +21,14 @@ use crate::options::InfoOptions;
 use crate::probe_io::{read_captures, read_probes};
 use crate::scene::{Overrides, load};
 use baked::{of_captures, of_harmonics, of_probes, of_radiosity};
-use cloud::{of_cloud, of_conf, summary};
+use cloud::of_conf;
 use glam::DVec3;
 use mesh::{of_gltf, of_mesh, of_ply};
 use picture::{of_exr, of_picture};
 use scene::of_scene;
 use serde_json::{Value, json};
 use std::path::Path;
+use survey::Survey;
 use tables::{of_comparison, of_job, of_json_lines, of_merl, of_mtl, of_raw, of_stats, of_text, of_yaml};
 
 pub(super) fn run(options: &InfoOptions) -> Result<(), CliError> {
@@ -56,9 +58,9 @@ fn describe(path: &Path) -> Result<Value, InputError> {
         "conf" => of_conf(path),
         "xyz" | "txt" | "asc" | "pts" | "csv" => match of_text(&bytes()?) {
             Some(value) => Ok(value),
-            None => Ok(of_cloud(&summary(path)?)),
+            None => Ok(Survey::of(path)?.to_json()),
         },
-        "gz" | "las" | "laz" | "e57" => Ok(of_cloud(&summary(path)?)),
+        "gz" | "las" | "laz" | "e57" => Ok(Survey::of(path)?.to_json()),
         "bin" => of_raw(&name, &bytes()?),
         "binary" => of_merl(&name, &bytes()?),
         "yaml" | "yml" => of_yaml(&name, &bytes()?),
