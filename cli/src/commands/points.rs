@@ -6,8 +6,10 @@ use super::report::check_output;
 use crate::cloud_io::Pose;
 use crate::error::CliError;
 use crate::image_io::{Frame, PixelRect, Stamp};
-use crate::input::is_standard;
+use crate::input::{self, is_standard};
+use crate::input_error::InputError;
 use crate::memory;
+use crate::name_pattern;
 use crate::options::{CameraOptions, CloudLook, PictureOptions, Vector};
 use crate::points::{Colouring, Legend, draw_legend};
 use crate::scene::description::{CameraDescription, DEFAULT_FOV_DEG};
@@ -105,6 +107,71 @@ fn fitting_fov_deg(view: &Pose, positions: impl Iterator<Item = DVec3>, aspect: 
     } else {
         DEFAULT_FOV_DEG
     }
+}
+
+/// A line of `--views`.
+pub(super) struct FlightView {
+    eye: [f64; 3],
+    target: [f64; 3],
+    up: Option<[f64; 3]>,
+}
+
+impl FlightView {
+    /// The camera of the options, at this place.
+    pub(super) fn of(&self, camera: &CameraOptions) -> CameraOptions {
+        let mut camera = camera.clone();
+        camera.eye = Some(Vector(self.eye));
+        camera.target = Some(Vector(self.target));
+        camera.up = self.up.map(Vector).or(camera.up);
+        camera
+    }
+}
+
+/// Reads the views of a flight: a line for each, six numbers for eye and target or nine with what is up, between blanks or commas. What follows a `#` does not
+/// count.
+pub(super) fn read_views(path: &Path) -> Result<Vec<FlightView>, InputError> {
+    let name = input::name_of(path);
+    let bytes = input::read(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    let mut views = vec![];
+    for (index, line) in text.lines().enumerate() {
+        let fault = |message: String| {
+            InputError::in_line(&name, &bytes, index + 1, message)
+                .with_help("a line is EYE and TARGET, six numbers, or nine with UP: 10 5 20  0 0 0")
+        };
+        let words = line.split('#').next().unwrap_or_default();
+        let words = words.split([' ', '\t', ',', ';']).filter(|word| !word.is_empty());
+        let number = |word: &str| match word.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(fault(format!("`{word}` is no number"))),
+        };
+        let numbers = words.map(number).collect::<Result<Vec<_>, _>>()?;
+        let three = |at: usize| [numbers[at], numbers[at + 1], numbers[at + 2]];
+        match numbers.len() {
+            0 => {}
+            6 => views.push(FlightView { eye: three(0), target: three(3), up: None }),
+            9 => views.push(FlightView { eye: three(0), target: three(3), up: Some(three(6)) }),
+            count => return Err(fault(format!("a view of {count} numbers"))),
+        }
+    }
+    if views.is_empty() {
+        return Err(
+            InputError::of_file(name, "there is no view in it").with_help("write a line for each picture")
+        );
+    }
+    Ok(views)
+}
+
+/// The pictures of a flight: names with a number in the place of `{frame}`, from 1; one picture has its own name.
+pub(super) fn output_paths(path: &Path, views: Option<usize>) -> Result<Vec<PathBuf>, CliError> {
+    let Some(views) = views else { return Ok(vec![path.to_owned()]) };
+    if !name_pattern::has(path, "frame").map_err(CliError::Usage)? {
+        let message =
+            "--views makes a picture for each view: give them names, such as -o flight_{frame:04}.png";
+        return Err(CliError::Usage(message.to_owned()));
+    }
+    let numbers = 1..=u32::try_from(views).unwrap_or(u32::MAX);
+    numbers.map(|number| name_pattern::fill(path, "frame", number).map_err(CliError::Usage)).collect()
 }
 
 /// Draws a frame as often as `--repeat` asks, and notes how long each took.

@@ -3,55 +3,211 @@
 use super::Report;
 use super::points::{self, Target};
 use crate::error::CliError;
+use crate::image_io::{PixelRect, Stamp};
 use crate::options::{SurfelOptions, layer_list};
-use crate::points::{Drawn, PointLayer, PointSet, window_of};
+use crate::points::{Colouring, Drawn, Legend, PointLayer, PointSet, Trees, is_large, window_of};
+use crate::scene::Camera;
+use pointillist_octree::Cut;
 use pointillist_surfel as surfel;
+use pointillist_view::View;
+
+/// Pixels around the picture of which points are read: discs, and what is out of focus, reach into it.
+const MARGIN_PX: f64 = 64.0;
 
 /// Layers of a cloud's picture.
 const LAYERS: [PointLayer; 2] = [PointLayer::Normal, PointLayer::Position];
 
+/// What is chosen for all pictures of a run.
+struct Pictures<'a> {
+    options: &'a SurfelOptions,
+    report: &'a Report<'a>,
+    colouring: Colouring,
+    layers: Vec<PointLayer>,
+    frame_options: surfel::Options,
+    region: PixelRect,
+    window: PixelRect,
+}
+
+/// Where points come from.
+enum Source {
+    /// All are in memory.
+    Whole { cloud: Box<surfel::Cloud>, legend: Option<Legend>, fingerprint: u64 },
+    /// Each view reads what it needs.
+    Trees(Box<Trees>),
+}
+
 pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     let report = Report::new(&options.common)?.reading(&options.clouds)?;
     let path = points::output_path(options.output.as_deref(), &options.clouds[0]);
-    let target = Target::new(path, &options.picture, !options.layers.is_empty())?;
-    let colouring = target.colouring(&options.look)?;
+    let views = options.views.as_deref().map(points::read_views).transpose()?;
+    let paths = points::output_paths(&path, views.as_ref().map(Vec::len))?;
+    let with_layers = !options.layers.is_empty();
+    let targets = paths
+        .into_iter()
+        .map(|path| Target::new(path, &options.picture, with_layers))
+        .collect::<Result<Vec<_>, _>>()?;
     let layers = layer_list(&options.layers, &LAYERS)
         .map_err(|_| CliError::Usage("layers of `surfel` are all, N and P".to_owned()))?;
-    let frame_options = options.frame_options().map_err(CliError::Usage)?;
-    let fov_deg = options.lens_fov_deg().map_err(CliError::Usage)?;
     let (region, window) = points::check_view(&options.camera)?;
-    let mut set = report.stats.stage("load", || PointSet::load(&options.clouds, &options.reading()))?;
-    set.warnings.iter().for_each(|warning| report.warn(warning));
-    let legend = report.stats.stage("prepare", || set.colour(&colouring));
-    let cloud = report.stats.stage("prepare", || set.cloud(options.discs.estimate_normals))?;
-    let camera = points::camera(&options.camera, None, fov_deg, || cloud.positions())?;
-    let size = points::size(&options.camera);
-    let paint = (colouring.by, options.look.legend, options.picture.float, options.picture.bg);
-    let drawn = format!("{:?}", (frame_options, &camera, size, &layers, paint));
-    let stamp = points::stamp(set.fingerprint(), &drawn, &options.camera, region);
-    if target.is_done(&stamp, window, &report) {
-        return report.finish();
+    let pictures = Pictures {
+        options,
+        report: &report,
+        colouring: targets[0].colouring(&options.look)?,
+        layers,
+        frame_options: options.frame_options().map_err(CliError::Usage)?,
+        region,
+        window,
+    };
+    let fov_deg = options.lens_fov_deg().map_err(CliError::Usage)?;
+    let mut source = pictures.load()?;
+    let given = match views {
+        None => vec![options.camera.clone()],
+        Some(views) => views.iter().map(|view| view.of(&options.camera)).collect(),
+    };
+    let framed = match &mut source {
+        Source::Whole { cloud, .. } => cloud.positions().collect(),
+        Source::Trees(trees) => trees.load(&trees.roots(), &mut || ())?.positions().collect::<Vec<_>>(),
+    };
+    let cameras = given
+        .iter()
+        .map(|given| points::camera(given, None, fov_deg, || framed.iter().copied()))
+        .collect::<Result<Vec<_>, _>>()?;
+    drop(framed);
+    for (camera, target) in cameras.iter().zip(&targets) {
+        pictures.draw(camera, target, &mut source)?;
     }
-    drop(set);
-    let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
-    let mut frame = surfel::Frame::default();
-    // Not part of what tiles know one another by.
-    let frame_options = frame_options.with_window(window);
-    report.stats.stage("draw", || {
-        // All that the renderer can refuse now is a value of an option.
-        let usage = |error: surfel::SurfelError| CliError::Usage(error.to_string());
-        let mut renderer = surfel::Renderer::new();
-        points::repeat(&report, options.repeat, || {
-            renderer.draw(&cloud, &view, &frame_options, &mut frame).map_err(usage)
-        })
-    })?;
-    tell_counts(&report, &cloud, &frame, points::is_whole(window, size));
-    let mut picture = window_of(&as_drawn(&frame), window, &layers, &view, colouring.by);
-    target.explain(&mut picture, legend.filter(|_| options.look.legend), &report);
-    report.stats.stage("write", || target.write(picture, stamp))?;
-    let seconds = report.stats.elapsed().as_secs_f64();
-    report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));
+    if let Source::Trees(trees) = &source {
+        report.stats.count("bytes_read", trees.bytes_read);
+        report.stats.count("nodes_read", trees.nodes_read);
+        report.stats.skip("nodes_kept", trees.nodes_kept);
+    }
     report.finish()
+}
+
+impl Pictures<'_> {
+    fn load(&self) -> Result<Source, CliError> {
+        let (options, report) = (self.options, self.report);
+        if options.clouds.iter().any(|cloud| is_large(cloud, options.octree)) {
+            let progress = report.progress();
+            let open =
+                || Trees::open(&options.clouds, options.reading(), &progress, &|line| report.note(line));
+            return Ok(Source::Trees(Box::new(report.stats.stage("load", open)?)));
+        }
+        let mut set = report.stats.stage("load", || PointSet::load(&options.clouds, &options.reading()))?;
+        set.warnings.iter().for_each(|warning| report.warn(warning));
+        let (cloud, legend) = self.prepare(&mut set)?;
+        Ok(Source::Whole { cloud: Box::new(cloud), legend, fingerprint: set.fingerprint() })
+    }
+
+    fn prepare(&self, set: &mut PointSet) -> Result<(surfel::Cloud, Option<Legend>), CliError> {
+        self.report.stats.stage("prepare", || {
+            let legend = set.colour(&self.colouring);
+            Ok((set.cloud(self.options.discs.estimate_normals)?, legend))
+        })
+    }
+
+    /// Draws one view, unless its picture is there already.
+    fn draw(&self, camera: &Camera, target: &Target<'_>, source: &mut Source) -> Result<(), CliError> {
+        let (options, report) = (self.options, self.report);
+        let size = points::size(&options.camera);
+        let paint = (self.colouring.by, options.look.legend, options.picture.float, options.picture.bg);
+        let drawn = format!("{:?}", (self.frame_options, camera, size, &self.layers, paint));
+        let fingerprint = match source {
+            Source::Whole { fingerprint, .. } => *fingerprint,
+            Source::Trees(trees) => trees.fingerprint(),
+        };
+        let stamp = points::stamp(fingerprint, &drawn, &options.camera, self.region);
+        if target.is_done(&stamp, self.window, report) {
+            return Ok(());
+        }
+        let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
+        match source {
+            Source::Whole { cloud, legend, .. } => {
+                self.draw_cloud(cloud, legend.clone(), &view, target, stamp)
+            }
+            Source::Trees(trees) => self.draw_trees(trees, &view, target, stamp),
+        }
+    }
+
+    /// A coarse picture first, then that of all points that the view needs.
+    fn draw_trees(
+        &self,
+        trees: &mut Trees,
+        view: &View,
+        target: &Target<'_>,
+        stamp: Stamp,
+    ) -> Result<(), CliError> {
+        let report = self.report;
+        // Twice as close as the level that is drawn, as points of a node are not on a lattice.
+        let spacing_px = 0.7 * f64::from(self.frame_options.level).max(0.5);
+        let cut = trees.cut(view, spacing_px, MARGIN_PX);
+        let first = trees.coarse(&cut).filter(|_| self.options.views.is_none());
+        if let Some(coarse) = first {
+            self.draw_cut(trees, &coarse, view, target, Stamp { unfinished: true, ..stamp.clone() })?;
+            report.note(&format!(
+                "{} is there, coarse; {} more points are read",
+                target.path.display(),
+                cut.points - coarse.points
+            ));
+        }
+        if cut.is_limited {
+            let gap = cut.spacing_px;
+            report.warn(&format!(
+                "points are up to {gap:.1} pixels apart: the memory is enough for {} of them; --memory gives more", cut.points
+            ));
+        }
+        self.draw_cut(trees, &cut, view, target, stamp)
+    }
+
+    fn draw_cut(
+        &self,
+        trees: &mut Trees,
+        cut: &Cut,
+        view: &View,
+        target: &Target<'_>,
+        stamp: Stamp,
+    ) -> Result<(), CliError> {
+        let progress = self.report.progress();
+        progress.begin("read", cut.nodes.len() as u64);
+        let mut set = self.report.stats.stage("load", || trees.load(cut, &mut || progress.advance(1)))?;
+        progress.finish();
+        if set.count() == 0 {
+            let message = "no point is in view; without --eye, --target and --views all are";
+            return Err(CliError::Usage(message.to_owned()));
+        }
+        let (cloud, legend) = self.prepare(&mut set)?;
+        drop(set);
+        self.draw_cloud(&cloud, legend, view, target, stamp)
+    }
+
+    fn draw_cloud(
+        &self,
+        cloud: &surfel::Cloud,
+        legend: Option<Legend>,
+        view: &View,
+        target: &Target<'_>,
+        stamp: Stamp,
+    ) -> Result<(), CliError> {
+        let (options, report) = (self.options, self.report);
+        let mut frame = surfel::Frame::default();
+        // Not part of what tiles know one another by.
+        let frame_options = self.frame_options.with_window(self.window);
+        report.stats.stage("draw", || {
+            // All that the renderer can refuse now is a value of an option.
+            let usage = |error: surfel::SurfelError| CliError::Usage(error.to_string());
+            let mut renderer = surfel::Renderer::new();
+            points::repeat(report, options.repeat, || {
+                renderer.draw(cloud, view, &frame_options, &mut frame).map_err(usage)
+            })
+        })?;
+        tell_counts(report, cloud, &frame, points::is_whole(self.window, points::size(&options.camera)));
+        let mut picture = window_of(&as_drawn(&frame), self.window, &self.layers, view, self.colouring.by);
+        target.explain(&mut picture, legend.filter(|_| options.look.legend), report);
+        report.stats.stage("write", || target.write(picture, stamp))?;
+        let seconds = report.stats.elapsed().as_secs_f64();
+        report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));
+        Ok(())
+    }
 }
 
 fn as_drawn(frame: &surfel::Frame) -> Drawn<'_> {

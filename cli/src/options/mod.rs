@@ -132,7 +132,8 @@ pub enum Command {
         pointillist surfel rabbit.ply --eye 0.2,0.2,0.4 --target 0,0.08,0 --light 1,2,2 -o right.png\n  \
         pointillist surfel rabbit.ply --focus 0.3 --aperture 0.02 -o blurred.png\n  \
         pointillist surfel rabbit.ply --focus 0.35 --lens 50 --fstop 1.8 -o photograph.png\n  \
-        pointillist surfel rabbit.ply -o rabbit.exr --layers all --float")]
+        pointillist surfel rabbit.ply -o rabbit.exr --layers all --float\n  \
+        pointillist surfel rabbit.ply --octree -o large.png")]
     Surfel(SurfelOptions),
     /// Light probes: place, bake, project, tetrahedralise, query
     Probe {

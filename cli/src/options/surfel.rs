@@ -31,6 +31,12 @@ pub struct SurfelOptions {
     /// The view.
     #[command(flatten)]
     pub camera: CameraOptions,
+    /// Draw from an octree beside each CLOUD (CLOUD.octree, made once) even if it fits into memory; clouds that do not fit are drawn so anyway
+    #[arg(long)]
+    pub octree: bool,
+    /// Draw a picture for each line of a file, EYE and TARGET in six numbers or nine with UP; -o then has a place for the number: flight_{frame:04}.png
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["eye", "target"])]
+    pub views: Option<PathBuf>,
     /// Further layers in the EXR: `all`, or a list of N, P
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub layers: Vec<PointLayerRequest>,

@@ -2,6 +2,7 @@
 
 use super::colouring::{Colouring, Legend, Part};
 use super::reading::{PointOptions, read_points};
+use crate::cloud_io::CloudBlock;
 use crate::input;
 use crate::input_error::InputError;
 use crate::memory::Meter;
@@ -48,8 +49,7 @@ impl PointSet {
     ///
     /// [`InputError`] for the first file that cannot be used.
     pub fn load(paths: &[PathBuf], options: &PointOptions) -> Result<Self, InputError> {
-        let mut set =
-            Self { normals: Some(vec![]), colours: Some(vec![]), radii: Some(vec![]), ..Self::default() };
+        let mut set = Self::empty();
         for path in paths {
             set.read(path, options)?;
         }
@@ -57,23 +57,48 @@ impl PointSet {
         Ok(set)
     }
 
+    /// No points yet.
+    pub(super) fn empty() -> Self {
+        Self { normals: Some(vec![]), colours: Some(vec![]), radii: Some(vec![]), ..Self::default() }
+    }
+
+    /// Says that the points to come are of this file.
+    pub(super) fn begin(&mut self, path: &Path) {
+        self.files.push((path.to_owned(), self.positions.len()));
+    }
+
+    /// How many points there are.
+    pub fn count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// All positions.
+    pub fn positions(&self) -> impl Iterator<Item = DVec3> + '_ {
+        self.positions.iter().copied()
+    }
+
+    /// Adds points.
+    pub(super) fn add(&mut self, block: &CloudBlock<'_>, values: &[f32]) {
+        self.values.extend_from_slice(values);
+        self.positions.extend_from_slice(block.positions);
+        append(&mut self.normals, block.normals);
+        append(&mut self.colours, block.colours);
+        append(&mut self.radii, block.radii);
+        let opacities = block.opacities;
+        if opacities.is_some() || self.opacities.is_some() {
+            let all = self.opacities.get_or_insert_default();
+            // Of files without.
+            all.resize(self.positions.len() - block.positions.len(), 1.0);
+            all.extend_from_slice(opacities.unwrap_or_default());
+            all.resize(self.positions.len(), 1.0);
+        }
+    }
+
     fn read(&mut self, path: &Path, options: &PointOptions) -> Result<(), InputError> {
         let first = self.positions.len();
-        self.files.push((path.to_owned(), first));
+        self.begin(path);
         let summary = read_points(path, options, None, &mut |block, values| {
-            self.values.extend_from_slice(values);
-            self.positions.extend_from_slice(block.positions);
-            append(&mut self.normals, block.normals);
-            append(&mut self.colours, block.colours);
-            append(&mut self.radii, block.radii);
-            let opacities = block.opacities;
-            if opacities.is_some() || self.opacities.is_some() {
-                let all = self.opacities.get_or_insert_default();
-                // Of files without.
-                all.resize(self.positions.len() - block.positions.len(), 1.0);
-                all.extend_from_slice(opacities.unwrap_or_default());
-                all.resize(self.positions.len(), 1.0);
-            }
+            self.add(&block, values);
             let taken = block.positions.len() as u64 * POINT_BYTES;
             self.meter
                 .add(taken, || "its points take".to_owned())

@@ -7,6 +7,7 @@ mod legend;
 mod palette;
 mod reading;
 mod selection;
+mod tree;
 
 pub use cloud::PointSet;
 pub use colouring::{ColorBy, Colouring, Key, Legend, Part};
@@ -15,3 +16,4 @@ pub use legend::draw_legend;
 pub use palette::{ColorMap, MapTable, class_name};
 pub use reading::{PointOptions, PointSink, read_points};
 pub use selection::{Selection, Selector, WorldBox};
+pub use tree::{Trees, is_large};

@@ -55,7 +55,7 @@ pub fn read_points(
     sink: PointSink<'_>,
 ) -> Result<CloudSummary, InputError> {
     let name = input::name_of(path);
-    let mut selector = Selector::new(&options.selection);
+    let mut taker = Taker::new(options, &name);
     let mut moved = vec![];
     let cloud_options = CloudOptions::default()
         .with_drop_invalid(options.drop_invalid)
@@ -67,16 +67,35 @@ pub fn read_points(
             moved.extend(block.positions.iter().map(|position| pose.to_world(*position)));
             block.positions = &moved;
         }
-        if options.ignore_alpha {
+        taker.take(block, sink)
+    })
+}
+
+/// Hands on what is wanted of blocks.
+#[derive(Debug)]
+pub(super) struct Taker<'a> {
+    options: &'a PointOptions,
+    name: &'a str,
+    selector: Selector<'a>,
+}
+
+impl<'a> Taker<'a> {
+    pub(super) fn new(options: &'a PointOptions, name: &'a str) -> Self {
+        Self { options, name, selector: Selector::new(&options.selection) }
+    }
+
+    /// Hands on the points of a block that are selected, with their values, if there are any.
+    pub(super) fn take(&mut self, mut block: CloudBlock<'_>, sink: PointSink<'_>) -> Result<(), InputError> {
+        if self.options.ignore_alpha {
             block.opacities = None;
         }
-        let taken = selector.of(&block, &name)?;
-        let values = match options.scalar {
+        let taken = self.selector.of(&block, self.name)?;
+        let values = match self.options.scalar {
             None => &[],
-            Some(scalar) => taken.scalar(scalar).ok_or_else(|| without(&name, scalar))?,
+            Some(scalar) => taken.scalar(scalar).ok_or_else(|| without(self.name, scalar))?,
         };
         if taken.positions.is_empty() { Ok(()) } else { sink(taken, values) }
-    })
+    }
 }
 
 fn without(name: &str, scalar: Scalar) -> InputError {

@@ -24,6 +24,7 @@ mod gltf;
 mod interrupts;
 mod job;
 mod lamps_turned_away;
+mod large_clouds;
 mod map_places;
 mod masks;
 mod materials;

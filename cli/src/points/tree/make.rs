@@ -1,0 +1,143 @@
+//! Makes the octree beside a cloud's file, once.
+
+use super::record::Fields;
+use crate::cloud_io::{CloudOptions, read_cloud};
+use crate::image_io::write_atomically;
+use crate::input;
+use crate::input_error::InputError;
+use crate::job::Progress;
+use pointillist_octree::{Builder, Cube, OctreeError, TreeHeader, TreeReader, TreeWriter};
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use twox_hash::XxHash3_64;
+
+/// Changes with the way in which trees are made.
+const VERSION: u64 = 1;
+
+/// Pieces of a file that its fingerprint is made of, from the first to the last, and bytes of each.
+const PIECES: u64 = 64;
+const PIECE_BYTES: u64 = 4096;
+
+/// Where the octree of a file is.
+pub(super) fn path_of(cloud: &Path) -> PathBuf {
+    let mut name = cloud.as_os_str().to_owned();
+    name.push(".octree");
+    name.into()
+}
+
+/// A hash of a file's length and of 64 pieces of it, and of how it is read.
+pub(super) fn fingerprint(path: &Path, drop_invalid: bool) -> io::Result<u64> {
+    let mut file = File::open(path)?;
+    let length = file.seek(SeekFrom::End(0))?;
+    let mut hash = XxHash3_64::with_seed(VERSION);
+    std::hash::Hasher::write(&mut hash, &length.to_le_bytes());
+    std::hash::Hasher::write(&mut hash, &[u8::from(drop_invalid)]);
+    let mut piece = vec![];
+    for number in 0..PIECES {
+        let last = length.saturating_sub(PIECE_BYTES);
+        file.seek(SeekFrom::Start((u128::from(last) * u128::from(number) / u128::from(PIECES - 1)) as u64))?;
+        piece.clear();
+        file.by_ref().take(PIECE_BYTES).read_to_end(&mut piece)?;
+        std::hash::Hasher::write(&mut hash, &piece);
+    }
+    Ok(std::hash::Hasher::finish(&hash))
+}
+
+/// The octree of a file, if there is a sound one.
+pub(super) fn open(tree: &Path, fingerprint: u64) -> Option<TreeReader<File>> {
+    let reader = TreeReader::new(File::open(tree).ok()?).ok()?;
+    (reader.header().fingerprint == fingerprint).then_some(reader)
+}
+
+/// Reads a cloud twice, and writes its octree in at most `memory` bytes, about. Nothing is there if this fails or is interrupted.
+pub(super) fn make(
+    cloud: &Path,
+    drop_invalid: bool,
+    fingerprint: u64,
+    memory: u64,
+    progress: &Progress,
+) -> Result<PathBuf, InputError> {
+    let name = input::name_of(cloud);
+    let options = CloudOptions::default().with_drop_invalid(drop_invalid).with_scalars(true);
+    let mut seen = 0;
+    // Its length is not known yet.
+    let summary = read_cloud::<InputError>(cloud, &options, &mut |block| {
+        seen += block.positions.len() as u64;
+        Ok(())
+    })?;
+    let fields = Fields::of(&summary);
+    let of_tree = |error: OctreeError| refusal(cloud, &error);
+    let cube = Cube::around(summary.bounds[0], summary.bounds[1]).map_err(of_tree)?;
+    let path = path_of(cloud);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let spill = tempfile::tempfile_in(folder).map_err(|error| cannot_write(&path, seen, fields, &error))?;
+    let mut builder = Builder::new(cube, fields.bytes(), memory, spill);
+    progress.begin("octree", 3 * summary.points);
+    progress.advance(summary.points);
+    let mut payload = vec![];
+    let mut failure = None;
+    let read = read_cloud::<InputError>(cloud, &options, &mut |block| {
+        for (i, position) in block.positions.iter().enumerate() {
+            fields.encode(&block, i, &mut payload);
+            if let Err(error) = builder.push(*position, &payload) {
+                failure = Some(error);
+                return Err(InputError::of_file(&name, "its octree cannot be written"));
+            }
+        }
+        progress.advance(block.positions.len() as u64);
+        Ok(())
+    });
+    if let Some(error) = failure {
+        return Err(of_build(cloud, &path, seen, fields, error));
+    }
+    read?;
+    let header = TreeHeader { fingerprint, cube, payload: fields.bytes() as u32, layout: fields.layout() };
+    let mut refused = None;
+    let mut before = 0;
+    let written = write_atomically(&path, |output| {
+        let mut writer = TreeWriter::new(output, &header)?;
+        let built = builder.finish(&mut |key, records| writer.node(key, records), &mut |placed| {
+            progress.advance(placed - before);
+            before = placed;
+        });
+        match built {
+            Err(OctreeError::Io(error)) => return Err(error),
+            Err(other) => {
+                refused = Some(other);
+                return Err(io::Error::other("refused"));
+            }
+            Ok(()) => {}
+        }
+        // What is not on the disk when the power fails is not the file's name.
+        writer.finish()?.get_ref().sync_all()
+    });
+    progress.finish();
+    match (refused, written) {
+        (Some(error), _) => Err(refusal(cloud, &error)),
+        (None, Err(error)) => Err(cannot_write(&path, seen, fields, &error)),
+        (None, Ok(())) => Ok(path),
+    }
+}
+
+fn of_build(cloud: &Path, path: &Path, points: u64, fields: Fields, error: OctreeError) -> InputError {
+    match error {
+        OctreeError::Io(error) => cannot_write(path, points, fields, &error),
+        other => refusal(cloud, &other),
+    }
+}
+
+fn refusal(cloud: &Path, error: &OctreeError) -> InputError {
+    InputError::of_file(input::name_of(cloud), format!("no octree can be made of it: {error}")).with_help(
+        "remove points that are there many times, or give it more --memory so that it is drawn without",
+    )
+}
+
+fn cannot_write(path: &Path, points: u64, fields: Fields, error: &io::Error) -> InputError {
+    // The temporary file and the tree.
+    let needed = 2 * u128::from(points) * (12 + fields.bytes()) as u128;
+    let needed = crate::memory::human(needed);
+    InputError::of_file(path.display().to_string(), format!("the octree cannot be written: {error}")).with_help(format!(
+        "making it takes {needed} in this folder, half of which stay; make room, or link the cloud into a folder with room (`ln -s`)"
+    ))
+}
