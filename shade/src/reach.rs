@@ -43,7 +43,7 @@ fn cone_meets(apex: DVec3, axis: DVec3, half_rad: f64, low: DVec3, high: DVec3) 
     let (away, distance) = direction_and_length(centre - apex);
     let outside = radius * (1.0 + ROUNDING) < distance && distance.is_finite();
     let angle = axis.cross(away).length().atan2(axis.dot(away));
-    // Not `<`: what is not a number may be reached.
+    // What is not a number may be reached.
     !(outside && angle - (radius / distance).asin() > half_rad + ROUNDING_RAD)
 }
 
@@ -51,5 +51,6 @@ fn cone_meets(apex: DVec3, axis: DVec3, half_rad: f64, low: DVec3, high: DVec3) 
 fn is_before(on_plane: DVec3, normal: DVec3, low: DVec3, high: DVec3) -> bool {
     let farthest = DVec3::select(normal.cmpgt(DVec3::ZERO), high, low);
     let size = (on_plane.abs() + low.abs() + high.abs()).max_element() * normal.length();
-    !((farthest - on_plane).dot(normal) < -ROUNDING * size)
+    let distance = (farthest - on_plane).dot(normal);
+    distance.is_nan() || distance >= -ROUNDING * size
 }
