@@ -33,9 +33,9 @@ const COVERED: f64 = 0.01;
 /// The size of a patch is small if it is below this share of that distance.
 const SMALL: f64 = 0.25;
 
-/// Patches smaller than this share of [`RayOptions::finest`](crate::RayOptions::finest) are details: what is asked for is the error of the mean over a square of
-/// that size, in which many of them count.
-const DETAIL: f64 = 0.5;
+/// Patches smaller than this many times [`RayOptions::finest`](crate::RayOptions::finest) are details: what is asked for is the error of the mean over a square
+/// of that size, in which several of them count.
+const DETAIL: f64 = 2.0;
 /// The error of a detail may be larger by this, at most.
 const MOST_SLACK: f64 = 4.0;
 /// Rays that are lacking for the error asked for are exceeded by this, since both are estimates.
