@@ -36,12 +36,14 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     }
     let folder = std::env::temp_dir().join(format!("expected-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
-    let result = times(&program, &folder, &mut text).and_then(|()| errors(&program, &folder, &mut text));
+    let skipped = if data::folder().is_none() { format!("\n{}\n", data::SKIPPED) } else { String::new() };
+    let result = times(&program, &folder, &mut text).and_then(|()| {
+        text += &skipped;
+        errors(&program, &folder, &mut text)
+    });
     std::fs::remove_dir_all(&folder)?;
     result?;
-    if data::folder().is_none() {
-        text += &format!("\n{}\n", data::SKIPPED);
-    }
+    text += &skipped;
     write(out_dir, "expected.md", &text)?;
     print!("{text}");
     Ok(true)

@@ -201,10 +201,9 @@ fn markdown(rows: &[Row]) -> String {
             ours.rmse, ours.time, four.rmse, four.time, most.rmse, most.time
         );
     }
-    if data::folder().is_none() {
-        let _ = writeln!(text, "\n{}", data::SKIPPED);
-    }
+    let skipped = if data::folder().is_none() { format!("\n{}\n", data::SKIPPED) } else { String::new() };
+    text += &skipped;
     text += &embree::section(rows);
-    let _ = write!(text, "\n## All settings\n\n{}", table(&[], rows));
+    let _ = write!(text, "\n## All settings\n\n{}{skipped}", table(&[], rows));
     text
 }

@@ -102,7 +102,7 @@ fn measure(program: &Path, folder: &Path, text: &mut String) -> Result<String, s
         "\n| picture | tiles: 1 thread / {cores} threads | memory added by twice the resolution, MiB |\n| --- | ---: | ---: |\n{ratios}"
     );
     if data::folder().is_none() {
-        *text += "\nThe scenes from files were skipped: `POINTILLIST_DATA` names no folder with them.\n";
+        *text += &format!("\n{}\n", data::SKIPPED);
     }
     Ok(csv)
 }

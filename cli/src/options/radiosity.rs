@@ -58,7 +58,8 @@ pub struct RadiosityBakeOptions {
     /// at a vertex, as a fraction of it (default 0.02)
     #[arg(long, value_name = "T", value_parser = values::positive)]
     pub tolerance: Option<f64>,
-    /// Link groups finely where the scene's camera sees what they carry, and coarsely elsewhere: quicker, and as accurate in that picture
+    /// Link groups at --tolerance only where the scene's camera sees what they carry, and coarsely elsewhere: in half the time, with up to 2.6 times
+    /// the error in its picture (a quarter fewer links for the same error). For cameras that see a part of few, large surfaces
     #[arg(long)]
     pub importance: bool,
     /// Leave out form factors below this; what was left out is reported

@@ -166,6 +166,91 @@ fn a_ply_holds_the_light_of_vertices() {
     folder.prints(&["info", "light.ply"]);
 }
 
+/// The two rooms of the guide, from a camera in the dark one.
+fn from_the_dark_room() -> Folder {
+    let folder = Folder::new();
+    let book = |name: &str| {
+        let path = format!("{}/../book/scenes/{name}", env!("CARGO_MANIFEST_DIR"));
+        std::fs::read_to_string(path).expect("a file of the guide")
+    };
+    let scene = book("rooms.toml")
+        .replace("eye = [-0.9, 1.5, 6.6]", "eye = [-0.3, 1.5, 1.7]")
+        .replace("target = [-0.15, 1.15, 0]", "target = [-2.6, 0.9, -1.9]")
+        .replace("fov = 36", "fov = 60");
+    folder.write("rooms.obj", book("rooms.obj"));
+    folder.write("rooms.toml", scene);
+    folder
+}
+
+/// Number of links, and irradiance (three bands) of vertices of the dark room and of the lit one.
+fn baked_rooms(folder: &Folder, tolerance: &str, more: &[&str]) -> (u64, [Vec<f64>; 2]) {
+    let line = ["radiosity", "rooms.toml", "--patch", "0.5", "--tolerance", tolerance, "-o", "rooms.json"];
+    folder.prints(&[&line, &["--stats", "stats.json"][..], more].concat());
+    let read = |name: &str| -> serde_json::Value {
+        let text = std::fs::read_to_string(folder.path(name)).expect("a file");
+        serde_json::from_str(&text).expect("JSON")
+    };
+    let (baked, stats) = (read("rooms.json"), read("stats.json"));
+    let mut rooms = [vec![], vec![]];
+    let list = |name: &str| baked[name].as_array().expect("a list").clone();
+    for (position, light) in list("positions").iter().zip(list("irradiance")) {
+        // The wall between the rooms is at x = 0 and 0.1 thick.
+        let x = position[0].as_f64().expect("a number");
+        if x.abs() > 0.06 {
+            rooms[usize::from(x > 0.0)].extend((0..3).map(|k| light[k].as_f64().expect("a number")));
+        }
+    }
+    (stats["counts"]["links"].as_u64().expect("a count"), rooms)
+}
+
+#[test]
+fn importance_spends_links_where_the_camera_sees_their_light() {
+    let folder = from_the_dark_room();
+    let (_, exact) = baked_rooms(&folder, "0.003", &["--links", "hierarchical"]);
+    let error = |found: &[Vec<f64>; 2], room: usize| {
+        let pairs = || found[room].iter().zip(&exact[room]);
+        let squares: f64 = pairs().map(|(a, b)| (a - b) * (a - b)).sum();
+        (squares / pairs().map(|(_, b)| b * b).sum::<f64>()).sqrt()
+    };
+    let (all, everywhere) = baked_rooms(&folder, "0.03", &["--links", "hierarchical"]);
+    let (some, for_camera) = baked_rooms(&folder, "0.03", &["--importance"]);
+    assert!(10 * some < 6 * all, "{some} of {all} links");
+    let growth = |room: usize| error(&for_camera, room) / error(&everywhere, room);
+    assert!(growth(0) < 2.0, "the dark room, in view: the error is {} times as large", growth(0));
+    assert!(
+        growth(1) > 2.0 * growth(0),
+        "the lit room, out of view: {} times, in view {}",
+        growth(1),
+        growth(0)
+    );
+}
+
+#[test]
+fn importance_says_where_it_gains_nothing() {
+    let folder = from_the_dark_room();
+    let warning = |line: &[&str]| {
+        let output = folder.command(line).output().expect("it runs");
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let bake =
+        ["radiosity", "rooms.toml", "--importance", "-o", "rooms.json", "--tolerance", "0.1", "--patch"];
+    let coarse = warning(&[&bake[..], &["3"]].concat());
+    assert!(coarse.contains("warning") && coarse.contains("--importance saves nothing"), "{coarse}");
+    let fine = warning(&[&bake[..], &["0.5"]].concat());
+    assert!(!fine.contains("--importance"), "{fine}");
+    folder.fails(
+        &["radiosity", "rooms.toml", "--importance", "--links", "rays"],
+        2,
+        &["--importance", "groups"],
+    );
+    folder.fails(
+        &["radiosity", "rooms.toml", "--importance", "--links", "full"],
+        2,
+        &["--importance", "groups"],
+    );
+}
+
 /// Between direct light and the solution nothing was said, for a minute.
 #[cfg(unix)]
 #[test]

@@ -33,6 +33,16 @@ const COVERED: f64 = 0.01;
 /// The size of a patch is small if it is below this share of that distance.
 const SMALL: f64 = 0.25;
 
+/// Patches smaller than this many times [`RayOptions::finest`](crate::RayOptions::finest) are details: what is asked for is the error of the mean over a square
+/// of that size, in which several of them count.
+const DETAIL: f64 = 2.0;
+/// The error of a detail may be larger by this, at most.
+const MOST_SLACK: f64 = 4.0;
+/// Rays that are lacking for the error asked for are exceeded by this, since both are estimates.
+const AMPLE: f64 = 1.1;
+/// At least this share of a place's rays is added, at most as many as it has.
+const LEAST_MORE: f64 = 0.125;
+
 /// Where a place is and which way it faces, as far as rays are concerned.
 type Key = [u64; 6];
 
@@ -56,8 +66,9 @@ impl RaySolution<'_> {
                 if round == ROUNDS { vec![] } else { self.uneven(&scene, &mesh, &lights, gatherer.floor) };
             if uneven.is_empty() {
                 let mut light: Vec<Rgb> = lights.iter().map(|l| l.light).collect();
-                let covered =
-                    |(place, own): (&Place, &Light)| own.reach < COVERED * size_around(&scene, place);
+                let covered = |(place, own): (&Place, &Light)| {
+                    own.reach < COVERED * sizes_around(&scene, place).fold(f64::INFINITY, f64::min)
+                };
                 let covered: Vec<bool> = mesh.places.iter().zip(&lights).map(covered).collect();
                 mesh.lift(&covered, &mut light);
                 mesh.lift_buried(&mut light);
@@ -88,7 +99,6 @@ impl RaySolution<'_> {
         known: &mut HashMap<Key, Gathered>,
         done: &dyn Fn(f64),
     ) -> Vec<Light> {
-        let options = &self.transport.options;
         let keys: Vec<Key> = mesh.places.iter().map(|p| key(mesh, p)).collect();
         let starts: Vec<(DVec3, DVec3, u64)> =
             (0..keys.len()).map(|i| start(scene, mesh, &mesh.places[i], &keys[i])).collect();
@@ -123,12 +133,10 @@ impl RaySolution<'_> {
             }
             let neighbours = places.smooth(&normals, &gathered, &which);
             let next = which.iter().zip(&seen).zip(neighbours).filter_map(|((&i, seen), (light, error))| {
-                let (bright, rays) = (mean(light), gathered[i].rays());
-                let wants = error > options.tolerance * bright.max(gatherer.floor)
-                    || (rays == FIRST && bright > BLACK * gatherer.floor);
-                let room = options.most_rays.saturating_sub(rays).min(rays);
-                let plan = seen.plan(room);
-                (wants && room >= FIRST).then(|| (i, plan, gatherer.precision(seen, &plan)))
+                let aim = mean(light).max(gatherer.floor) * self.tolerance(scene, &mesh.places[i]);
+                let lit = mean(light) > BLACK * gatherer.floor;
+                let plan = seen.plan(self.more_rays(gathered[i].rays(), error / aim, lit)?);
+                Some((i, plan, gatherer.precision(seen, &plan)))
             });
             open = next.collect();
         }
@@ -138,6 +146,26 @@ impl RaySolution<'_> {
         let light =
             |((light, error), own): ((Rgb, f64), &Gathered)| Light { light, error, reach: own.reach() };
         lights.into_iter().zip(&gathered).map(light).collect()
+    }
+
+    /// Relative error of the light at a place: larger where all patches around it are details.
+    fn tolerance(&self, scene: &Scene, place: &Place) -> f64 {
+        let options = &self.transport.options;
+        let size = sizes_around(scene, place).fold(f64::MIN_POSITIVE, f64::max);
+        // Infinite where patches are not divided for drawing: then there are no details.
+        let detail = if options.finest.is_finite() { DETAIL * options.finest * scene.scale } else { 0.0 };
+        options.tolerance * (detail / size).clamp(1.0, MOST_SLACK)
+    }
+
+    /// How many more rays a place takes that has so many, whose error is so large against what is asked for.
+    fn more_rays(&self, rays: u32, error: f64, lit: bool) -> Option<u32> {
+        let first = rays == FIRST && lit;
+        let left = self.transport.options.most_rays.saturating_sub(rays);
+        if left < FIRST || (error <= 1.0 && !first) {
+            return None;
+        }
+        let share = if first { 1.0 } else { (AMPLE * error * error - 1.0).clamp(LEAST_MORE, 1.0) };
+        Some(((f64::from(rays) * share) as u32).clamp(FIRST, left))
     }
 
     /// Leaves over which irradiance changes too fast to be interpolated.
@@ -169,10 +197,9 @@ struct Light {
     reach: f64,
 }
 
-/// The smallest of the patches around a place.
-fn size_around(scene: &Scene, place: &Place) -> f64 {
-    let size = |leaf: &ElementId| scene.tree.elements[*leaf as usize].polygon.area().sqrt();
-    place.leaves.iter().map(size).fold(f64::INFINITY, f64::min)
+/// Sizes of the patches around a place: sides of squares of their areas.
+fn sizes_around(scene: &Scene, place: &Place) -> impl Iterator<Item = f64> {
+    place.leaves.iter().map(|&leaf| scene.tree.elements[leaf as usize].polygon.area().sqrt())
 }
 
 fn key(mesh: &Mesh<'_>, place: &Place) -> Key {

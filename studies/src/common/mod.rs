@@ -7,6 +7,7 @@ pub(crate) mod contour;
 pub(crate) mod data;
 pub(crate) mod draw;
 pub(crate) mod frame_error;
+pub(crate) mod kept;
 pub(crate) mod layers;
 pub(crate) mod line_reference;
 pub(crate) mod loop_subdivision;

@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use super::data::SKIPPED;
+use super::kept::with_former;
 use super::timing::Timing;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -118,9 +120,15 @@ pub(crate) fn table(more: &[&str], rows: &[Row]) -> String {
     text
 }
 
+/// Writes a file of results. Sections that lack the large data keep what they said before.
 pub(crate) fn write(out_dir: &Path, file: &str, text: &str) -> std::io::Result<()> {
     std::fs::create_dir_all(out_dir)?;
-    std::fs::write(out_dir.join(file), text)
+    let path = out_dir.join(file);
+    if !text.contains(SKIPPED) {
+        return std::fs::write(path, text);
+    }
+    let former = std::fs::read_to_string(&path).unwrap_or_default();
+    std::fs::write(path, with_former(text, &former))
 }
 
 /// Rows in the order in which their scenes first occur.

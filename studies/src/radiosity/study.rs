@@ -69,18 +69,18 @@ fn run_part(out_dir: &Path, name: &str, part: impl Fn(&mut String) -> Outcome) -
     let file = out_dir.join("radiosity.md");
     let before = std::fs::read_to_string(&file).unwrap_or_default();
     let mut sections: Vec<String> = sections(&before).map(str::to_owned).collect();
+    let measured = format!("Measured on {}.", provenance());
     for section in self::sections(&text) {
+        let section = format!("{}\n\n{measured}", section.trim_end());
         let title = section.lines().next();
         match sections.iter().position(|s| s.lines().next() == title) {
-            Some(place) => sections[place] = section.to_owned(),
-            None => sections.push(section.to_owned()),
+            Some(place) => sections[place] = section,
+            None => sections.push(section),
         }
     }
-    let mut whole = format!(
-        "# Radiosity: time against error\n\n`cargo run --release -p studies -- radiosity`, on {}. Times are wall-clock unless they are said to be the \
-         processor's, on a machine that does other things, too. `radiosity PART…` runs some parts alone.\n",
-        provenance()
-    );
+    let mut whole = "# Radiosity: time against error\n\n`cargo run --release -p studies -- radiosity`; `radiosity PART…` runs some parts alone, and each section says on \
+         what it was measured. Times are wall-clock unless they are said to be the processor's, on a machine that does other things, too.\n"
+        .to_owned();
     sections.iter().for_each(|section| whole += &format!("\n## {}\n", section.trim_end()));
     write(out_dir, "radiosity.md", &whole)?;
     Ok(true)

@@ -266,6 +266,7 @@ fn placement(report: &mut Report, wish: &Wish, out_dir: &Path) -> Result<(), Fau
     }
     if data::folder().is_none() {
         tables += data::SKIPPED;
+        paper += data::SKIPPED;
     }
     chart_along(out_dir, "shprobe-placement", ["probes", "error of irradiance"], &rows)?;
     report.section("Error against number of probes", &(PLACEMENT.to_owned() + &tables));

@@ -137,6 +137,10 @@ fn affordable_elements() -> usize {
     memory::available_bytes().map_or(usize::MAX, fits)
 }
 
+/// Patches a surface, both sides together, from which groups within surfaces are worth finding the importance for: with 8, 5 % of the links are of
+/// groups (`studies/results/radiosity.md`, "Links for a camera").
+const LEAST_PATCHES: usize = 16;
+
 #[derive(Clone, Copy)]
 pub(super) struct Bake<'a> {
     pub(super) options: &'a RadiosityBakeOptions,
@@ -171,6 +175,9 @@ impl Bake<'_> {
             FormFactorKind::Hemicube => Some(HemicubeKind::Exact),
             FormFactorKind::HemicubeClassic => Some(HemicubeKind::Classic),
         };
+        if options.importance {
+            self.warn_of_small_surfaces(patches.patch_count());
+        }
         let seen = if options.importance { Some(self.seen(&patches)?) } else { None };
         let linking = |share| progress.reach(LIT + (LINKED - LIT) * share);
         let linked = stats.stage("factors", || match (kind, &seen) {
@@ -196,6 +203,17 @@ impl Bake<'_> {
             "--importance is about links of groups, for which each pair of {count} surfaces is looked at: leave it out, or add --links hierarchical and wait"
         );
         Err(CliError::Usage(message))
+    }
+
+    /// Links between whole surfaces cannot be coarser: finding the importance takes as long as they do, and saves none.
+    fn warn_of_small_surfaces(&self, patches: usize) {
+        let surfaces = self.surfaces.surfaces.len();
+        if patches < LEAST_PATCHES * surfaces {
+            self.report.warn(&format!(
+                "{surfaces} surfaces in {patches} patches: --importance saves nothing where surfaces are about as small as patches, and takes as long as \
+                 the links do; leave it out"
+            ));
+        }
     }
 
     /// Which share of each patch the scene's camera sees.
