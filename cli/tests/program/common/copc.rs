@@ -43,10 +43,13 @@ pub(crate) struct CopcCube {
     pub(crate) spacing: f64,
 }
 
-/// A COPC file, and where its first page is.
+/// A COPC file.
 pub(crate) struct Copc {
     pub(crate) bytes: Vec<u8>,
+    /// Where its first page is.
     pub(crate) page: usize,
+    /// Entries of that page.
+    pub(crate) entries: usize,
 }
 
 impl Copc {
@@ -92,7 +95,7 @@ impl Copc {
         bytes[477..485].copy_from_slice(&(page.1 as u64).to_le_bytes());
         bytes[235..243].copy_from_slice(&(hierarchy_at as u64).to_le_bytes());
         bytes[243..247].copy_from_slice(&1u32.to_le_bytes());
-        Self { bytes, page: page.0 }
+        Self { bytes, page: page.0, entries: page.1 / 32 }
     }
 
     /// Changes a number of 32 bits of an entry of the first page: its key's four, then 6 the bytes and 7 the points.
