@@ -1,4 +1,4 @@
-//! Probes anywhere, with any light and distances: what is not refused has shares that sum to 1, keeps constant light
+//! Probes anywhere, with any light, distances and planes: what is not refused has shares that sum to 1, keeps constant light
 //! constant, comes back after changes, sees less farther away, and does not jump.
 #![no_main]
 
@@ -15,6 +15,8 @@ struct Probe {
     radiance: [i16; 3],
     /// Nearness and deviation of a map of one cell.
     nodes: [[f32; 2]; 4],
+    /// Planes at its nodes, where there are any.
+    planes: Option<[[f32; 3]; 4]>,
 }
 
 #[derive(Arbitrary, Debug)]
@@ -26,6 +28,15 @@ struct Input {
     level: f32,
     queries: Vec<[f32; 3]>,
     taken_out: Vec<u8>,
+}
+
+/// What a probe sees; none if it is refused.
+fn map_of(probe: &Probe) -> Option<DistanceMap> {
+    let map = DistanceMap::new(1, &probe.nodes).ok()?;
+    match &probe.planes {
+        Some(planes) => map.with_planes(planes).ok(),
+        None => Some(map),
+    }
 }
 
 fuzz_target!(|input: Input| {
@@ -42,7 +53,7 @@ fuzz_target!(|input: Input| {
         |p: &Probe| Sh::constant(DVec3::from_array(p.radiance.map(f64::from)), 1).expect("order 1");
     let radiance: Vec<Sh> = probes.iter().map(constant).collect();
     let maps: Vec<DistanceMap> = match input.sees {
-        true => probes.iter().filter_map(|p| DistanceMap::new(1, &p.nodes).ok()).collect(),
+        true => probes.iter().filter_map(map_of).collect(),
         false => vec![],
     };
     let queries: Vec<DVec3> =

@@ -3,9 +3,10 @@
 use crate::error::RadiosityError;
 use crate::kept::Kept;
 use crate::link::Link;
-use crate::refine::{Found, refine};
+use crate::refine::{Found, Given, refine};
 use crate::rgb::{Rgb, check_direct};
 use crate::scene::Scene;
+use crate::solve::check_importance;
 use crate::transport::{Entry, Transport};
 use crate::visible::shaft::Shaft;
 
@@ -35,7 +36,7 @@ impl Scene {
         direct: &[Rgb],
         done: &(dyn Fn(f64) + Sync),
     ) -> Result<Transport, RadiosityError> {
-        self.linked(direct, None, done)
+        self.linked(direct, &[], None, done)
     }
 
     /// As [`Scene::transport`], for a scene that is nearly that of a transport that is there already: pairs that are partly hidden by the same surfaces
@@ -54,19 +55,36 @@ impl Scene {
         done: &(dyn Fn(f64) + Sync),
     ) -> Result<Transport, RadiosityError> {
         let kept = Kept::new(before, &self);
-        self.linked(direct, kept.as_ref(), done)
+        self.linked(direct, &[], kept.as_ref(), done)
+    }
+
+    /// As [`Scene::transport_with`], where errors of light count in proportion to the `importance` of each patch, in their order: 1 (and more) as much as the tolerance
+    /// says, less so much less, down to a thousandth. [`Scene::importance`] finds one for a camera. Without a tolerance it changes nothing.
+    ///
+    /// # Errors
+    /// As [`Scene::transport`], [`RadiosityError::CountMismatch`] and [`RadiosityError::Importance`] for `importance`.
+    pub fn transport_for(
+        self,
+        direct: &[Rgb],
+        importance: &[f64],
+        done: &(dyn Fn(f64) + Sync),
+    ) -> Result<Transport, RadiosityError> {
+        check_importance(self.tree.leaves().len(), importance)?;
+        let weights = self.weights(importance);
+        self.linked(direct, &weights, None, done)
     }
 
     fn linked(
         mut self,
         direct: &[Rgb],
+        weights: &[f64],
         kept: Option<&Kept<'_>>,
         done: &(dyn Fn(f64) + Sync),
     ) -> Result<Transport, RadiosityError> {
         check_direct(self.tree.leaves().len(), direct)?;
-        let mut of_element = of_elements(&self, direct);
-        let found = refine(&mut self, &mut of_element, kept, done)?;
-        Ok(Transport::assemble(self, found, &of_element))
+        let mut given = Given { direct: of_elements(&self, direct), weights: weights.to_vec() };
+        let found = refine(&mut self, &mut given, kept, done)?;
+        Ok(Transport::assemble(self, found, &given.direct))
     }
 }
 

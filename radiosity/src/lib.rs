@@ -19,6 +19,7 @@
 //! * [`Scene`]: surfaces, checked and divided into patches; [`Scene::direct`] lights them by lamps.
 //! * [`Transport`]: which patches exchange how much, each with each ([`SceneOptions::tolerance`] `None`) or in groups; solved by
 //!   [`Transport::gauss_seidel`] or [`Transport::progressive`] with a bound on the error of the result.
+//! * [`Scene::seen_from`], [`Scene::importance`], [`Scene::transport_for`]: links that are fine where a camera sees what they carry.
 //! * [`RayTransport`]: the same for buildings of many thousand surfaces, with links that rays find ([`Scene::transport_by_rays`]).
 //! * [`Solution::bake`] and [`Solution::irradiance`]: light at vertices and at free points.
 //! * [`Hemicube`]: the classic method, and the same with exact coverage in its cells.
@@ -48,6 +49,8 @@
 //! 7. A. Willmott, P. Heckbert, M. Garland: *Face cluster radiosity*, Eurographics Workshop on Rendering 1999.
 //! 8. G. J. Ward, F. M. Rubinstein, R. D. Clear: *A ray tracing solution for diffuse interreflection*, SIGGRAPH 1988.
 //! 9. S. Laine, T. Karras: *Stratified sampling for stochastic transparency*, Eurographics Symposium on Rendering 2011.
+//! 10. J. Neyman: *On the two different aspects of the representative method*, Journal of the Royal Statistical Society 97, 1934.
+//! 11. B. Smits, J. Arvo, D. Salesin: *An importance-driven radiosity algorithm*, SIGGRAPH 1992.
 #![forbid(unsafe_code)]
 mod assemble;
 mod bake;
@@ -59,6 +62,7 @@ mod estimate;
 mod factor;
 mod gather;
 mod hemicube;
+mod importance;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod kept;

@@ -49,6 +49,15 @@ struct Wanted {
     between: Vec<u32>,
 }
 
+/// What is known of each element before there are links; it grows with the tree.
+#[derive(Debug)]
+pub(crate) struct Given {
+    /// Irradiance that does not come from patches.
+    pub(crate) direct: Vec<Rgb>,
+    /// How much errors of the light there count, above 0 to 1; empty if they count the same everywhere.
+    pub(crate) weights: Vec<f64>,
+}
+
 /// What one task finds.
 #[derive(Debug, Default)]
 struct Task {
@@ -81,19 +90,18 @@ impl Found {
 /// 3. Those leaves are divided, and the pairs put aside are visited again, until none is left.
 ///
 /// Tasks run in parallel and are taken together in their order, so that links do not depend on threads.
-/// `direct` is the irradiance of each element that does not come from patches; it grows with the tree.
 /// Form factors that are `kept` are not computed again; `done` is told the share of the work that is done.
 pub(crate) fn refine(
     scene: &mut Scene,
-    direct: &mut Vec<Rgb>,
+    given: &mut Given,
     kept: Option<&Kept<'_>>,
     done: &(dyn Fn(f64) + Sync),
 ) -> Result<Found, RadiosityError> {
-    let estimate = Estimate::new(scene, direct);
+    let estimate = Estimate::new(scene, &given.direct);
     let mut all = Found::default();
     all.lost.resize(scene.tree.elements.len(), 0.0);
     let roots = scene.tree.roots.clone();
-    let refiner = Refiner { scene, estimate: &estimate, kept };
+    let refiner = Refiner { scene, estimate: &estimate, weights: &given.weights, kept };
     let told = Rounds::new(done, roots.len());
     let mut round: Vec<Task> = parallel::map_with(roots.len(), Pieces::default, |pieces, i| {
         let mut task = Task::default();
@@ -109,12 +117,12 @@ pub(crate) fn refine(
         for task in round {
             wanted.extend(all.take(task));
         }
-        let divided = divide_wanted(scene, &wanted, direct)?;
+        let divided = divide_wanted(scene, &wanted, given)?;
         if wanted.is_empty() {
             return Ok(all);
         }
         all.lost.resize(scene.tree.elements.len(), 0.0);
-        let refiner = Refiner { scene, estimate: &estimate, kept };
+        let refiner = Refiner { scene, estimate: &estimate, weights: &given.weights, kept };
         number += 1;
         let told = Rounds { number, ..Rounds::new(done, wanted.len()) };
         round = parallel::map_with(wanted.len(), Pieces::default, |pieces, i| {
@@ -150,16 +158,16 @@ impl<'d> Rounds<'d> {
 }
 
 /// Divides the elements that pairs wait for; returns whether any of them has parts now.
-fn divide_wanted(
-    scene: &mut Scene,
-    wanted: &[Wanted],
-    direct: &mut Vec<Rgb>,
-) -> Result<bool, RadiosityError> {
+fn divide_wanted(scene: &mut Scene, wanted: &[Wanted], given: &mut Given) -> Result<bool, RadiosityError> {
     let mut any = false;
     for &Wanted { which, .. } in wanted {
         if scene.tree.elements[which as usize].is_leaf() && scene.tree.divide(which) {
             any = true;
-            direct.resize(scene.tree.elements.len(), direct[which as usize]);
+            let (count, which) = (scene.tree.elements.len(), which as usize);
+            given.direct.resize(count, given.direct[which]);
+            if let Some(&weight) = given.weights.get(which) {
+                given.weights.resize(count, weight);
+            }
         }
         any |= !scene.tree.elements[which as usize].is_leaf();
     }
@@ -173,12 +181,23 @@ fn divide_wanted(
 struct Refiner<'s> {
     scene: &'s Scene,
     estimate: &'s Estimate,
+    weights: &'s [f64],
     kept: Option<&'s Kept<'s>>,
 }
 
 impl Refiner<'_> {
     fn element(&self, id: ElementId) -> &Element {
         &self.scene.tree.elements[id as usize]
+    }
+
+    /// Estimated radiosity of an element.
+    fn radiosity(&self, id: ElementId) -> f64 {
+        self.estimate.of_side[self.element(id).side as usize]
+    }
+
+    /// How much an error of the light on an element counts.
+    fn weight(&self, id: ElementId) -> f64 {
+        self.weights.get(id as usize).copied().unwrap_or(1.0)
     }
 
     fn roots(&self, p: ElementId, q: ElementId, found: &mut Task, pieces: &mut Pieces) {
@@ -223,7 +242,7 @@ impl Refiner<'_> {
                 return;
             }
         }
-        let choice = if last { None } else { self.divide_which(a, b, &between, pieces) };
+        let choice = if last { None } else { self.divide_which((p, q), &between, pieces) };
         match choice {
             None => self.link((p, q), &between, found, pieces),
             Some(first) => {
@@ -240,7 +259,13 @@ impl Refiner<'_> {
     }
 
     /// Whether to divide the first, the second, or neither.
-    fn divide_which(&self, a: &Element, b: &Element, between: &[u32], pieces: &mut Pieces) -> Option<bool> {
+    fn divide_which(
+        &self,
+        (p, q): (ElementId, ElementId),
+        between: &[u32],
+        pieces: &mut Pieces,
+    ) -> Option<bool> {
+        let (a, b) = (self.element(p), self.element(q));
         let smallest = self.scene.options.smallest_patch * self.scene.scale;
         if self.scene.options.tolerance.is_none() {
             return match (a.is_leaf(), b.is_leaf()) {
@@ -251,17 +276,18 @@ impl Refiner<'_> {
         }
         let can = |e: &Element| !e.is_leaf() || e.size > smallest;
         let (can_a, can_b) = (can(a), can(b));
-        if !(can_a || can_b) || !self.is_too_rough(a, b, between, pieces) {
+        if !(can_a || can_b) || !self.is_too_rough((p, q), between, pieces) {
             return None;
         }
         Some(if can_a && can_b { a.size >= b.size } else { can_a })
     }
 
     /// Whether the light on either varies by more than is allowed.
-    fn is_too_rough(&self, a: &Element, b: &Element, between: &[u32], pieces: &mut Pieces) -> bool {
+    fn is_too_rough(&self, (p, q): (ElementId, ElementId), between: &[u32], pieces: &mut Pieces) -> bool {
         let allowed = self.estimate.allowed;
-        [(a, b), (b, a)].into_iter().any(|(receiver, source)| {
-            let radiosity = self.estimate.of_side[source.side as usize];
+        [(p, q), (q, p)].into_iter().any(|(to, from)| {
+            let radiosity = self.weight(to) * self.radiosity(from);
+            let (receiver, source) = (self.element(to), self.element(from));
             let gap = (receiver.polygon.centre() - source.polygon.centre()).length()
                 - receiver.polygon.radius()
                 - source.polygon.radius();
@@ -308,7 +334,7 @@ impl Refiner<'_> {
     fn link(&self, (p, q): (ElementId, ElementId), between: &[u32], found: &mut Task, pieces: &mut Pieces) {
         let (a, b) = (self.element(p), self.element(q));
         let smaller = a.polygon.area().min(b.polygon.area());
-        let goal = self.accuracy(a, b).goal(smaller, 0);
+        let goal = self.accuracy(p, q).goal(smaller, 0);
         let mutual = if between.is_empty() {
             pair::mutual(&a.polygon, &b.polygon, goal.unoccluded)
         } else {
@@ -358,13 +384,15 @@ impl Refiner<'_> {
     }
 
     /// In a hierarchy form factors need no smaller error than the tolerance of links.
-    fn accuracy(&self, a: &Element, b: &Element) -> FactorOptions {
+    fn accuracy(&self, p: ElementId, q: ElementId) -> FactorOptions {
         let options = self.scene.options.factors;
         if self.scene.options.tolerance.is_none() {
             return options;
         }
-        let radiosity =
-            [a, b].map(|e| self.estimate.of_side[e.side as usize]).into_iter().fold(0.0, f64::max);
+        let radiosity = [(p, q), (q, p)]
+            .map(|(to, from)| self.weight(to) * self.radiosity(from))
+            .into_iter()
+            .fold(0.0, f64::max);
         let enough = FACTOR_SHARE * self.estimate.allowed / radiosity.max(f64::MIN_POSITIVE);
         options
             .with_absolute(enough.clamp(options.absolute, 1.0))

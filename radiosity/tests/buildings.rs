@@ -244,3 +244,52 @@ fn a_lamp_close_to_the_ceiling_loses_no_light() {
         assert!((share - 1.0).abs() < 0.03, "{gap} below, by rays: {share} of the light is absorbed");
     }
 }
+
+/// Two rooms of 4 × 3 × 4 and a wall with a doorway between them, and the irradiance of a lamp in the first.
+fn two_rooms() -> (Vec<Surface>, DVec3) {
+    let mut surfaces = room(dvec3(8.0, 3.0, 4.0), DQuat::IDENTITY, 0.7, 0.0);
+    let beside_the_door = [
+        (dvec3(3.9, 0.0, 0.0), dvec3(4.1, 3.0, 1.5)),
+        (dvec3(3.9, 0.0, 2.5), dvec3(4.1, 3.0, 4.0)),
+        (dvec3(3.9, 2.1, 1.5), dvec3(4.1, 3.0, 2.5)),
+    ];
+    for (low, high) in beside_the_door {
+        surfaces.extend(faces(low, high, DQuat::IDENTITY).iter().map(|f| Surface::new(f, [0.7; 3])));
+    }
+    (surfaces, dvec3(2.0, 1.8, 2.0))
+}
+
+#[test]
+fn light_in_a_dark_room_has_no_blotches() {
+    // Rays went evenly over the hemisphere, and a place stopped when its own were alike: those that missed the doorway with all of the
+    // first 32 stayed too dark, as blotches. The largest error here was 32 %, the root mean square 6.1 %.
+    let (surfaces, position) = two_rooms();
+    let irradiance = |p: DVec3, n: DVec3| {
+        let way = position - p;
+        [10.0 * way.dot(n).max(0.0) / way.length().powi(3); 3]
+    };
+    let lamps = [Lamp::Point { position, irradiance: &irradiance, shadow: true }];
+    let settings = SceneOptions::DEFAULT.with_squarer(false).with_patch(0.25).with_smallest_patch(0.25);
+    let mut scene = Scene::new(&surfaces, &settings).expect("surfaces");
+    let direct = scene.direct(&lamps).expect("lamps");
+    let transport =
+        |options: &RayOptions| scene.clone().transport_by_rays(&direct, options, &|_| ()).expect("options");
+    let usual = transport(&RayOptions::DEFAULT);
+    let many = transport(&RayOptions::DEFAULT.with_most_rays(65536));
+    let solving = SolveOptions::DEFAULT;
+    let baked = usual.solve(&solving).expect("it absorbs").bake();
+    // Links are the same, so that the light of vertices alone is compared.
+    let solution = many.solve(&solving).expect("it absorbs");
+    let in_dark_room = baked.vertices.iter().filter(|v| {
+        v.position.cmpgt(dvec3(5.0, 0.2, 0.2)).all() && v.position.cmplt(dvec3(8.1, 2.8, 3.8)).all()
+    });
+    let (mut largest, mut squares, mut count) = (0.0_f64, 0.0, 0.0);
+    for vertex in in_dark_room.step_by(2) {
+        let above = vertex.position + 1e-5 * vertex.normal;
+        let exact = mean(solution.irradiance(above, vertex.normal).expect("finite"));
+        let error = mean(vertex.irradiance) / exact - 1.0;
+        (largest, squares, count) = (largest.max(error.abs()), squares + error * error, count + 1.0);
+    }
+    let rms = (squares / count).sqrt();
+    assert!(count > 50.0 && largest < 0.04 && rms < 0.012, "{largest}, {rms} of {count} vertices");
+}

@@ -38,7 +38,17 @@ fn light(c: &mut Criterion) {
         // Every probe sees as far as the box is wide.
         let open = DistanceMap::new(16, &[[0.5, 0.0]; 289]).expect("nearness is finite");
         let seeing = blind.clone().with_distances(vec![open; probes]).expect("one map for each probe");
-        for (name, field) in [("objects", &blind), ("objects and distances", &seeing)] {
+        // The same with a plane at every node that faces it: interpolation takes the largest of three.
+        let wall = [[0.3; 3]; 289];
+        let walled = DistanceMap::new(16, &[[0.5, 0.0]; 289]).and_then(|map| map.with_planes(&wall));
+        let walled = vec![walled.expect("planes are finite"); probes];
+        let walled = blind.clone().with_distances(walled).expect("one map for each probe");
+        let kinds = [
+            ("objects", &blind),
+            ("objects and distances", &seeing),
+            ("objects, distances and planes", &walled),
+        ];
+        for (name, field) in kinds {
             let inner = place::random(DVec3::splat(0.2), DVec3::splat(0.8), OBJECTS, 2);
             let mut objects: Vec<LitObject> = inner.iter().map(|&p| LitObject::at(p)).collect();
             field.light_objects(&mut objects).expect("positions are finite");

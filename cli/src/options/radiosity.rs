@@ -51,13 +51,16 @@ pub struct RadiosityBakeOptions {
     #[arg(long, value_name = "SIZE", value_parser = values::positive)]
     pub adaptive: Option<f64>,
     /// Which patches exchange light directly: all pairs, groups of patches where --tolerance allows, or those that rays meet (auto: groups above 1000
-    /// patches, rays above 2000 surfaces)
+    /// patches and with --importance, rays above 2000 surfaces)
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub links: LinkKind,
     /// Largest error of one link between groups, as a fraction of the scene's mean radiosity (default 0.01); with rays, standard error of the light
-    /// at a vertex, as a fraction of it (default 0.06)
+    /// at a vertex, as a fraction of it (default 0.02)
     #[arg(long, value_name = "T", value_parser = values::positive)]
     pub tolerance: Option<f64>,
+    /// Link groups finely where the scene's camera sees what they carry, and coarsely elsewhere: quicker, and as accurate in that picture
+    #[arg(long)]
+    pub importance: bool,
     /// Leave out form factors below this; what was left out is reported
     #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = values::not_negative)]
     pub least_factor: f64,

@@ -5,6 +5,8 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::gather::{BLACK, FIRST, Gathered, Gatherer, mean};
+use super::neighbours::Neighbours;
+use super::parts::{self, Plan};
 use super::smooth::Places;
 use super::solution::RaySolution;
 use super::surroundings::LIFT;
@@ -94,36 +96,41 @@ impl RaySolution<'_> {
         let normals: Vec<DVec3> = starts.iter().map(|s| s.1).collect();
         let mut gathered: Vec<Gathered> =
             keys.iter().map(|k| known.get(k).copied().unwrap_or_default()).collect();
-        let mut open: Vec<usize> = (0..keys.len()).filter(|&i| gathered[i].rays() == 0).collect();
-        let places = Places::new(&positions);
-        let mut rays = FIRST;
-        loop {
+        let mut open: Vec<(usize, Plan, f64)> = (0..keys.len())
+            .filter(|&i| gathered[i].rays() == 0)
+            .map(|i| (i, parts::even(FIRST), 0.0))
+            .collect();
+        let (places, around) = (Places::new(&positions), Neighbours::new(scene, mesh));
+        while !open.is_empty() {
             for (number, block) in open.chunks(BLOCK).enumerate() {
-                let more = parallel::map_heavy(block.len(), |i| {
-                    let place = starts[block[i]];
-                    let mut own = gathered[block[i]];
+                let more = parallel::map_heavy(block.len(), |k| {
+                    let (i, plan, precision) = &block[k];
+                    let place = starts[*i];
+                    let mut own = gathered[*i];
                     if own.rays() == 0 {
                         own = gatherer.start(place.0, place.1, place.2);
                     }
-                    let wanted = (2 * own.rays()).max(rays).min(options.most_rays);
-                    gatherer.go_on(place, wanted, &mut own);
+                    gatherer.go_on(place, (plan, *precision), &mut own);
                     own
                 });
-                block.iter().zip(more).for_each(|(&i, own)| gathered[i] = own);
+                block.iter().zip(more).for_each(|(open, own)| gathered[open.0] = own);
                 done((number * BLOCK) as f64 / open.len() as f64);
             }
-            let neighbours = places.smooth(&normals, &gathered, &open);
-            rays *= 2;
-            let wants = |&(i, (light, error)): &(usize, (Rgb, f64))| {
-                let bright = mean(light);
-                let first = gathered[i].rays() == FIRST && bright > BLACK * gatherer.floor;
-                gathered[i].rays() < options.most_rays
-                    && (first || error > options.tolerance * bright.max(gatherer.floor))
-            };
-            open = open.iter().copied().zip(neighbours).filter(wants).map(|(i, _)| i).collect();
-            if open.is_empty() || rays > options.most_rays {
-                break;
+            let which: Vec<usize> = open.iter().map(|open| open.0).collect();
+            let seen = parallel::map(which.len(), |k| around.parts(which[k], &gathered).variances());
+            for (&i, seen) in which.iter().zip(&seen) {
+                gathered[i].weigh_first(gatherer.precision(seen, &parts::even(FIRST)));
             }
+            let neighbours = places.smooth(&normals, &gathered, &which);
+            let next = which.iter().zip(&seen).zip(neighbours).filter_map(|((&i, seen), (light, error))| {
+                let (bright, rays) = (mean(light), gathered[i].rays());
+                let wants = error > options.tolerance * bright.max(gatherer.floor)
+                    || (rays == FIRST && bright > BLACK * gatherer.floor);
+                let room = options.most_rays.saturating_sub(rays).min(rays);
+                let plan = seen.plan(room);
+                (wants && room >= FIRST).then(|| (i, plan, gatherer.precision(seen, &plan)))
+            });
+            open = next.collect();
         }
         known.extend(keys.into_iter().zip(gathered.iter().copied()));
         let all: Vec<usize> = (0..gathered.len()).collect();

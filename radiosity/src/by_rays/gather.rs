@@ -3,12 +3,11 @@
 use glam::DVec3;
 
 use super::links::NONE;
+use super::parts::{PARTS, Parts, Plan, Variances, within};
 use super::solution::RaySolution;
-use crate::rays::sequence::{Hemisphere, Sequence, shift_of};
+use crate::rays::sequence::{Hemisphere, Sequence, mix, shift_of};
 use crate::rgb::{Rgb, add};
 
-/// Rays that are judged together: each block is evenly spread over the hemisphere by itself.
-const BLOCK: u32 = 16;
 /// Rays of a place at first.
 pub(crate) const FIRST: u32 = 32;
 /// Places that have seen less than this share of [`Gatherer::floor`] by their first rays stay dark.
@@ -17,6 +16,8 @@ pub(crate) const BLACK: f64 = 0.1;
 const DARK: f64 = 0.1;
 /// Rays shorter than this share of the scene's size count as so long, when distances are averaged.
 const SHORT: f64 = 1e-5;
+/// Standard errors below this share of [`Gatherer::floor`] count as so large.
+const LEAST: f64 = 1e-4;
 
 /// Gathers for one solution.
 pub(crate) struct Gatherer<'s> {
@@ -30,12 +31,14 @@ pub(crate) struct Gatherer<'s> {
 pub(crate) struct Gathered {
     /// From emitters that are looked at one by one.
     emitted: Rgb,
-    /// Sum over rays.
-    sum: Rgb,
+    /// From all others: the mean of rounds of rays, each by its precision.
+    light: Rgb,
+    /// Mean of the reciprocals of distances.
     near: f64,
-    of_blocks: f64,
-    squares: f64,
-    blocks: u32,
+    /// Sum over rounds of the reciprocals of their variances; 0 as long as that of the first is not known.
+    precision: f64,
+    rays: u32,
+    pub(crate) parts: Parts,
 }
 
 pub(crate) fn mean(v: Rgb) -> f64 {
@@ -43,24 +46,38 @@ pub(crate) fn mean(v: Rgb) -> f64 {
 }
 
 impl Gathered {
-    pub(crate) fn rays(&self) -> u32 {
-        self.blocks * BLOCK
+    pub(crate) const fn rays(&self) -> u32 {
+        self.rays
     }
 
     pub(crate) fn light(&self) -> Rgb {
-        add(self.emitted, 1.0 / f64::from(self.rays().max(1)), self.sum)
+        add(self.emitted, 1.0, self.light)
     }
 
-    /// Squared standard error of the mean of the bands.
+    /// Squared standard error of the mean of the bands, once the precision is known.
     pub(crate) fn variance(&self) -> f64 {
-        let count = f64::from(self.blocks.max(2));
-        let average = self.of_blocks / count;
-        (self.squares / count - average * average).max(0.0) / (count - 1.0)
+        1.0 / self.precision
     }
 
     /// Harmonic mean of the distances of what rays meet.
     pub(crate) fn reach(&self) -> f64 {
-        if self.near > 0.0 { f64::from(self.rays()) / self.near } else { 1.0 }
+        if self.near > 0.0 { 1.0 / self.near } else { 1.0 }
+    }
+
+    /// Sets the precision of the first round of rays, which were spread evenly.
+    pub(crate) fn weigh_first(&mut self, precision: f64) {
+        if self.precision == 0.0 {
+            self.precision = precision;
+        }
+    }
+
+    /// Adds a round.
+    fn take(&mut self, light: Rgb, near: f64, precision: f64) {
+        self.precision += precision;
+        // The first round has no weight yet, nor anything to be weighed against.
+        let share = if self.precision > 0.0 { precision / self.precision } else { 1.0 };
+        self.light = add(self.light.map(|l| l * (1.0 - share)), share, light);
+        self.near += share * (near - self.near);
     }
 }
 
@@ -86,32 +103,38 @@ impl<'s> Gatherer<'s> {
         Gathered { emitted, ..Gathered::default() }
     }
 
-    /// The same with as many rays as this; `start` gives the point, the normal and the place as before.
+    /// The reciprocal of the variance of a round of rays. No error is smaller than what no picture shows.
+    pub(crate) fn precision(&self, variances: &Variances, plan: &Plan) -> f64 {
+        1.0 / (variances.of_mean(plan) + (LEAST * self.floor).powi(2))
+    }
+
+    /// Adds a round of rays, which has this precision (0 for a first one). `start` gives the point, the normal and the place as before.
     pub(crate) fn go_on(
         &self,
         (point, normal, place): (DVec3, DVec3, u64),
-        rays: u32,
+        (plan, precision): (&Plan, f64),
         gathered: &mut Gathered,
     ) {
         let transport = self.solution.transport;
         let hemisphere = Hemisphere::new(normal);
-        let sequence = Sequence::new(place);
-        while gathered.rays() < rays {
-            let mut block = [0.0; 3];
-            for k in gathered.rays()..gathered.rays() + BLOCK {
-                let direction = hemisphere.direction(sequence.pair(k));
+        let (mut light, mut near) = ([0.0; 3], 0.0);
+        for (part, &rays) in plan.iter().enumerate() {
+            let sequence = Sequence::new(place ^ mix(part as u64));
+            let first = gathered.parts.rays(part);
+            let weight = 1.0 / (PARTS as f64 * f64::from(rays));
+            for k in first..first + rays {
+                let direction = hemisphere.direction(within(part, sequence.pair(k)));
                 let met = transport.around.patch(point, direction);
-                let Some((patch, distance)) = met else { continue };
-                gathered.near += 1.0 / distance.max(SHORT);
-                if patch != NONE {
-                    block = add(block, 1.0, self.solution.seen[patch as usize]);
-                }
+                let seen = match met {
+                    Some((patch, _)) if patch != NONE => self.solution.seen[patch as usize],
+                    _ => [0.0; 3],
+                };
+                near += met.map_or(0.0, |(_, distance)| weight / distance.max(SHORT));
+                gathered.parts.add(part, mean(seen));
+                light = add(light, weight, seen);
             }
-            let light = mean(block) / f64::from(BLOCK);
-            gathered.of_blocks += light;
-            gathered.squares += light * light;
-            gathered.sum = add(gathered.sum, 1.0, block);
-            gathered.blocks += 1;
+            gathered.rays += rays;
         }
+        gathered.take(light, near, precision);
     }
 }

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::gather::Gatherer;
 use super::links::NONE;
+use super::parts;
 use super::transport::RayTransport;
 use crate::error::RadiosityError;
 use crate::rgb::{Rgb, add, times};
@@ -162,7 +163,7 @@ impl<'c> RaySolution<'c> {
             point.to_array().into_iter().fold(0, |m, x| crate::rays::sequence::mix(m ^ (x + 0.0).to_bits()));
         let (gatherer, place) = (Gatherer::new(self), (self.transport.scene.inward(point), normal, bits));
         let mut gathered = gatherer.start(place.0, place.1, place.2);
-        gatherer.go_on(place, self.transport.options.most_rays, &mut gathered);
+        gatherer.go_on(place, (&parts::even(self.transport.options.most_rays), 0.0), &mut gathered);
         Ok(gathered.light())
     }
 

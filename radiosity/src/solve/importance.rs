@@ -47,7 +47,7 @@ pub(super) fn solve(
 }
 
 /// Checks weights of patches: one for each, all of them usable.
-pub(super) fn check_importance(patches: usize, importance: &[f64]) -> Result<(), RadiosityError> {
+pub(crate) fn check_importance(patches: usize, importance: &[f64]) -> Result<(), RadiosityError> {
     if importance.len() != patches {
         return Err(RadiosityError::CountMismatch { patches, given: importance.len() });
     }

@@ -7,6 +7,7 @@ mod progressive;
 mod solution;
 mod state;
 
+pub(crate) use importance::check_importance;
 pub use options::SolveOptions;
 pub use solution::Solution;
 

@@ -6,6 +6,7 @@ mod memory;
 mod moved;
 mod paths;
 mod peer;
+mod pictures;
 mod probes;
 mod study;
 

@@ -16,12 +16,13 @@ use crate::radiosity::boxes::{cornell, quad, room};
 use crate::radiosity::buildings;
 use crate::radiosity::moved;
 use crate::radiosity::peer;
+use crate::radiosity::pictures;
 use crate::radiosity::probes;
 
 /// A part of the study: appends its sections.
 type Part = fn(&mut String) -> Outcome;
 
-const PARTS: [(&str, Part); 10] = [
+const PARTS: [(&str, Part); 12] = [
     ("open", |text| Ok(open_pairs(text).map(|()| true)?)),
     ("hidden", |text| Ok(hidden_pairs(text).map(|()| true)?)),
     ("hemicubes", |text| Ok(hemicubes(text).map(|()| true)?)),
@@ -29,6 +30,8 @@ const PARTS: [(&str, Part); 10] = [
     ("rooms", rooms),
     ("moved", moved::compare),
     ("probes", |text| probes::compare(text).map(|()| true)),
+    ("patches", pictures::patches),
+    ("importance", pictures::importance),
     ("peer", peer::compare),
     ("buildings", buildings::solve),
     ("sizes", buildings::sizes),

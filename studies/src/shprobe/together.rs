@@ -46,30 +46,31 @@ const SHOWN: f64 = 0.18;
 const BRIGHTENED: f64 = 4.0;
 
 /// A picture's error: root mean square over the mean, without the noise of the reference.
-struct Error {
-    relative: f64,
+pub(crate) struct Error {
+    pub(crate) relative: f64,
     /// How much brighter than the reference as a whole.
-    bias: f64,
+    pub(crate) bias: f64,
 }
 
 /// Two pictures by paths, drawn apart: an error that is the product of differences from either has no noise of theirs in it.
-struct Reference {
+pub(crate) struct Reference {
     halves: [Picture; 2],
     mean: f64,
     seconds: f64,
 }
 
 impl Reference {
-    fn new(scene: &Scene) -> Self {
+    /// By so many paths a pixel in either.
+    pub(crate) fn new(scene: &Scene, per_pixel: u32) -> Self {
         let start = ProcessTime::now();
         let tree = Tree::new(scene);
-        let halves = [1, 2].map(|seed| paths::picture(scene, &tree, PATHS, seed));
+        let halves = [1, 2].map(|seed| paths::picture(scene, &tree, per_pixel, seed));
         let count = 6 * halves[0].pixels.len();
         let mean = halves.iter().map(Picture::total).sum::<f64>() / count as f64;
         Self { halves, mean, seconds: start.elapsed().as_secs_f64() }
     }
 
-    fn error(&self, picture: &Picture) -> Error {
+    pub(crate) fn error(&self, picture: &Picture) -> Error {
         let [a, b] = &self.halves;
         let of = |((p, a), b): ((&DVec3, &DVec3), &DVec3)| (*p - *a).dot(*p - *b);
         let square: f64 = picture.pixels.iter().zip(&a.pixels).zip(&b.pixels).map(of).sum();
@@ -79,7 +80,7 @@ impl Reference {
     }
 
     /// Its own noise, as an error.
-    fn noise(&self) -> f64 {
+    pub(crate) fn noise(&self) -> f64 {
         let [a, b] = &self.halves;
         0.5 * a.rmse(b) / self.mean
     }
@@ -154,7 +155,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
 }
 
 fn building(site: &Site, folder: Option<&Path>, text: &mut String) -> Result<(), Fault> {
-    let reference = Reference::new(&site.scene);
+    let reference = Reference::new(&site.scene, PATHS);
     let mut row = |name: &str, error: &Error, seconds: f64| -> Result<(), Fault> {
         let Error { relative, bias } = *error;
         let line = format!(

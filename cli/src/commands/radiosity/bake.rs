@@ -11,7 +11,7 @@ use crate::job::Progress;
 use crate::memory;
 use crate::options::{FormFactorKind, LinkKind, RadiosityBakeOptions, SolveMethod};
 use crate::scene::{self, Overrides, Scene};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use pointillist_radiosity as radiosity;
 use pointillist_radiosity::{
     Baked, HemicubeKind, RadiosityError, SceneOptions, Solution, SolveOptions, Transport,
@@ -51,6 +51,7 @@ pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
         report.warn(&format!("{count} triangles let most light through and are left out"));
     }
     let bake = Bake { options, report: &report, scene: &scene, surfaces: &surfaces };
+    bake.check_importance()?;
     if options.dry_run {
         return report.finish_expecting(dry_run::expect(&bake)?);
     }
@@ -113,6 +114,10 @@ fn check(options: &RadiosityBakeOptions) -> Result<(), CliError> {
         let message = "--adaptive needs groups of patches: leave --links full and --form-factor hemicube out";
         return Err(CliError::Usage(message.to_owned()));
     }
+    if options.importance && (hemicube || matches!(options.links, LinkKind::Full | LinkKind::Rays)) {
+        let message = "--importance is about links of groups: leave --links full, --links rays and --form-factor hemicube out";
+        return Err(CliError::Usage(message.to_owned()));
+    }
     let output = &options.output;
     let known = output.extension().is_some_and(|e| e == "json" || e == "ply");
     if known || is_standard(output) {
@@ -147,7 +152,7 @@ impl Bake<'_> {
         let plain = options.form_factor == FormFactorKind::Analytic
             && options.method == SolveMethod::GaussSeidel
             && options.least_factor == 0.0;
-        let many = surfaces.surfaces.len() > MOST_PAIRED;
+        let many = surfaces.surfaces.len() > MOST_PAIRED && !options.importance;
         options.links == LinkKind::Rays || (options.links == LinkKind::Auto && plain && many)
     }
 
@@ -166,13 +171,50 @@ impl Bake<'_> {
             FormFactorKind::Hemicube => Some(HemicubeKind::Exact),
             FormFactorKind::HemicubeClassic => Some(HemicubeKind::Classic),
         };
-        let linked = stats.stage("factors", || match kind {
-            None => patches.transport_with(&direct, &|share| progress.reach(LIT + (LINKED - LIT) * share)),
-            Some(kind) => patches.transport_by_hemicubes(kind, options.resolution as usize, &direct),
+        let seen = if options.importance { Some(self.seen(&patches)?) } else { None };
+        let linking = |share| progress.reach(LIT + (LINKED - LIT) * share);
+        let linked = stats.stage("factors", || match (kind, &seen) {
+            (None, Some(seen)) => {
+                let importance = patches.importance(&direct, seen)?;
+                patches.transport_for(&direct, &importance, &linking)
+            }
+            (None, None) => patches.transport_with(&direct, &linking),
+            (Some(kind), _) => patches.transport_by_hemicubes(kind, options.resolution as usize, &direct),
         });
         let transport = linked.map_err(|e| self.refused(&e))?;
         progress.reach(LINKED);
         Ok(transport)
+    }
+
+    /// Refuses groups of so many surfaces that nobody would wait for them, unless they were asked for.
+    fn check_importance(&self) -> Result<(), CliError> {
+        let count = self.surfaces.surfaces.len();
+        if !self.options.importance || self.options.links != LinkKind::Auto || count <= MOST_PAIRED {
+            return Ok(());
+        }
+        let message = format!(
+            "--importance is about links of groups, for which each pair of {count} surfaces is looked at: leave it out, or add --links hierarchical and wait"
+        );
+        Err(CliError::Usage(message))
+    }
+
+    /// Which share of each patch the scene's camera sees.
+    fn seen(&self, patches: &radiosity::Scene) -> Result<Vec<f64>, CliError> {
+        let view = self.scene.view().map_err(|e| CliError::Failed(e.to_string()))?;
+        if !view.projection().is_perspective() {
+            let message = "--importance needs a camera with a field of view: set camera.fov, or leave it out";
+            return Err(CliError::Usage(message.to_owned()));
+        }
+        let size = DVec2::new(f64::from(view.width()), f64::from(view.height()));
+        let in_picture = |point: DVec3| {
+            let inside = |p: DVec2| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all();
+            view.project(point).is_some_and(|seen| inside(seen.pixel))
+        };
+        let seen = patches.seen_from(view.eye(), &in_picture).map_err(|e| self.refused(&e))?;
+        if seen.iter().all(|&share| share == 0.0) {
+            self.report.warn("the camera sees no surface: with --importance, all light is coarse");
+        }
+        Ok(seen)
     }
 
     pub(super) fn solve<'t>(
@@ -207,8 +249,8 @@ impl Bake<'_> {
             LinkKind::Full => false,
             LinkKind::Hierarchical | LinkKind::Rays => true,
             LinkKind::Auto => {
-                options.form_factor == FormFactorKind::Analytic
-                    && (plain.patch_count() > MOST_FULL || options.adaptive.is_some())
+                let wanted = options.adaptive.is_some() || options.importance;
+                options.form_factor == FormFactorKind::Analytic && (plain.patch_count() > MOST_FULL || wanted)
             }
         };
         if !grouped {
