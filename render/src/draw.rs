@@ -174,7 +174,8 @@ impl Prepared<'_> {
         monitor.start_lap();
         let lights = if style.lights {
             let sampled = style.economy.is_some_and(|economy| economy.samples_areas);
-            scene_lights(self, renderer.lens(), sampled)?
+            let shown = |light| picture.layers().contains(&LayerKind::Lit(light));
+            scene_lights(self, renderer.lens(), sampled, &shown)?
         } else {
             SceneLights::default()
         };

@@ -24,6 +24,8 @@ pub(crate) struct LightSample<'a> {
     pub(crate) origin: Origin,
     /// `None`: casts no shadow.
     pub(crate) shadow: Option<ShadowLight<'a>>,
+    /// Whether it reaches a part of the world only, so that tiles are asked one by one.
+    pub(crate) is_narrow: bool,
 }
 
 /// One side of a light with an area, or of an emitting polygon, taken as a whole.
@@ -76,28 +78,34 @@ impl SceneLights<'_> {
 /// What casts the shadows of some channels of light, and when.
 type Cast<'a> = (Vec3, &'a Geometry, Occasion);
 
-/// All lights, for receivers that `lens` sees. Lights with an area and lines are taken as a whole unless they ask for samples, or `sampled` does. Where
+/// All lights that reach anything or of which `shown` says that a layer shows where they do, for receivers that `lens` sees. Lights with an area and lines are taken as a whole unless they ask for samples, or `sampled` does. Where
 /// something clear lets colours pass differently, a light comes once for each, and once for tiles where none does.
 pub(crate) fn scene_lights<'a>(
     prepared: &'a Prepared<'_>,
     lens: &Lens,
     sampled: bool,
+    shown: &dyn Fn(usize) -> bool,
 ) -> Result<SceneLights<'a>, RenderError> {
     let (scene, surfaces) = (prepared.scene, &*prepared.surfaces);
+    let all = prepared.geometry.bounds();
     let mut lights = SceneLights::default();
     for (light, source) in scene.lights.iter().enumerate() {
         if source.ambient != Vec3::ZERO {
             lights.ambient.push(source.light.with_color(source.ambient));
         }
+        // Nothing can show that it is there.
+        let is_idle = !shown(light) && !source.light.may_reach(all.low, all.high);
         let unhindered = (!source.shadow).then_some((Vec3::ONE, &*prepared.geometry, Occasion::Always));
         let casters = unhindered.into_iter().chain(prepared.casters().filter(|_| source.shadow));
         for cast @ (channels, geometry, occasion) in casters {
             if !sampled && let Some(area) = source.light.exact_area() {
-                lights.whole.extend(whole_light((light, source), area, cast, surfaces)?);
+                let sides = whole_light((light, source), area, cast, surfaces)?;
+                lights.whole.extend(sides.into_iter().filter(|_| !is_idle));
                 continue;
             }
             if !sampled && let Some(ends) = source.light.exact_line() {
-                lights.whole.push(whole_line((light, source), ends, cast, surfaces)?);
+                let line = whole_line((light, source), ends, cast, surfaces)?;
+                lights.whole.extend(Some(line).filter(|_| !is_idle));
                 continue;
             }
             for sample in 0..source.light.samples() {
@@ -108,7 +116,13 @@ pub(crate) fn scene_lights<'a>(
                     let named = |e| RenderError::Shadow { name: source.name.clone(), source: e };
                     let shadow =
                         ShadowLight::new(geometry, surfaces, emitter(&source.light, sample), options);
-                    Some(shadow.map_err(named)?.seen_from(lens))
+                    let shadow = shadow.map_err(named)?;
+                    if is_idle {
+                        continue;
+                    }
+                    Some(shadow.seen_from(lens))
+                } else if is_idle {
+                    continue;
                 } else {
                     None
                 };
@@ -117,7 +131,17 @@ pub(crate) fn scene_lights<'a>(
                     Source::Position(position) => Origin::Within((position, position)),
                     _ => unreachable!("light comes from a point or a direction"),
                 };
-                lights.samples.push(LightSample { light, sample, channels, occasion, origin, shadow });
+                let is_narrow =
+                    matches!(source.light, Light::Spot { .. } | Light::Rect { .. } | Light::Polygon { .. });
+                lights.samples.push(LightSample {
+                    light,
+                    sample,
+                    channels,
+                    occasion,
+                    origin,
+                    shadow,
+                    is_narrow,
+                });
             }
         }
     }

@@ -4,6 +4,7 @@ use crate::background::Background;
 use crate::direct::{DirectScratch, corners};
 use crate::face_look::FaceLooks;
 use crate::frame::LayerKind;
+use crate::lights::LightSample;
 use crate::monitor::Monitor;
 use crate::partial::Pixels;
 use crate::shader::{Point, Shader};
@@ -11,6 +12,7 @@ use crate::shaft::Box3;
 use glam::DVec3;
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::{SurfacePoint, Tile};
+use pointillist_shade::Interpolation;
 use pointillist_shadow::{AreaCounts, ShadowCounts};
 use std::collections::BTreeMap;
 
@@ -57,10 +59,14 @@ impl Shader<'_> {
             }
         }
         let within = if self.lights.are_tinted() { self.bounds(tile) } else { (DVec3::ZERO, DVec3::ZERO) };
+        let mut places = None;
         for light in
             self.lights.samples.iter().filter(|l| self.counts(l.channels, l.occasion, l.origin, within))
         {
-            self.add_light(tile, light, points, direct, lit.get_mut(&light.light), monitor);
+            let layer = lit.get_mut(&light.light);
+            if layer.is_some() || self.reaches(light, points, &mut places) {
+                self.add_light(tile, light, points, direct, layer, monitor);
+            }
         }
         let mut asked = None;
         for light in
@@ -76,6 +82,19 @@ impl Shader<'_> {
         self.gather(tile, background, points, pixels);
         self.gather_layers(tile, layers, &lit, points, pixels);
         monitor.lap("shade");
+    }
+
+    /// Whether a light reaches any of the points; `places` is the box around them, once it is known.
+    fn reaches(&self, light: &LightSample<'_>, points: &[Point], places: &mut Option<Box3>) -> bool {
+        // Gouraud's rule lights the corners of triangles, which may be far away.
+        if !light.is_narrow || self.scene.render.shading == Interpolation::Gouraud {
+            return true;
+        }
+        let (low, high) = *places.get_or_insert_with(|| {
+            let grow = |(low, high): Box3, p: &Point| (low.min(p.place.position), high.max(p.place.position));
+            points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), grow)
+        });
+        self.scene.lights[light.light].light.may_reach(low, high)
     }
 
     /// The box around all that a tile sees, in the world.

@@ -321,7 +321,9 @@ fn textured(material: &Material, textures: &[Texture]) -> Result<Textured, Micro
     let wrap = texel_wrap(material.wrap);
     let texture = |map: Option<usize>| map.map(|i| &textures[i]);
     let opacity = |mask: &Texture| when_needed([mask], move |[mask]| opacity_sums(mask, wrap));
-    Ok(match (texture(material.diffuse_map), texture(material.opacity_map)) {
+    // A mask that hides nothing would keep surfaces from hiding what is behind them, and costs its means.
+    let mask = texture(material.opacity_map).filter(|mask| !mask.texels.are_opaque());
+    Ok(match (texture(material.diffuse_map), mask) {
         (None, None) => Textured::Nothing,
         (Some(color), None) => Textured::Color(when_needed([color], move |[color]| color_sums(color, wrap))?),
         (None, Some(mask)) => Textured::Opacity(opacity(mask)?),

@@ -85,3 +85,32 @@ fn each_side_of_a_leaf_shows_the_normals_of_the_card_that_faces_the_eye() {
         }
     }
 }
+
+#[test]
+fn a_mask_without_holes_is_none() {
+    let with = |texels: Texels| {
+        move |scene: &mut Scene| {
+            let mask = scene.add_texture(Texture::new("full", [2, 2], texels.clone()));
+            scene.materials[0].opacity_map = Some(mask);
+        }
+    };
+    let bare = picture(None, |scene| scene.materials[0].opacity_map = None);
+    let full = |last: u8| {
+        let alphas = [255, 255, 255, last];
+        let rgba = alphas.map(|alpha| [9, 80, 200, alpha]).to_vec();
+        [
+            Texels::from_opacities(alphas.to_vec()),
+            Texels::Srgb8(rgba.clone().into()),
+            Texels::Linear8(rgba.into()),
+            Texels::Float(alphas.map(|alpha| [0.5, 0.1, 0.2, f32::from(alpha) / 255.0]).to_vec().into()),
+        ]
+    };
+    for texels in full(255).into_iter().chain([Texels::from_grays(vec![7; 4])]) {
+        assert!(texels.are_opaque());
+        assert_eq!(picture(None, with(texels.clone())).color, bare.color, "{texels:?}");
+    }
+    for texels in full(254) {
+        assert!(!texels.are_opaque());
+        assert_ne!(picture(None, with(texels.clone())).color, bare.color, "{texels:?}");
+    }
+}

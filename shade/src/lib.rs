@@ -102,6 +102,7 @@ mod merl;
 mod normals;
 mod outline;
 mod quadrature;
+mod reach;
 mod refraction;
 mod roughness;
 mod texture;

@@ -107,6 +107,90 @@ fn real_material() -> impl Strategy<Value = Material> {
     )
 }
 
+/// Lights of usual sizes, of which cones and areas miss a box as often as not.
+fn usual_light() -> impl Strategy<Value = Light> {
+    let place = || [-3.0..3.0_f64, -3.0..3.0, -3.0..3.0].prop_map(DVec3::from_array);
+    let white = Vec3::ONE;
+    let spot = (place(), place(), 0.0..1.2_f64, 0.0..1.7_f64, prop_oneof![Just(0.0), 0.5..9.0_f64]).prop_map(
+        move |(position, direction, beam_rad, cutoff_rad, exponent)| Light::Spot {
+            position,
+            direction,
+            intensity: white,
+            beam_rad,
+            cutoff_rad,
+            exponent,
+            falloff: Falloff::InverseSquare,
+        },
+    );
+    let rect = (place(), place(), place()).prop_map(move |(corner, edge_u, edge_v)| Light::Rect {
+        corner,
+        edge_u,
+        edge_v,
+        radiance: white,
+        samples: NonZeroU32::new(4),
+        falloff: Falloff::InverseSquare,
+    });
+    prop_oneof![3 => spot, 1 => rect]
+}
+
+/// Dark at some places of a box that the light cannot reach.
+fn unreached_is_dark(light: &Light, a: DVec3, b: DVec3, shares: &[[f64; 3]]) -> Result<(), TestCaseError> {
+    let (low, high) = (a.min(b), a.max(b));
+    if light.may_reach(low, high) {
+        return Ok(());
+    }
+    for share in shares.iter().map(|s| DVec3::from_array(*s)).chain([DVec3::ZERO, DVec3::ONE]) {
+        let point = low + (high - low) * share;
+        for sample in 0..light.samples().min(16) {
+            let incident = light.illuminate(sample, point);
+            prop_assert!(incident.is_dark(), "{point} of {low} to {high} gets {:?}", incident.irradiance);
+        }
+    }
+    Ok(())
+}
+
+fn shares() -> impl Strategy<Value = Vec<[f64; 3]>> {
+    prop::collection::vec([0.0..=1.0, 0.0..=1.0, 0.0..=1.0_f64], 20)
+}
+
+proptest! {
+    #![proptest_config(testkit::config(2000))]
+    #[test]
+    fn what_a_light_cannot_reach_is_dark(
+        light in usual_light(),
+        at in [-3.0..3.0_f64, -3.0..3.0, -3.0..3.0],
+        size in [0.0..2.0_f64, 0.0..2.0, 0.0..2.0],
+        shares in shares(),
+    ) {
+        let (low, size) = (DVec3::from_array(at), DVec3::from_array(size));
+        unreached_is_dark(&light, low, low + size, &shares)?;
+    }
+
+    #[test]
+    fn what_any_light_cannot_reach_is_dark(light in light(), a in point(), b in point(), shares in shares()) {
+        unreached_is_dark(&light, a, b, &shares)?;
+    }
+}
+
+#[test]
+fn lights_miss_what_is_not_before_them() {
+    let spot = |direction: DVec3, intensity: f32| Light::Spot {
+        position: DVec3::ZERO,
+        direction,
+        intensity: Vec3::splat(intensity),
+        beam_rad: 0.2,
+        cutoff_rad: 0.4,
+        exponent: 0.0,
+        falloff: Falloff::InverseSquare,
+    };
+    let boxed = (DVec3::new(-1.0, -1.0, 5.0), DVec3::new(1.0, 1.0, 6.0));
+    assert!(spot(DVec3::Z, 1.0).may_reach(boxed.0, boxed.1));
+    assert!(!spot(DVec3::Z, 0.0).may_reach(boxed.0, boxed.1));
+    assert!(!spot(DVec3::NEG_Z, 1.0).may_reach(boxed.0, boxed.1));
+    assert!(!spot(DVec3::X, 1.0).may_reach(boxed.0, boxed.1));
+    assert!(spot(DVec3::NEG_Z, 1.0).may_reach(-boxed.1, boxed.1));
+}
+
 proptest! {
     #![proptest_config(testkit::config(256))]
 

@@ -308,12 +308,12 @@ impl<'a> Gather<'a> {
         Ok(())
     }
 
-    /// Hands out the rest and sums up.
+    /// Hands out the rest of a part of a file, which may have no points that can be used.
     ///
     /// # Errors
     ///
-    /// No points, or points that are not finite and may not be dropped.
-    pub(super) fn finish(&mut self, name: &str, format: CloudFormat) -> Result<CloudSummary, Stop> {
+    /// Points that are not finite and may not be dropped.
+    pub(super) fn finish_part(&mut self, name: &str) -> Result<(), Stop> {
         if let Some(at) = self.first_invalid.filter(|_| !self.drop_invalid) {
             let (invalid, seen) = (self.invalid, self.seen);
             let message =
@@ -322,7 +322,16 @@ impl<'a> Gather<'a> {
                 .with_help("`--drop-invalid` leaves them out")
                 .into());
         }
-        self.hand_out()?;
+        self.hand_out()
+    }
+
+    /// Hands out the rest and sums up.
+    ///
+    /// # Errors
+    ///
+    /// No points, or points that are not finite and may not be dropped.
+    pub(super) fn finish(&mut self, name: &str, format: CloudFormat) -> Result<CloudSummary, Stop> {
+        self.finish_part(name)?;
         if self.handed_out == 0 {
             let message = match self.seen {
                 0 => "the cloud has no points".to_owned(),

@@ -11,7 +11,7 @@ use std::io::{Result, SeekFrom};
 pub(super) fn check<R: ReadSeek>(name: &str, input: &mut R) -> std::result::Result<(), InputError> {
     let verdict = input.seek(SeekFrom::End(0)).and_then(|size| {
         let mut file = Checked { input, size };
-        Ok(file.extended_records()?.or(file.chunks()?))
+        Ok(file.points()?.or(file.extended_records()?).or(file.chunks()?))
     });
     match verdict.and_then(|verdict| input.rewind().map(|()| verdict)) {
         Ok(None) => Ok(()),
@@ -48,6 +48,9 @@ pub(super) fn check_items<R: ReadSeek>(name: &str, input: &mut R) -> std::result
     input.rewind().map_err(|error| InputError::of_file(name, format!("cannot be read: {error}")))
 }
 
+/// Where the minor number of the version is.
+const MINOR_VERSION: u64 = 25;
+
 struct Checked<'a, R> {
     input: &'a mut R,
     size: u64,
@@ -64,9 +67,24 @@ impl<R: ReadSeek> Checked<'_, R> {
         Ok(bytes)
     }
 
+    /// The number of points, which the library multiplies by the length of a record.
+    fn points(&mut self) -> Result<Option<String>> {
+        const OFFSET_TO_POINTS: u64 = 96;
+        const RECORD_LENGTH: u64 = 105;
+        const POINT_COUNT: u64 = 247;
+        let [minor] = self.bytes(MINOR_VERSION)?;
+        if minor < 4 {
+            return Ok(None);
+        }
+        let count = u64::from_le_bytes(self.bytes(POINT_COUNT)?);
+        let record = u64::from(u16::from_le_bytes(self.bytes(RECORD_LENGTH)?));
+        let first = u64::from(u32::from_le_bytes(self.bytes(OFFSET_TO_POINTS)?));
+        let end = count.checked_mul(record).and_then(|bytes| bytes.checked_add(first));
+        Ok(end.is_none().then(|| format!("{count} points of {record} bytes are more than any file has")))
+    }
+
     /// Records behind the points, which the library allocates as long as their headers say.
     fn extended_records(&mut self) -> Result<Option<String>> {
-        const MINOR_VERSION: u64 = 25;
         const FIRST_RECORD: u64 = 235;
         const RECORD_COUNT: u64 = 243;
         const RECORD_LENGTH: u64 = 20;

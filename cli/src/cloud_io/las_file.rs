@@ -58,7 +58,7 @@ fn fault(name: &str, error: &las::Error, read: u64) -> InputError {
         .with_help("the file is damaged or was cut off; get it again, or convert it to PLY")
 }
 
-fn colour_code(chunk: &PointData) -> ColourCode {
+pub(super) fn colour_code(chunk: &PointData) -> ColourCode {
     let highest = chunk.rgb().into_iter().flatten().map(|(r, g, b)| r.max(g).max(b)).max();
     if highest.is_some_and(|highest| (1..=255).contains(&highest)) {
         ColourCode::Byte
@@ -67,7 +67,8 @@ fn colour_code(chunk: &PointData) -> ColourCode {
     }
 }
 
-fn push(
+/// Hands on points; `before` is the number of the first.
+pub(super) fn push(
     name: &str,
     chunk: &PointData,
     code: ColourCode,

@@ -7,6 +7,7 @@
 mod block;
 mod colour;
 mod conf;
+mod copc;
 #[cfg(feature = "e57")]
 mod e57_file;
 mod format;
@@ -28,6 +29,9 @@ mod xyz_row;
 
 pub use block::{CloudBlock, CloudOptions, CloudSummary, MAX_BLOCK_POINTS, RangeGrid};
 pub use conf::{Conf, ConfScan, Pose, read_conf, read_conf_bytes};
+#[cfg(feature = "las")]
+pub use copc::CopcFile;
+pub use copc::{COPC_HEAD_BYTES, CopcChunk, CopcError, CopcHierarchy, CopcKey, is_copc};
 pub use format::CloudFormat;
 pub use ply_write::{CloudPoint, PlyEncoding, write_ply};
 pub use scalar::{Scalar, Scalars};
@@ -104,11 +108,11 @@ pub fn read_cloud_bytes<E: From<InputError>>(
 }
 
 /// Keeps the sink's own error aside, so that the readers need not be generic over it.
-fn with_sink<E: From<InputError>>(
+fn with_sink<T, E: From<InputError>>(
     sink: &mut dyn FnMut(CloudBlock<'_>) -> Result<(), E>,
     options: &CloudOptions,
-    read: impl FnOnce(&mut Gather<'_>) -> Result<CloudSummary, Stop>,
-) -> Result<CloudSummary, E> {
+    read: impl FnOnce(&mut Gather<'_>) -> Result<T, Stop>,
+) -> Result<T, E> {
     let mut refusal = None;
     let mut keep = |block: CloudBlock<'_>| {
         sink(block).map_err(|error| {

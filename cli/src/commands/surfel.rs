@@ -5,7 +5,7 @@ use super::points::{self, Target};
 use crate::error::CliError;
 use crate::image_io::{PixelRect, Stamp};
 use crate::options::{SurfelOptions, layer_list};
-use crate::points::{Colouring, Drawn, Legend, PointLayer, PointSet, Trees, is_large, window_of};
+use crate::points::{Colouring, Drawn, Legend, PointLayer, PointSet, Trees, are_drawn_by_nodes, window_of};
 use crate::scene::Camera;
 use pointillist_octree::Cut;
 use pointillist_surfel as surfel;
@@ -32,8 +32,15 @@ struct Pictures<'a> {
 enum Source {
     /// All are in memory.
     Whole { cloud: Box<surfel::Cloud>, legend: Option<Legend>, fingerprint: u64 },
-    /// Each view reads what it needs.
-    Trees(Box<Trees>),
+    /// Each view reads what it needs. Views of the same nodes, one after the other, share what is made of these.
+    Trees { trees: Box<Trees>, ready: Option<Box<Ready>> },
+}
+
+/// The points of some nodes, ready to be drawn.
+struct Ready {
+    nodes: Vec<(usize, u32)>,
+    cloud: surfel::Cloud,
+    legend: Option<Legend>,
 }
 
 pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
@@ -66,7 +73,9 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     };
     let framed = match &mut source {
         Source::Whole { cloud, .. } => cloud.positions().collect(),
-        Source::Trees(trees) => trees.load(&trees.roots(), &mut || ())?.positions().collect::<Vec<_>>(),
+        Source::Trees { trees, .. } => {
+            trees.load(&trees.roots(), &mut || ())?.positions().collect::<Vec<_>>()
+        }
     };
     let cameras = given
         .iter()
@@ -76,7 +85,7 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     for (camera, target) in cameras.iter().zip(&targets) {
         pictures.draw(camera, target, &mut source)?;
     }
-    if let Source::Trees(trees) = &source {
+    if let Source::Trees { trees, .. } = &source {
         report.stats.count("bytes_read", trees.bytes_read);
         report.stats.count("nodes_read", trees.nodes_read);
         report.stats.skip("nodes_kept", trees.nodes_kept);
@@ -87,11 +96,12 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
 impl Pictures<'_> {
     fn load(&self) -> Result<Source, CliError> {
         let (options, report) = (self.options, self.report);
-        if options.clouds.iter().any(|cloud| is_large(cloud, options.octree)) {
+        if are_drawn_by_nodes(&options.clouds, options.octree) {
             let progress = report.progress();
             let open =
                 || Trees::open(&options.clouds, options.reading(), &progress, &|line| report.note(line));
-            return Ok(Source::Trees(Box::new(report.stats.stage("load", open)?)));
+            let trees = Box::new(report.stats.stage("load", open)?);
+            return Ok(Source::Trees { trees, ready: None });
         }
         let mut set = report.stats.stage("load", || PointSet::load(&options.clouds, &options.reading()))?;
         set.warnings.iter().for_each(|warning| report.warn(warning));
@@ -114,7 +124,7 @@ impl Pictures<'_> {
         let drawn = format!("{:?}", (self.frame_options, camera, size, &self.layers, paint));
         let fingerprint = match source {
             Source::Whole { fingerprint, .. } => *fingerprint,
-            Source::Trees(trees) => trees.fingerprint(),
+            Source::Trees { trees, .. } => trees.fingerprint(),
         };
         let stamp = points::stamp(fingerprint, &drawn, &options.camera, self.region);
         if target.is_done(&stamp, self.window, report) {
@@ -125,7 +135,7 @@ impl Pictures<'_> {
             Source::Whole { cloud, legend, .. } => {
                 self.draw_cloud(cloud, legend.clone(), &view, target, stamp)
             }
-            Source::Trees(trees) => self.draw_trees(trees, &view, target, stamp),
+            Source::Trees { trees, ready } => self.draw_trees(trees, ready, &view, target, stamp),
         }
     }
 
@@ -133,6 +143,7 @@ impl Pictures<'_> {
     fn draw_trees(
         &self,
         trees: &mut Trees,
+        ready: &mut Option<Box<Ready>>,
         view: &View,
         target: &Target<'_>,
         stamp: Stamp,
@@ -143,7 +154,7 @@ impl Pictures<'_> {
         let cut = trees.cut(view, spacing_px, MARGIN_PX);
         let first = trees.coarse(&cut).filter(|_| self.options.views.is_none());
         if let Some(coarse) = first {
-            self.draw_cut(trees, &coarse, view, target, Stamp { unfinished: true, ..stamp.clone() })?;
+            self.draw_cut(trees, ready, &coarse, view, target, Stamp { unfinished: true, ..stamp.clone() })?;
             report.note(&format!(
                 "{} is there, coarse; {} more points are read",
                 target.path.display(),
@@ -156,17 +167,37 @@ impl Pictures<'_> {
                 "points are up to {gap:.1} pixels apart: the memory is enough for {} of them; --memory gives more", cut.points
             ));
         }
-        self.draw_cut(trees, &cut, view, target, stamp)
+        self.draw_cut(trees, ready, &cut, view, target, stamp)
     }
 
     fn draw_cut(
         &self,
         trees: &mut Trees,
+        ready: &mut Option<Box<Ready>>,
         cut: &Cut,
         view: &View,
         target: &Target<'_>,
         stamp: Stamp,
     ) -> Result<(), CliError> {
+        let mut nodes = cut.nodes.clone();
+        // The order is that of the widest gaps, which another view of the same nodes may have elsewhere.
+        nodes.sort_unstable();
+        let made = match ready.take() {
+            Some(ready) if ready.nodes == nodes => {
+                self.report.stats.skip("clouds_made_ready", 1);
+                ready
+            }
+            other => {
+                // Before the next is read: both together may be too much.
+                drop(other);
+                Box::new(self.make_ready(trees, cut, nodes)?)
+            }
+        };
+        let Ready { cloud, legend, .. } = &**ready.insert(made);
+        self.draw_cloud(cloud, legend.clone(), view, target, stamp)
+    }
+
+    fn make_ready(&self, trees: &mut Trees, cut: &Cut, nodes: Vec<(usize, u32)>) -> Result<Ready, CliError> {
         let progress = self.report.progress();
         progress.begin("read", cut.nodes.len() as u64);
         let mut set = self.report.stats.stage("load", || trees.load(cut, &mut || progress.advance(1)))?;
@@ -176,8 +207,7 @@ impl Pictures<'_> {
             return Err(CliError::Usage(message.to_owned()));
         }
         let (cloud, legend) = self.prepare(&mut set)?;
-        drop(set);
-        self.draw_cloud(&cloud, legend, view, target, stamp)
+        Ok(Ready { nodes, cloud, legend })
     }
 
     fn draw_cloud(

@@ -31,7 +31,7 @@ pub struct SurfelOptions {
     /// The view.
     #[command(flatten)]
     pub camera: CameraOptions,
-    /// Draw from an octree beside each CLOUD (CLOUD.octree, made once) even if it fits into memory; clouds that do not fit are drawn so anyway
+    /// Draw from an octree beside each CLOUD (CLOUD.octree, made once) even if it fits into memory; clouds that do not fit are drawn so anyway, and COPC by its own
     #[arg(long)]
     pub octree: bool,
     /// Draw a picture for each line of a file, EYE and TARGET in six numbers or nine with UP; -o then has a place for the number: flight_{frame:04}.png

@@ -11,6 +11,8 @@ mod cloud_survey_formats;
 mod commands;
 mod common;
 mod compare_page;
+#[cfg(feature = "las")]
+mod copc;
 mod copies;
 mod cryptomatte;
 mod cube_maps;

@@ -52,6 +52,17 @@ impl Texels {
         Self::Gray8(single(bytes))
     }
 
+    /// Whether all of them have an alpha of 1, as masks of many programs have.
+    #[must_use]
+    pub fn are_opaque(&self) -> bool {
+        match self {
+            Self::Srgb8(texels) | Self::Linear8(texels) => texels.iter().all(|texel| texel[3] == u8::MAX),
+            Self::OpaqueSrgb8(_) | Self::OpaqueLinear8(_) | Self::Gray8(_) => true,
+            Self::Opacity8(texels) => texels.iter().all(|[opacity]| *opacity == u8::MAX),
+            Self::Float(texels) => texels.iter().all(|texel| texel[3] == 1.0),
+        }
+    }
+
     /// How many there are.
     pub(super) fn len(&self) -> usize {
         match self {

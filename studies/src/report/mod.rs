@@ -24,9 +24,9 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
 }
 
 fn page(sections: &[Section], pictures: &str) -> String {
-    let mut links = "<a href=\"#pictures\">Pictures to look into</a>\n".to_owned();
+    let mut links = "<a href=\"#pictures\">pictures</a>\n".to_owned();
     for section in sections {
-        let _ = writeln!(links, "<a href=\"#{}\">{}</a>", section.name, section.title);
+        let _ = writeln!(links, "<a href=\"#{}\">{}</a>", section.name, section.name.replace('-', " "));
     }
     let bodies: String = sections.iter().map(Section::to_html).collect();
     format!(

@@ -11,7 +11,6 @@ const LONG: usize = 30;
 pub(super) struct Section {
     /// Of the file, without its ending; the place on the page.
     pub(super) name: String,
-    pub(super) title: String,
     markdown: String,
     /// SVG files whose names begin with that of the section, and of no other.
     charts: Vec<String>,
@@ -57,10 +56,9 @@ pub(super) fn read(folder: &Path) -> std::io::Result<Vec<Section>> {
     let mut sections = vec![];
     for name in &names {
         let markdown = std::fs::read_to_string(folder.join(format!("{name}.md")))?;
-        let title = markdown.lines().find_map(|line| line.strip_prefix("# ")).unwrap_or(name).to_owned();
         let own = files.iter().filter(|file| owner(file) == Some(name));
         let charts = own.map(|file| std::fs::read_to_string(folder.join(file))).collect::<Result<_, _>>()?;
-        sections.push(Section { name: (*name).to_owned(), title, markdown, charts });
+        sections.push(Section { name: (*name).to_owned(), markdown, charts });
     }
     Ok(sections)
 }

@@ -1,6 +1,7 @@
-//! Clouds larger than memory: an octree of each, of which a view reads the nodes that it needs.
+//! Clouds larger than memory: an octree of each, its own or one that is made, of which a view reads the nodes that it needs.
 
 mod make;
+mod nodes;
 mod record;
 
 use super::PointSet;
@@ -9,9 +10,9 @@ use crate::input;
 use crate::input_error::InputError;
 use crate::job::Progress;
 use crate::memory;
-use pointillist_octree::{Cut, CutOptions, NodeCache, TREE_MARK, Tree, TreeReader, cut};
+use nodes::{Making, NodeFile};
+use pointillist_octree::{Cut, CutOptions, NodeCache, Tree, cut};
 use pointillist_view::View;
-use record::{Columns, Fields};
 use std::fs::File;
 use std::hash::Hasher as _;
 use std::io::{Read, Seek, SeekFrom};
@@ -32,7 +33,7 @@ const COARSE_POINTS: u64 = 150_000;
 /// The clouds of a picture, as trees.
 #[derive(Debug)]
 pub struct Trees {
-    clouds: Vec<TreeCloud>,
+    clouds: Vec<NodeFile>,
     cache: NodeCache<Vec<u8>>,
     most_points: u64,
     options: PointOptions,
@@ -44,19 +45,17 @@ pub struct Trees {
     pub nodes_kept: u64,
 }
 
-#[derive(Debug)]
-struct TreeCloud {
-    path: PathBuf,
-    name: String,
-    reader: TreeReader<File>,
-    fields: Fields,
+/// Whether clouds are drawn by nodes: it is asked for, the points of one do not fit into memory, or all of them have nodes, so that no octree has to be
+/// made.
+pub fn are_drawn_by_nodes(paths: &[PathBuf], wanted: bool) -> bool {
+    let files: Vec<_> = paths.iter().filter(|path| !input::is_standard(path)).collect();
+    let all_have = files.len() == paths.len() && paths.iter().all(|path| nodes::has_nodes(path));
+    // An octree of ours has no other reader.
+    all_have || files.iter().any(|path| wanted || nodes::is_tree(path) || is_large(path))
 }
 
-/// Whether a cloud is drawn from an octree: it is one, it is asked for, or its points do not fit into memory.
-pub fn is_large(path: &Path, wanted: bool) -> bool {
-    if input::is_standard(path) {
-        return false;
-    }
+/// Whether the points of a file do not fit into memory.
+fn is_large(path: &Path) -> bool {
     let Ok(mut file) = File::open(path) else { return false };
     let mut head = vec![];
     if (&mut file).take(256).read_to_end(&mut head).is_err() {
@@ -64,9 +63,7 @@ pub fn is_large(path: &Path, wanted: bool) -> bool {
     }
     let length = file.seek(SeekFrom::End(0)).unwrap_or(0);
     let available = memory::available_bytes().unwrap_or(u64::MAX);
-    head.starts_with(TREE_MARK)
-        || wanted
-        || expected_points(&head, length).saturating_mul(DRAWN_BYTES) > available
+    expected_points(&head, length).saturating_mul(DRAWN_BYTES) > available
 }
 
 /// Points of a file: those that a LAS announces, or what would fit into as many bytes.
@@ -97,7 +94,8 @@ impl Trees {
     ) -> Result<Self, InputError> {
         let memory = memory::available_bytes().unwrap_or(8 << 30);
         let share = |share: f64| (memory as f64 * share) as u64;
-        let clouds = paths.iter().map(|path| TreeCloud::open(path, &options, memory, progress, tell));
+        let making = Making { options: &options, memory, progress, tell };
+        let clouds = paths.iter().map(|path| NodeFile::open(path, &making));
         Ok(Self {
             clouds: clouds.collect::<Result<_, _>>()?,
             cache: NodeCache::new(share(KEPT_SHARE)),
@@ -111,7 +109,7 @@ impl Trees {
 
     /// Points of all clouds.
     pub fn points(&self) -> u64 {
-        self.clouds.iter().map(|cloud| cloud.reader.tree().points()).sum()
+        self.clouds.iter().map(|cloud| cloud.tree().points()).sum()
     }
 
     /// The nodes that a view needs.
@@ -127,9 +125,9 @@ impl Trees {
         }
         let mut coarse = Cut { spacing_px: f64::INFINITY, is_limited: true, ..Cut::default() };
         for &(tree, node) in &cut.nodes {
-            coarse.points += self.clouds[tree].reader.tree().nodes()[node as usize].count;
+            coarse.points += self.clouds[tree].tree().nodes()[node as usize].count;
             if coarse.points > COARSE_POINTS && !coarse.nodes.is_empty() {
-                coarse.points -= self.clouds[tree].reader.tree().nodes()[node as usize].count;
+                coarse.points -= self.clouds[tree].tree().nodes()[node as usize].count;
                 break;
             }
             coarse.nodes.push((tree, node));
@@ -137,14 +135,22 @@ impl Trees {
         Some(coarse)
     }
 
-    /// The roots: for a camera that has everything in view.
+    /// The coarsest nodes with points: for a camera that has everything in view.
     pub fn roots(&self) -> Cut {
-        let roots = self.shapes().into_iter().enumerate().filter_map(|(tree, t)| Some((tree, t.root()?)));
-        Cut { nodes: roots.collect(), ..Cut::default() }
+        let mut roots = Cut::default();
+        for (number, tree) in self.shapes().into_iter().enumerate() {
+            let mut level: Vec<u32> = tree.root().into_iter().collect();
+            // COPC may have no points in the root.
+            while !level.is_empty() && level.iter().all(|&node| tree.nodes()[node as usize].count == 0) {
+                level = level.iter().flat_map(|&node| tree.children(node)).collect();
+            }
+            roots.nodes.extend(level.into_iter().map(|node| (number, node)));
+        }
+        roots
     }
 
     fn shapes(&self) -> Vec<&Tree> {
-        self.clouds.iter().map(|cloud| cloud.reader.tree()).collect()
+        self.clouds.iter().map(|cloud| cloud.tree()).collect()
     }
 
     /// The points of a cut; `done` is told after each node.
@@ -164,10 +170,12 @@ impl Trees {
             if last.replace(tree) != Some(tree) {
                 set.begin(&cloud.path);
             }
-            let columns = Columns::decode(&records, cloud.fields, &cloud.reader.tree().cube());
-            Taker::new(&self.options, &cloud.name).take(columns.block(), &mut |block, values| {
-                set.add(&block, values);
-                Ok(())
+            let mut taker = Taker::new(&self.options, &cloud.name);
+            cloud.blocks(&records, &mut |block| {
+                taker.take(block, &mut |block, values| {
+                    set.add(&block, values);
+                    Ok(())
+                })
             })?;
             done();
         }
@@ -180,13 +188,13 @@ impl Trees {
             return Ok(records);
         }
         let cloud = &mut self.clouds[tree];
-        let records = cloud.reader.read(node).map_err(|error| {
-            let tree = make::path_of(&cloud.path);
-            let file = if tree.exists() { tree } else { cloud.path.clone() };
-            InputError::of_file(file.display().to_string(), format!("the octree is damaged: {error}"))
-                .with_help("remove this file; it is made again from the cloud")
-        })?;
-        self.bytes_read += records.len() as u64;
+        let (count, most) = (cloud.tree().nodes()[node as usize].count, self.most_points);
+        if count > most {
+            let message = format!("a node has {count} points, but the memory is enough for {most}");
+            return Err(InputError::of_file(&cloud.name, message).with_help("--memory gives more"));
+        }
+        let (records, bytes) = cloud.read(node)?;
+        self.bytes_read += bytes;
         self.nodes_read += 1;
         let records = Arc::new(records);
         self.cache.insert((tree, node), Arc::clone(&records), records.len() as u64);
@@ -197,68 +205,9 @@ impl Trees {
     pub fn fingerprint(&self) -> u64 {
         let mut hash = XxHash3_64::default();
         for cloud in &self.clouds {
-            hash.write(&cloud.reader.header().fingerprint.to_le_bytes());
+            hash.write(&cloud.fingerprint.to_le_bytes());
         }
         hash.write(format!("{:?} {}", self.options, self.most_points).as_bytes());
         hash.finish()
     }
-}
-
-impl TreeCloud {
-    fn open(
-        path: &Path,
-        options: &PointOptions,
-        memory: u64,
-        progress: &Progress,
-        tell: &dyn Fn(&str),
-    ) -> Result<Self, InputError> {
-        let name = input::name_of(path);
-        let reader = if is_tree(path) {
-            let damaged = |error: pointillist_octree::OctreeError| {
-                InputError::of_file(&name, error.to_string())
-                    .with_help("remove it, and draw from the cloud that it was made from")
-            };
-            let file = File::open(path).map_err(|error| input::cannot_read(&name, &error))?;
-            TreeReader::new(file).map_err(damaged)?
-        } else {
-            Self::beside(path, &name, options, memory, progress, tell)?
-        };
-        let header = *reader.header();
-        let fields = Fields::from_layout(header.layout, header.payload).ok_or_else(|| {
-            InputError::of_file(&name, "the octree is of another version")
-                .with_help("remove it; it is made again from the cloud")
-        })?;
-        Ok(Self { path: path.to_owned(), name, reader, fields })
-    }
-
-    /// The octree beside a cloud, which is made if there is none of this cloud.
-    fn beside(
-        path: &Path,
-        name: &str,
-        options: &PointOptions,
-        memory: u64,
-        progress: &Progress,
-        tell: &dyn Fn(&str),
-    ) -> Result<TreeReader<File>, InputError> {
-        let cannot_read = |error: std::io::Error| input::cannot_read(name, &error);
-        let fingerprint = make::fingerprint(path, options.drop_invalid).map_err(cannot_read)?;
-        let tree = make::path_of(path);
-        if let Some(reader) = make::open(&tree, fingerprint) {
-            return Ok(reader);
-        }
-        let why =
-            if tree.exists() { "is damaged or of another file, and is made anew" } else { "is made, once" };
-        tell(&format!("{} {why}", tree.display()));
-        make::make(path, options.drop_invalid, fingerprint, memory / 2, progress)?;
-        make::open(&tree, fingerprint).ok_or_else(|| {
-            InputError::of_file(tree.display().to_string(), "the octree that was just written cannot be read")
-                .with_help("is something else writing to this folder?")
-        })
-    }
-}
-
-/// Whether a file is an octree of ours.
-fn is_tree(path: &Path) -> bool {
-    let mut head = [0; TREE_MARK.len()];
-    File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && &head == TREE_MARK
 }

@@ -134,6 +134,10 @@ impl Columns {
         columns
     }
 
+    pub(super) fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
     pub(super) fn block(&self) -> CloudBlock<'_> {
         let has = |flag: u32| self.fields.is_some_and(|fields| fields.has(flag));
         CloudBlock {

@@ -1,5 +1,7 @@
 //! What the command-line tests share.
 
+#[cfg(feature = "las")]
+pub(crate) mod copc;
 pub(crate) mod square;
 
 use assert_cmd::Command;
