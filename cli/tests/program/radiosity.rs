@@ -227,25 +227,24 @@ fn importance_spends_links_where_the_camera_sees_their_light() {
 
 #[test]
 fn importance_says_where_it_gains_nothing() {
-    let folder = from_the_dark_room();
-    let warning = |line: &[&str]| {
-        let output = folder.command(line).output().expect("it runs");
+    let folder = corner();
+    let warning = |patch: &str| {
+        let line = ["radiosity", "room.toml", "--importance", "-o", "room.json", "--patch", patch];
+        let output = folder.command(&line).output().expect("it runs");
         assert!(output.status.success(), "{output:?}");
         String::from_utf8_lossy(&output.stderr).into_owned()
     };
-    let bake =
-        ["radiosity", "rooms.toml", "--importance", "-o", "rooms.json", "--tolerance", "0.1", "--patch"];
-    let coarse = warning(&[&bake[..], &["3"]].concat());
+    let coarse = warning("2");
     assert!(coarse.contains("warning") && coarse.contains("--importance saves nothing"), "{coarse}");
-    let fine = warning(&[&bake[..], &["0.5"]].concat());
+    let fine = warning("0.2");
     assert!(!fine.contains("--importance"), "{fine}");
     folder.fails(
-        &["radiosity", "rooms.toml", "--importance", "--links", "rays"],
+        &["radiosity", "room.toml", "--importance", "--links", "rays"],
         2,
         &["--importance", "groups"],
     );
     folder.fails(
-        &["radiosity", "rooms.toml", "--importance", "--links", "full"],
+        &["radiosity", "room.toml", "--importance", "--links", "full"],
         2,
         &["--importance", "groups"],
     );
