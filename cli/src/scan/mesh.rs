@@ -51,7 +51,7 @@ impl LoadedMesh {
     }
 
     pub(super) fn into_vertices(self, spacing: Option<f64>) -> LoadedScan {
-        LoadedScan { positions: self.positions, spacing, ..LoadedScan::default() }
+        LoadedScan { positions: self.positions, name: self.name, spacing, ..LoadedScan::default() }
     }
 
     /// The vertices that triangles use, as often as they do.
