@@ -64,6 +64,14 @@ impl SceneOptions {
         self
     }
 
+    /// What suits links by rays: patches of this size, a quarter of it at the edges of shadows of lamps, and long surfaces as they are.
+    ///
+    /// Dabrovic's Sponza (`studies -- radiosity buildings`) errs by 8.5 % where patches at edges of shadows are as large as others, and by 5.6 % so.
+    #[must_use]
+    pub const fn for_rays(patch: f64) -> Self {
+        Self::DEFAULT.with_squarer(false).with_patch(patch).with_smallest_patch(0.25 * patch)
+    }
+
     /// A hierarchy of links with this tolerance, or the full matrix.
     #[must_use]
     pub const fn with_tolerance(mut self, tolerance: Option<f64>) -> Self {

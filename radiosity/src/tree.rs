@@ -162,6 +162,12 @@ impl Tree {
         true
     }
 
+    /// Makes leaves of divided elements whose edges are no longer than `size`, or whose area is at most `area`.
+    pub(crate) fn merge(&mut self, size: f64, area: f64) {
+        let is_fine = |e: &&mut Element| e.size <= size || e.polygon.area() <= area;
+        self.elements.iter_mut().filter(is_fine).for_each(|element| element.first_child = 0);
+    }
+
     /// Calls `f` with the leaves below an element, in order.
     pub(crate) fn leaves_below(&self, id: ElementId, f: &mut impl FnMut(ElementId)) {
         let element = &self.elements[id as usize];

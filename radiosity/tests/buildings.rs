@@ -80,6 +80,37 @@ fn vertices_of_a_cornell_box_are_lit_as_by_paths() {
     assert!(count > 50 && error < 0.05, "{error} of the mean over {count} triangles");
 }
 
+/// A floor in the sun, half of it in the shadow of a roof, and a wall beside it that sees the edge of the shadow from near by.
+fn beside_the_edge_of_a_shadow(options: &SceneOptions) -> (f64, usize) {
+    let quad = |corners: [[f64; 3]; 4]| Surface::new(&corners.map(DVec3::from_array), [0.7; 3]);
+    let surfaces = [
+        quad([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [0.0, 4.0, 0.0]]),
+        quad([[0.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 4.0, 4.0], [0.0, 0.0, 4.0]]),
+        quad([[0.0, 1.7, 4.0], [0.0, 5.0, 4.0], [4.0, 5.0, 4.0], [4.0, 1.7, 4.0]]),
+    ];
+    let sun = |_: DVec3, n: DVec3| [n.z.max(0.0); 3];
+    let lamps = [Lamp::Directional { direction: -DVec3::Z, irradiance: &sun, shadow: true }];
+    let mut scene = Scene::new(&surfaces, options).expect("surfaces are sound");
+    let direct = scene.direct(&lamps).expect("the lamp is sound");
+    let rays = RayOptions::DEFAULT.with_most_rays(1 << 14);
+    let transport = scene.transport_by_rays(&direct, &rays, &|_| ()).expect("options are sound");
+    let solution = transport.solve(&SolveOptions::DEFAULT.with_tolerance(1e-6)).expect("light comes to rest");
+    let light = solution.irradiance(dvec3(1e-5, 1.8, 0.25), DVec3::X).expect("the point is finite");
+    (mean(light), solution.bake().vertices.len())
+}
+
+/// With patches as large as elsewhere, what is bright and what is dark are taken together at the edge of a shadow. Vertices for drawing need no such edge.
+#[test]
+fn light_beside_the_edge_of_a_shadow_is_right_without_more_vertices() {
+    let fine = SceneOptions::for_rays(1.0).with_smallest_patch(1.0 / 32.0);
+    let (truth, _) = beside_the_edge_of_a_shadow(&fine);
+    let (light, vertices) = beside_the_edge_of_a_shadow(&SceneOptions::for_rays(1.0));
+    let (coarse, same) = beside_the_edge_of_a_shadow(&SceneOptions::for_rays(1.0).with_smallest_patch(1.0));
+    assert_eq!(vertices, same);
+    assert!((light / truth - 1.0).abs() < 0.1, "{light} for {truth}");
+    assert!((coarse / truth - 1.0).abs() > 0.2, "{coarse} for {truth}");
+}
+
 #[test]
 fn another_material_is_solved_for_with_the_same_links() {
     let mut transport = by_rays(&cornell(), 0.2, &RayOptions::DEFAULT);

@@ -159,7 +159,7 @@ fn by_rays(
     let [lit, linked, solved] = OF_RAYS;
     let told = Told { monitor, units: AtomicU64::new(0) };
     let patch = extent(surfaces) / options.patches_across;
-    let settings = SceneOptions::DEFAULT.with_squarer(false).with_patch(patch).with_smallest_patch(patch);
+    let settings = SceneOptions::for_rays(patch);
     let divide = || radiosity::Scene::new(&surfaces.surfaces, &settings);
     let (patches, direct) = directly_lit(scene, divide, &told, lit)?;
     let done = |share| told.reach([lit, linked], share);

@@ -30,6 +30,8 @@ const UNEVEN: f64 = 0.18;
 /// A vertex counts as covered by another surface if the distance from which its light comes is below this share of the size of its patches: in a
 /// corner of three walls it is more, since rays start inward of it.
 const COVERED: f64 = 0.01;
+/// The size of a patch is at least this share of its longest edge: light changes along long, narrow ones, too.
+const LENGTH: f64 = 0.5;
 /// The size of a patch is small if it is below this share of that distance.
 const SMALL: f64 = 0.25;
 
@@ -52,11 +54,9 @@ impl RaySolution<'_> {
     /// Facets of a curved surface share vertices, whose normal is the mean of theirs.
     #[must_use]
     pub fn bake_with(&self, done: &(dyn Fn(f64) + Sync)) -> Baked {
-        let mut scene = self.transport.scene.clone();
+        let (mut scene, mut direct) = self.transport.for_vertices();
         let gatherer = Gatherer::new(self);
         let mut known: HashMap<Key, Gathered> = HashMap::new();
-        let mut direct: Vec<Rgb> = vec![[0.0; 3]; scene.tree.elements.len()];
-        self.transport.leaves.iter().zip(&self.transport.direct).for_each(|(&l, d)| direct[l as usize] = *d);
         for round in 0..=ROUNDS {
             let leaves = scene.tree.leaves();
             let mesh = Mesh::new(&scene, &leaves, Facets::Joined);
@@ -175,7 +175,8 @@ impl RaySolution<'_> {
             let element = &scene.tree.elements[*leaf as usize];
             let at = || ring.iter().map(|&place| &lights[place as usize]);
             let reach = at().fold(f64::INFINITY, |m, l| m.min(l.reach));
-            let size = element.polygon.area().sqrt();
+            // Of two thirds of a square's side for an equilateral triangle of that edge; long ones are divided for their length.
+            let size = element.polygon.area().sqrt().max(LENGTH * element.size);
             if size <= smallest || size < SMALL * reach {
                 return false;
             }

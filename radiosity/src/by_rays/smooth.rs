@@ -38,12 +38,13 @@ impl<'p> Places<'p> {
         gathered: &[Gathered],
         which: &[usize],
     ) -> Vec<(Rgb, f64)> {
-        parallel::map_heavy(which.len(), |k| {
+        parallel::map_with(which.len(), Vec::new, |near, k| {
             let i = which[k];
             let (at, reach) = (self.positions[i], gathered[i].reach());
             let (mut sum, mut weights, mut errors) = ([0.0; 3], 0.0, 0.0);
-            self.within(at, APART * reach, &mut |j| {
-                let other = &gathered[j];
+            self.within(at, APART * reach, near);
+            for &(_, j) in &*near {
+                let (j, other) = (j as usize, &gathered[j as usize]);
                 let turn = (1.0 - normals[i].dot(normals[j])).max(0.0).sqrt();
                 let apart = (at - self.positions[j]).length() / reach.min(other.reach()) + TURN * turn;
                 let weight = (1.0 - apart / APART).max(0.0) * f64::from(other.rays());
@@ -52,7 +53,7 @@ impl<'p> Places<'p> {
                     weights += weight;
                     errors += weight * weight * other.variance();
                 }
-            });
+            }
             let whole = weights.max(f64::MIN_POSITIVE);
             (sum.map(|s| s / whole), errors.sqrt() / whole)
         })
@@ -74,38 +75,39 @@ impl<'p> Places<'p> {
         self.build(2 * cell + 1, middle, to);
     }
 
-    /// Places nearer than a radius; nearer than less if these are more than [`MOST`].
-    fn within(&self, point: DVec3, mut radius: f64, visit: &mut impl FnMut(usize)) {
-        let mut count = 0;
-        self.visit((1, 0, self.order.len()), point, radius, &mut |_| count += 1);
-        if count > MOST {
+    /// Places nearer than a radius, with their squared distances; nearer than less if these are more than [`MOST`].
+    fn within(&self, point: DVec3, radius: f64, near: &mut Vec<(f64, u32)>) {
+        near.clear();
+        self.visit((1, 0, self.order.len()), point, radius * radius, near);
+        if near.len() > MOST {
             // On a surface they are as many as the square of the radius.
-            radius *= (MOST as f64 / count as f64).sqrt();
+            let within2 = radius * radius * MOST as f64 / near.len() as f64;
+            near.retain(|&(distance2, _)| distance2 <= within2);
         }
-        self.visit((1, 0, self.order.len()), point, radius, visit);
     }
 
     fn visit(
         &self,
         (cell, from, to): (usize, usize, usize),
         point: DVec3,
-        radius: f64,
-        visit: &mut impl FnMut(usize),
+        within2: f64,
+        near: &mut Vec<(f64, u32)>,
     ) {
         let (low, high) = self.cells[cell];
-        if from == to || (point - point.clamp(low, high)).length_squared() > radius * radius {
+        if from == to || (point - point.clamp(low, high)).length_squared() > within2 {
             return;
         }
         if 2 * cell >= self.cells.len() {
             for &i in &self.order[from..to] {
-                if (self.positions[i as usize] - point).length_squared() <= radius * radius {
-                    visit(i as usize);
+                let distance2 = (self.positions[i as usize] - point).length_squared();
+                if distance2 <= within2 {
+                    near.push((distance2, i));
                 }
             }
             return;
         }
         let middle = from + (to - from) / 2;
-        self.visit((2 * cell, from, middle), point, radius, visit);
-        self.visit((2 * cell + 1, middle, to), point, radius, visit);
+        self.visit((2 * cell, from, middle), point, within2, near);
+        self.visit((2 * cell + 1, middle, to), point, within2, near);
     }
 }

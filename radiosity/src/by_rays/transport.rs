@@ -132,6 +132,25 @@ impl RayTransport {
         Ok(())
     }
 
+    /// The scene as vertices see it, and the direct light of each of its elements that is a leaf: patches that were divided at shadow edges are whole again, since what other surfaces give
+    /// has no edge there.
+    pub(crate) fn for_vertices(&self) -> (Scene, Vec<Rgb>) {
+        let mut of_element = vec![[0.0; 3]; self.scene.tree.elements.len()];
+        self.leaves.iter().zip(&self.direct).for_each(|(&leaf, light)| of_element[leaf as usize] = *light);
+        let mut scene = self.scene.clone();
+        let size = scene.options.patch * scene.scale;
+        scene.tree.merge(size, scene.options.sliver(size));
+        let mut direct = of_element.clone();
+        for whole in scene.tree.leaves() {
+            let area = |id: ElementId| self.scene.tree.elements[id as usize].polygon.area();
+            let mut sum = [0.0; 3];
+            let mut add_part = |part: ElementId| sum = add(sum, area(part), of_element[part as usize]);
+            self.scene.tree.leaves_below(whole, &mut add_part);
+            direct[whole as usize] = sum.map(|s| s / area(whole));
+        }
+        (scene, direct)
+    }
+
     fn light_by_emitters(&mut self) {
         self.emitters = Emitters::new(&self.scene);
         self.emitted = parallel::map_heavy(self.leaves.len(), |i| {

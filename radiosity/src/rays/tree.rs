@@ -169,6 +169,9 @@ impl RayTree {
         let apart = |d: f64| if d.abs() < 1e-20 { 1e-20_f64.copysign(d) } else { d };
         let inverse =
             DVec3::new(apart(direction.x), apart(direction.y), apart(direction.z)).recip().as_vec3();
+        // Along an axis that the ray goes down, boxes are entered at their upper side.
+        let falls = inverse.cmplt(Vec3::ZERO);
+        let falls = [falls.test(0), falls.test(1), falls.test(2)];
         let mut stack = [(0_u32, 0.0_f32); STACK];
         let mut depth = usize::from(!self.nodes.is_empty());
         while depth > 0 {
@@ -189,12 +192,10 @@ impl RayTree {
             let node = &self.nodes[child as usize];
             let (mut enter, mut leave) = (Vec4::ZERO, Vec4::splat(end.min(1e30) as f32 * 1.000_001));
             for axis in 0..3 {
-                let (a, b) = (
-                    (node.low[axis] - from[axis]) * inverse[axis],
-                    (node.high[axis] - from[axis]) * inverse[axis],
-                );
-                enter = enter.max(a.min(b));
-                leave = leave.min(a.max(b));
+                let (low, high) = (&node.low[axis], &node.high[axis]);
+                let (first, last) = if falls[axis] { (high, low) } else { (low, high) };
+                enter = enter.max((*first - from[axis]) * inverse[axis]);
+                leave = leave.min((*last - from[axis]) * inverse[axis]);
             }
             let (enter, meets) = (enter.to_array(), enter.cmple(leave).bitmask());
             let start = depth;

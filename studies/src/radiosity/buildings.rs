@@ -68,7 +68,7 @@ pub(crate) fn bake(
     let start = ProcessTime::now();
     let tell = |what: &str| eprintln!("    {:6.1} s {what}", start.elapsed().as_secs_f64());
     let patch = size_of(surfaces) / across;
-    let options = SceneOptions::DEFAULT.with_squarer(false).with_patch(patch).with_smallest_patch(patch);
+    let options = SceneOptions::for_rays(patch);
     let mut scene = Scene::new(surfaces, &options)?;
     tell("divided");
     let direct = scene.direct(lamps)?;

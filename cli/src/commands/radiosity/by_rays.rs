@@ -43,12 +43,7 @@ pub(super) fn trial(bake: &Bake<'_>, progress: &Progress) -> Result<usize, CliEr
 fn link(bake: &Bake<'_>, progress: &Progress) -> Result<RayTransport, CliError> {
     let stats = &bake.report.stats;
     let patch = bake.options.patch.unwrap_or_else(|| bake.extent() / PATCHES_ACROSS);
-    let settings = SceneOptions::DEFAULT
-        .with_squarer(false)
-        .with_patch(patch)
-        // Shadow edges are not followed: sources are accurate enough without.
-        .with_smallest_patch(patch)
-        .with_max_elements(bake.most_elements());
+    let settings = SceneOptions::for_rays(patch).with_max_elements(bake.most_elements());
     let divided = || radiosity::Scene::new(&bake.surfaces.surfaces, &settings);
     let mut scene = stats.stage("divide", divided).map_err(|e| bake.refused(&e))?;
     let lamps = Lamps::new(bake.scene);
