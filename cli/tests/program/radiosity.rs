@@ -273,3 +273,30 @@ fn ctrl_c_ends_a_bake_while_it_is_linking() {
     assert_eq!(bake.wait().expect("it ends").code(), Some(130));
     assert_eq!(folder.names(), ["scene.toml", "triangle.obj"], "nothing half written is left");
 }
+
+#[test]
+fn groups_of_many_surfaces_come_with_a_warning() {
+    let folder = Folder::new();
+    // A dome: no two of its triangles see each other.
+    let mut mesh = String::new();
+    let count = 36;
+    for i in 0..=count * count + 2 * count {
+        let (x, z) = (f64::from(i % (count + 1)) - 18.0, f64::from(i / (count + 1)) - 18.0);
+        mesh += &format!("v {x} {} {z}\n", -0.01 * (x * x + z * z));
+    }
+    for i in 0..count * count {
+        let a = i / count * (count + 1) + i % count + 1;
+        let (b, c, d) = (a + 1, a + count + 1, a + count + 2);
+        mesh += &format!("f {a} {c} {b}\nf {b} {c} {d}\n");
+    }
+    folder.write("dome.obj", mesh);
+    let said = |links: &str| {
+        let line = ["radiosity", "dome.obj", "--patch", "100", "--links", links, "-o", "dome.json"];
+        let output = folder.command(&line).output().expect("the command runs");
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stderr).expect("text")
+    };
+    let message = said("hierarchical");
+    assert!(message.contains("pairs of 2592 surfaces"), "{message}");
+    assert!(!said("rays").contains("pairs of"));
+}

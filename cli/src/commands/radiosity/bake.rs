@@ -164,6 +164,7 @@ impl Bake<'_> {
         let Self { options, report, .. } = self;
         progress.begin("radiosity", PROGRESS_STEPS);
         let stats = &report.stats;
+        self.warn_of_pairs();
         let mut patches = stats.stage("divide", || self.divided())?;
         let lamps = Lamps::new(self.scene);
         let done = |share| progress.reach(LIT * share);
@@ -203,6 +204,17 @@ impl Bake<'_> {
             "--importance is about links of groups, for which each pair of {count} surfaces is looked at: leave it out, or add --links hierarchical and wait"
         );
         Err(CliError::Usage(message))
+    }
+
+    /// Groups are of patches of one surface. Where two balls of 1152 triangles stand in a room, shadows of hundreds of triangles are cut for each of many pairs.
+    fn warn_of_pairs(&self) {
+        let count = self.surfaces.surfaces.len();
+        if count > MOST_PAIRED {
+            let pairs = count * (count - 1) / 2;
+            self.report.warn(&format!(
+                "each of {pairs} pairs of {count} surfaces is looked at, which may take from minutes to hours: --links rays takes seconds"
+            ));
+        }
     }
 
     /// Links between whole surfaces cannot be coarser: finding the importance takes as long as they do, and saves none.
