@@ -169,15 +169,14 @@ fn lighting(report: &mut Report) -> Result<(), Fault> {
 
 /// Why goals are missed, of those that are, and what was tried.
 const LIMITS: &str = "What limits those that are missed, where they are:\n\n\
-     * *Dark face, grid of 432*: the lattice is what limits it, not the number. A grid of 12 × 6 × 6 has its nearest probes some 0.3 to 0.6 from the wall whatever light does there. \
-       Tried: fitted (10.7 %, was 12.0), probes that do not see walls (10.2), 192 chosen and fitted (6.5), 192 chosen alone (6.0), that is, less than half as many where they are needed.\n\
-     * *Free space, 86 probes*: they err less than the grid did when this was asked for (7 %), but the grid gained as much by what probes see (3.2 %, fitted 3.0). 96 chosen and fitted: \
-       4.3, 192: 2.8. Placement weighs relative errors, which costs a tenth of what is measured here and halves that of the dark face.\n\
-     * *Dark room*: harmonics of order 2 lose 2.9 % there themselves, and what the doorway lights has an edge that no probe within some decimetres of it resolves: 86 probes 11.8, 96 10.3, 192 9.6; as they saw, without fitting, \
+     * *Dark face, grid of 432*: where probes are, not how many. Tried: as they saw 12.0 %, fitted 10.7, without knowing what they see 10.2; 192 that are chosen 6.0, fitted, too, 6.5: \
+       less than half as many, where light on surfaces changes.\n\
+     * *Free space, 86 probes*: they err less than the grid did when this was asked for (7 %), but knowing what probes see has brought the grid to 3.2 % since, fitted 3.0. 86 chosen and fitted: 4.5, 96: \
+       4.3, 192: 2.8. Probes are chosen by relative errors on surfaces, too, which costs a tenth here and halves the error of the dark face.\n\
+     * *Dark room*: interpolation limits it, since probes at the places themselves err by 3.4 % there. Chosen and fitted: 86 probes 11.8, 96 10.3, 192 9.6; as they saw \
        14.4, 13.4 and 10.8; without knowing what they see, 25 to 44.\n\
-     * *Objects and distances*: 13 or more maps are asked for each object where it were four coefficients of a cell before surfaces were lit from their own side. Of the time, 41 to 57 % are look-ups \
-       in maps, whose 2.5 MB for 432 probes do not stay in the nearest caches, a fifth the search for the nearest. Lists of what is near each part of space (a quarter of the time of a tree alone) and \
-       answers without planes where nothing is near are in.\n";
+     * *Objects and distances*: about 13 maps are asked for each object, to be continuous for any number of probes, where there were the four of a cell. By a sampling profiler, 41 to 57 % of the time are look-ups \
+       in maps, which take 2.5 MB for 432 probes, and a fifth is the search for the nearest.\n";
 
 /// What is written in the end.
 #[derive(Default)]
