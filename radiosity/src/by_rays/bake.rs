@@ -56,7 +56,7 @@ impl RaySolution<'_> {
     pub fn bake_with(&self, done: &(dyn Fn(f64) + Sync)) -> Baked {
         let (mut scene, mut direct) = self.transport.for_vertices();
         let gatherer = Gatherer::new(self);
-        let mut known: HashMap<Key, Gathered> = HashMap::new();
+        let mut known = Known::default();
         for round in 0..=ROUNDS {
             let leaves = scene.tree.leaves();
             let mesh = Mesh::new(&scene, &leaves, Facets::Joined);
@@ -96,7 +96,7 @@ impl RaySolution<'_> {
         scene: &Scene,
         mesh: &Mesh<'_>,
         gatherer: &Gatherer<'_>,
-        known: &mut HashMap<Key, Gathered>,
+        known: &mut Known,
         done: &dyn Fn(f64),
     ) -> Vec<Light> {
         let keys: Vec<Key> = mesh.places.iter().map(|p| key(mesh, p)).collect();
@@ -104,8 +104,8 @@ impl RaySolution<'_> {
             (0..keys.len()).map(|i| start(scene, mesh, &mesh.places[i], &keys[i])).collect();
         let positions: Vec<DVec3> = mesh.places.iter().map(|p| p.position).collect();
         let normals: Vec<DVec3> = starts.iter().map(|s| s.1).collect();
-        let mut gathered: Vec<Gathered> =
-            keys.iter().map(|k| known.get(k).copied().unwrap_or_default()).collect();
+        let mut gathered: Vec<Gathered> = keys.iter().map(|k| known.of(k)).collect();
+        *known = Known::default();
         let mut open: Vec<(usize, Plan, f64)> = (0..keys.len())
             .filter(|&i| gathered[i].rays() == 0)
             .map(|i| (i, parts::even(FIRST), 0.0))
@@ -140,12 +140,14 @@ impl RaySolution<'_> {
             });
             open = next.collect();
         }
-        known.extend(keys.into_iter().zip(gathered.iter().copied()));
         let all: Vec<usize> = (0..gathered.len()).collect();
         let lights = places.smooth(&normals, &gathered, &all);
         let light =
             |((light, error), own): ((Rgb, f64), &Gathered)| Light { light, error, reach: own.reach() };
-        lights.into_iter().zip(&gathered).map(light).collect()
+        let lights = lights.into_iter().zip(&gathered).map(light).collect();
+        known.places = keys.into_iter().zip(0..).collect();
+        known.gathered = gathered;
+        lights
     }
 
     /// Relative error of the light at a place: larger where all patches around it are details.
@@ -186,6 +188,19 @@ impl RaySolution<'_> {
         };
         let room = scene.options.max_elements.saturating_sub(scene.tree.elements.len()) / 4;
         mesh.rings.iter().filter(|r| is_uneven(r)).map(|r| r.0).take(room).collect()
+    }
+}
+
+/// What the places of the last round have gathered. It is large, and there is one of it.
+#[derive(Default)]
+struct Known {
+    places: HashMap<Key, u32>,
+    gathered: Vec<Gathered>,
+}
+
+impl Known {
+    fn of(&self, key: &Key) -> Gathered {
+        self.places.get(key).map_or_else(Gathered::default, |&place| self.gathered[place as usize])
     }
 }
 

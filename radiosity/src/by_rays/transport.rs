@@ -140,7 +140,7 @@ impl RayTransport {
         let mut scene = self.scene.clone();
         let size = scene.options.patch * scene.scale;
         scene.tree.merge(size, scene.options.sliver(size));
-        let mut direct = of_element.clone();
+        let mut direct = vec![[0.0; 3]; of_element.len()];
         for whole in scene.tree.leaves() {
             let area = |id: ElementId| self.scene.tree.elements[id as usize].polygon.area();
             let mut sum = [0.0; 3];
