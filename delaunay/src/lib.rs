@@ -55,9 +55,10 @@
 //! along it.
 //!
 //! [`Locator`] computes in `f64`: weights sum to 1 within 1e-14 and reproduce linear functions up to rounding. Known to
-//! be weak: where a cell is flat up to rounding, as between points of a tilted plane with rounded coordinates, its
-//! barycentric coordinates have no correct digits. Weights there still lie in [0, 1] and sum to 1, but may be those of
-//! another position in the cell. [`circumcentre`] states its bound.
+//! be weak: where a cell is flat up to rounding, its barycentric coordinates have no correct digits. Weights there still
+//! lie in [0, 1] and sum to 1, but may be those of another position in the cell. Rounded points of a tilted plane or line
+//! have no other cells; [`Partition::up_to_rounding`] gives them triangles or segments. [`circumcentre`] states its
+//! bound.
 //!
 //! # Cost
 //! About linear for points spread evenly in space, and for grids; in the worst case, points on a curve, the number of
@@ -90,6 +91,7 @@ mod cells;
 mod circumcentre;
 mod error;
 mod facets;
+mod flat;
 mod graph;
 mod hull;
 #[cfg(feature = "invariants")]
