@@ -3,13 +3,14 @@
 //! The nearest point of a convex body is unique and moves continuously with the position. So weights beyond the hull,
 //! which are those of that point, are continuous.
 
+use crate::simplex::FLAT;
 use glam::DVec3;
 
 /// Sides of cells beyond which there is no cell: triangles, or segments `[a, b, b]`, or ends `[a, a, a]`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hull {
     facets: Vec<[u32; 3]>,
-    /// Normals of any length that point outward.
+    /// Normals of any length that point outward; 0 where rounding hides which way that is.
     outward: Vec<DVec3>,
     /// The facets at point i are `around[first[i]..first[i + 1]]`.
     around: Vec<u32>,
@@ -75,10 +76,9 @@ impl Hull {
             for corner in best.corners {
                 let (from, to) = (self.first[corner as usize], self.first[corner as usize + 1]);
                 for &facet in &self.around[from as usize..to as usize] {
-                    let faces_p = self.outward[facet as usize]
-                        .dot(p - points[self.facets[facet as usize][0] as usize])
-                        > 0.0;
-                    if faces_p {
+                    let away = p - points[self.facets[facet as usize][0] as usize];
+                    let outward = self.outward[facet as usize];
+                    if outward == DVec3::ZERO || outward.dot(away) > 0.0 {
                         let other = self.on_facet(points, facet, p);
                         if other.is_nearer_than(&best, p) {
                             (best, is_nearest) = (other, false);
@@ -91,6 +91,22 @@ impl Hull {
             }
         }
         best
+    }
+
+    pub(crate) fn facet_count(&self) -> u32 {
+        self.facets.len() as u32
+    }
+
+    /// Which of some facets is nearest to `p`.
+    pub(crate) fn nearest_of(
+        &self,
+        points: &[DVec3],
+        facets: impl IntoIterator<Item = u32>,
+        p: DVec3,
+    ) -> Option<u32> {
+        let all = facets.into_iter().map(|facet| (facet, self.on_facet(points, facet, p)));
+        all.reduce(|best, other| if other.1.is_nearer_than(&best.1, p) { other } else { best })
+            .map(|best| best.0)
     }
 
     fn on_facet(&self, points: &[DVec3], facet: u32, p: DVec3) -> Nearest {
@@ -110,9 +126,27 @@ fn on_segment(a: DVec3, b: DVec3, p: DVec3) -> [f64; 3] {
     [1.0 - t, t, 0.0]
 }
 
+/// Weights of the point that is nearest to `p` of a triangle that is a line up to rounding.
+fn on_longest_side([a, b, c]: [DVec3; 3], p: DVec3) -> [f64; 3] {
+    let [bc, ca, ab] = [c - b, a - c, b - a].map(DVec3::length_squared);
+    if ab >= bc && ab >= ca {
+        on_segment(a, b, p)
+    } else if bc >= ca {
+        let [u, v, _] = on_segment(b, c, p);
+        [0.0, u, v]
+    } else {
+        let [u, v, _] = on_segment(c, a, p);
+        [v, 0.0, u]
+    }
+}
+
 /// Weights of the point of a triangle that is nearest to `p` (Ericson, *Real-time collision detection*, §5.1.5).
 fn on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> [f64; 3] {
     let (ab, ac) = (b - a, c - a);
+    let longest2 = ab.length_squared().max(ac.length_squared()).max((c - b).length_squared());
+    if ab.cross(ac).length() <= FLAT * longest2 {
+        return on_longest_side([a, b, c], p);
+    }
     let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
     let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
     let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));

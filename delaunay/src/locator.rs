@@ -3,7 +3,8 @@
 use crate::blend::Blend;
 use crate::hull::Hull;
 use crate::scale::power_of_two_to_one;
-use crate::simplex::{HULL, Simplex};
+use crate::simplex::{FLAT, HULL, Simplex};
+use crate::walk::End;
 use crate::{DelaunayError, OUTSIDE, Partition, parallel};
 use glam::{DVec3, UVec3, dvec3, uvec3};
 
@@ -20,7 +21,7 @@ impl Hint {
 ///
 /// Positions outside of the points' hull get the weights of the nearest point on it: weights are continuous everywhere.
 /// The walk from cell to cell is in `f64`: within 1e-12 of a side it may end in either of the cells beside it, whose
-/// weights agree there (but for cells that are flat up to rounding, see the crate's documentation).
+/// weights agree there. It passes cells that are flat up to rounding, and ends in one beside them.
 ///
 /// ```
 /// use glam::dvec3;
@@ -37,10 +38,10 @@ impl Hint {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Locator {
-    cells: Vec<Simplex>,
+    pub(crate) cells: Vec<Simplex>,
     /// Positions, moved and resized to about a unit box about 0.
-    points: Vec<DVec3>,
-    hull: Hull,
+    pub(crate) points: Vec<DVec3>,
+    pub(crate) hull: Hull,
     centre: DVec3,
     scale: f64,
     starts: Starts,
@@ -48,17 +49,8 @@ pub struct Locator {
     only: u32,
 }
 
-/// A barycentric coordinate this far below 0 is rounding: the position counts as inside.
-const ROUNDING: f64 = 1e-12;
-
 /// Positions farther from the middle than this many sizes of the hull are moved to that distance.
 const FAR: f64 = 1e60;
-
-/// How a walk ended.
-enum End {
-    Inside { cell: u32, coordinates: [f64; 4] },
-    Outside { cell: u32, facet: u32 },
-}
 
 impl Locator {
     /// For points and the cells between them, as [`Delaunay::partition`](crate::Delaunay::partition) gives them.
@@ -172,29 +164,6 @@ impl Locator {
         }
     }
 
-    /// Walks from cell to cell through the side that `p` is farthest beyond.
-    ///
-    /// Among Delaunay cells such a walk never visits a cell twice. If rounding makes it do so, it is stopped after as
-    /// many steps as there are cells, and the weights are clamped.
-    fn walk(&self, p: DVec3, start: u32) -> End {
-        let mut cell = if (start as usize) < self.cells.len() { start } else { 0 };
-        for _ in 0..=self.cells.len() {
-            let simplex = &self.cells[cell as usize];
-            let coordinates = simplex.coordinates(p);
-            let (side, least) = least(coordinates);
-            // NaN where a cell is flat to the last digit: the walk ends there.
-            if least >= -ROUNDING || least.is_nan() {
-                return End::Inside { cell, coordinates };
-            }
-            let next = simplex.neighbours[side];
-            if next & HULL != 0 {
-                return End::Outside { cell, facet: next & !HULL };
-            }
-            cell = next;
-        }
-        End::Inside { cell, coordinates: self.cells[cell as usize].coordinates(p) }
-    }
-
     fn local(&self, p: DVec3) -> Result<DVec3, DelaunayError> {
         if !p.is_finite() {
             return Err(DelaunayError::QueryNotFinite { index: 0 });
@@ -208,14 +177,6 @@ impl Locator {
         let half = p * 0.5 - self.centre * 0.5;
         Ok(half * power_of_two_to_one(half.abs().max_element()) * FAR)
     }
-}
-
-/// The smallest of four numbers and where it is.
-#[inline]
-fn least(c: [f64; 4]) -> (usize, f64) {
-    let (i, a) = if c[1] < c[0] { (1, c[1]) } else { (0, c[0]) };
-    let (j, b) = if c[3] < c[2] { (3, c[3]) } else { (2, c[2]) };
-    if b < a { (j, b) } else { (i, a) }
 }
 
 /// Collects the facets of the hull.
@@ -236,7 +197,11 @@ impl Facets<'_> {
             _ => (b - a).cross(c - a),
         };
         self.corners.push(corners);
-        self.outward.push(if outward.dot(inward) > 0.0 { -outward } else { outward });
+        let height = outward.dot(inward);
+        let reach = (b - a).length().max((c - a).length()).max(inward.length());
+        // Which side of a flat cell is the inner one, only exact arithmetic would tell.
+        let is_flat = height.abs() <= FLAT * outward.length() * reach;
+        self.outward.push(if is_flat { DVec3::ZERO } else { outward * -height.signum() });
         (self.corners.len() as u32 - 1) | HULL
     }
 }

@@ -5,6 +5,9 @@ use glam::DVec3;
 /// Bit that marks a neighbour's number as that of a facet of the hull.
 pub(crate) const HULL: u32 = 1 << 31;
 
+/// Cells lower than this share of their longest edge are flat: their barycentric coordinates are rounding for the most part.
+pub(crate) const FLAT: f64 = 1e-9;
+
 /// A tetrahedron, or a triangle or segment, whose unused corners have weight 0 everywhere.
 ///
 /// 128 bytes, two cache lines: a step of a walk touches nothing else.
@@ -13,7 +16,7 @@ pub(crate) const HULL: u32 = 1 << 31;
 pub(crate) struct Simplex {
     /// The last corner.
     origin: DVec3,
-    /// Barycentric coordinate k is `rows[k] · (p − origin)`; the last is what is left of 1.
+    /// Barycentric coordinate k is `rows[k] · (p − origin)`; the last is what is left of 1. All NaN in a flat cell.
     rows: [DVec3; 3],
     /// What lies beyond the side opposite each corner: a cell, or with [`HULL`] set a facet.
     pub(crate) neighbours: [u32; 4],
@@ -27,7 +30,8 @@ impl Simplex {
         let origin = points[corners[3] as usize];
         let ([a, b, c], unscale) = edges([0, 1, 2].map(|k| points[corners[k] as usize] - origin));
         let volume = a.dot(b.cross(c));
-        let rows = [b.cross(c), c.cross(a), a.cross(b)].map(|r| r / volume * unscale);
+        let areas = [b.cross(c), c.cross(a), a.cross(b)];
+        let rows = unless_flat(areas.map(|area| area / volume), areas, unscale);
         Self { origin, rows, neighbours, corners }
     }
 
@@ -38,8 +42,13 @@ impl Simplex {
             edges([points[i as usize] - origin, points[j as usize] - origin, DVec3::ZERO]);
         let normal = a.cross(b);
         let (across_a, across_b) = (b.cross(normal), normal.cross(a));
-        let rows = [across_a / a.dot(across_a) * unscale, across_b / b.dot(across_b) * unscale, DVec3::ZERO];
-        Self { origin, rows, neighbours: [ni, nj, HULL, nk], corners: [i, j, i, k] }
+        let rows = [across_a / a.dot(across_a), across_b / b.dot(across_b), DVec3::ZERO];
+        Self {
+            origin,
+            rows: unless_flat(rows, [normal; 3], unscale),
+            neighbours: [ni, nj, HULL, nk],
+            corners: [i, j, i, k],
+        }
     }
 
     /// Of two corners; positions off its line count as their projections.
@@ -50,6 +59,19 @@ impl Simplex {
         Self { origin, rows, neighbours: [ni, HULL, HULL, nj], corners: [i, i, i, j] }
     }
 
+    /// Whether all its coordinates are NaN.
+    #[inline]
+    pub(crate) fn is_flat(&self) -> bool {
+        self.rows[0].x.is_nan()
+    }
+
+    /// What lies beyond each of its sides.
+    pub(crate) fn beyond(&self) -> impl Iterator<Item = u32> {
+        // Corners of triangles and segments that repeat the first are opposite no side.
+        let has_side = |k: &usize| *k == 0 || self.corners[*k] != self.corners[0];
+        (0..4).filter(has_side).map(|k| self.neighbours[k])
+    }
+
     /// Barycentric coordinates; they sum to 1 and are all at least 0 inside.
     #[inline]
     pub(crate) fn coordinates(&self, p: DVec3) -> [f64; 4] {
@@ -57,6 +79,16 @@ impl Simplex {
         let [a, b, c] = self.rows.map(|r| r.dot(d));
         [a, b, c, 1.0 - (a + b + c)]
     }
+}
+
+/// Rows of a cell whose longest edge is about 1, for its true size; NaN if it is flat. `areas` are vectors as long as its sides are large.
+fn unless_flat(rows: [DVec3; 3], areas: [DVec3; 3], unscale: f64) -> [DVec3; 3] {
+    let with_last = |of: [DVec3; 3]| [of[0], of[1], of[2], of[0] + of[1] + of[2]];
+    // The inverse of a row's length is a height. Where a side is a line up to rounding, its direction, and so the height, is none.
+    let has_height = |row: DVec3| row.length_squared() * (FLAT * FLAT) < 1.0;
+    let has_area = |area: DVec3| area.length_squared() > FLAT * FLAT;
+    let is_sound = with_last(rows).into_iter().all(has_height) && with_last(areas).into_iter().all(has_area);
+    rows.map(|row| if is_sound { row * unscale } else { DVec3::NAN })
 }
 
 /// Edges resized by a power of two to about 1, so that products of three of them keep their digits, and that power.

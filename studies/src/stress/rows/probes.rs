@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3, Vec3, dvec3};
 use pointillist_delaunay::invariants::{queries, triangulation, weights};
-use pointillist_delaunay::{Delaunay, DelaunayError, Partition};
+use pointillist_delaunay::{Delaunay, DelaunayError};
 use pointillist_sh::invariants as sh_facts;
 use pointillist_shprobe::invariants as field_facts;
 use pointillist_shprobe::sh::{Sh, coefficient_count};
