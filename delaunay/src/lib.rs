@@ -102,6 +102,7 @@ mod scale;
 mod simplex;
 mod triangulation;
 mod verify;
+mod vertices;
 mod walk;
 mod wide;
 

@@ -1,11 +1,14 @@
 //! The walk from cell to cell towards a position.
 
 use crate::locator::Locator;
-use crate::simplex::{FLAT, HULL, Simplex};
+use crate::simplex::{HULL, Simplex};
 use glam::DVec3;
 
 /// A barycentric coordinate this far below 0 is rounding: the position counts as inside.
 const ROUNDING: f64 = 1e-12;
+
+/// The same, where all cells were looked at and none has the position inside by more than that.
+const NEAR: f64 = 1e-9;
 
 /// Flat cells that are passed at once.
 const MOST_FLAT: usize = 64;
@@ -93,7 +96,7 @@ impl Locator {
             Some((_, next)) => Beyond::Cell(next),
             None if flat.len() > MOST_FLAT => Beyond::End(self.search(p)),
             // From all around, `p` lies beyond these cells: it is before the hull that they are part of.
-            None => match self.hull.nearest_of(&self.points, facets, p) {
+            None => match self.hull.nearest_of(&self.vertices, facets, p) {
                 Some(facet) => Beyond::End(End::Outside { cell: from, facet }),
                 None => Beyond::End(self.search(p)),
             },
@@ -109,10 +112,10 @@ impl Locator {
         };
         let sound = self.cells.iter().enumerate().filter(|(_, simplex)| !simplex.is_flat());
         match sound.map(of).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))) {
-            Some((least, cell, coordinates)) if least >= -FLAT => End::Inside { cell, coordinates },
+            Some((least, cell, coordinates)) if least >= -NEAR => End::Inside { cell, coordinates },
             best => {
                 let facets = 0..self.hull.facet_count();
-                let facet = self.hull.nearest_of(&self.points, facets, p).unwrap_or(0);
+                let facet = self.hull.nearest_of(&self.vertices, facets, p).unwrap_or(0);
                 End::Outside { cell: best.map_or(0, |best| best.1), facet }
             }
         }

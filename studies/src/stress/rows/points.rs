@@ -28,9 +28,12 @@ fn view(scale: f64, shift: DVec3) -> View {
         .expect("an eye before its target")
 }
 
+/// How far points of [`scans`] are apart.
+const SPACING: f64 = 1.0 / 64.0;
+
 fn scans() -> [OwnedScan; 2] {
     let side = |towards: DVec3| {
-        let scan = OwnedScan::sphere(DVec3::ZERO, 1.0, 1.0 / 64.0, towards).jittered(DVec3::ONE / 512.0, 7);
+        let scan = OwnedScan::sphere(DVec3::ZERO, 1.0, SPACING, towards).jittered(DVec3::ONE / 512.0, 7);
         OwnedScan { spacing: None, ..scan.moved(on_lattice) }
     };
     [side(dvec3(0.5, 0.25, 1.0)), side(dvec3(-1.0, 0.5, 1.0))]
@@ -71,7 +74,7 @@ fn moved(rows: &mut Vec<Check>) {
         row(
             rows,
             format!("two scans of a sphere, moved by {name}"),
-            "the same colors within 1e-6",
+            "the same colors, to ten roundings of a coordinate over the points' spacing",
             move || {
                 let both = scanned(1.0, DVec3::ZERO).and_then(|here| Ok((here, scanned(1.0, shift)?)));
                 match both {
@@ -79,7 +82,7 @@ fn moved(rows: &mut Vec<Check>) {
                     Ok((here, there)) => {
                         let values = here.color().iter().flatten().zip(there.color().iter().flatten());
                         let off = values.fold(0.0, |m: f64, (a, b)| m.max(f64::from((a - b).abs())));
-                        Verdict::within("largest difference", off, 1e-6)
+                        Verdict::within("largest difference", off, 10.0 * f64::EPSILON * far / SPACING)
                     }
                 }
             },
