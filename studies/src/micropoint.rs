@@ -66,17 +66,23 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     Ok(foliage::run(out_dir)? && checker::run(out_dir)?)
 }
 
-/// A trial of a minute: pictures by the default rule alone, printed and not written.
-pub(crate) fn run_quick() -> Outcome {
-    println!("| scene | setting | RMSE | largest error | seconds |\n| --- | --- | ---: | ---: | ---: |");
+/// A trial of a minute: pictures by the default rule alone.
+pub(crate) fn run_quick(out_dir: &Path) -> Outcome {
+    let mut text = format!(
+        "# Pictures: a trial\n\n`studies -- micropoint quick` made this ({}).\n\n| scene | setting | RMSE | largest error | seconds |\n\
+         | --- | --- | ---: | ---: | ---: |\n",
+        provenance()
+    );
     for case in cases(QUICK_LINES) {
         let rows =
             on_one_thread(|| [1, 2, 4].map(|cells| our_row(&case, Occlusion::Correlated, true, cells)));
         for Row { scene, setting, rmse, largest, time, .. } in rows {
-            println!("| {scene} | {setting} | {rmse:.2e} | {largest:.2e} | {time} |");
+            let _ = writeln!(text, "| {scene} | {setting} | {rmse:.2e} | {largest:.2e} | {time} |");
         }
     }
-    print!("{}{}", growth::section(), bumps::section());
+    text += &(growth::section() + &bumps::section());
+    print!("{text}");
+    write(out_dir, "micropoint.md", &text)?;
     Ok(true)
 }
 

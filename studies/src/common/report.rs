@@ -1,7 +1,7 @@
 //! Tables, charts and the machine they were made on.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::data::SKIPPED;
 use super::kept::with_former;
@@ -11,6 +11,13 @@ use plotters::prelude::*;
 
 /// What a study tells its caller: whether everything was as it must be.
 pub(crate) type Outcome = Result<bool, Box<dyn std::error::Error + Send + Sync>>;
+
+/// Where trials write: their figures are not results.
+pub(crate) fn trial_folder() -> PathBuf {
+    let folder = std::env::temp_dir().join("pointillist-studies");
+    eprintln!("a trial; its tables go to {}", folder.display());
+    folder
+}
 
 /// One measurement of a study of time against error.
 #[derive(Clone, Debug)]

@@ -58,11 +58,9 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     measure(Effort::FULL, out_dir)
 }
 
-/// The same in some minutes, with fewer rays and runs, into the temporary folder.
-pub(crate) fn run_quick() -> Outcome {
-    let out_dir = std::env::temp_dir().join("pointillist-studies");
-    eprintln!("surfel: a trial; its tables go to {}", out_dir.display());
-    measure(Effort::QUICK, &out_dir)
+/// The same in a minute or two, with fewer rays and runs.
+pub(crate) fn run_quick(out_dir: &Path) -> Outcome {
+    measure(Effort::QUICK, out_dir)
 }
 
 fn measure(effort: Effort, out_dir: &Path) -> Outcome {
