@@ -14,8 +14,9 @@ use pointillist_shprobe::place;
 use pointillist_surfel as surfel;
 
 use crate::common::casters::hills;
+use crate::common::charts::chart_along;
 use crate::common::provenance::provenance;
-use crate::common::report::{Outcome, Row, chart_along, on_one_thread, write};
+use crate::common::report::{Outcome, Row, on_one_thread, write};
 use crate::common::scenes::{Sketch, lit_spheres, spheres};
 use crate::common::timing::Timing;
 

@@ -14,6 +14,7 @@ use glam::{DVec3, dvec3};
 use pointillist_micropoint::{MicropointOptions, Occlusion};
 use pointillist_render::Scene;
 
+use crate::common::charts::chart;
 use crate::common::closed_form;
 use crate::common::data;
 use crate::common::draw;
@@ -22,9 +23,7 @@ use crate::common::picture::Picture;
 use crate::common::point_sampling;
 use crate::common::provenance::provenance;
 use crate::common::ray_reference::Tree;
-use crate::common::report::{
-    Outcome, Row, chart, on_one_thread, scenes, table, time_ratio, write, write_csv,
-};
+use crate::common::report::{Outcome, Row, on_one_thread, scenes, table, time_ratio, write, write_csv};
 use crate::common::timing::{HOW, Timing, timed};
 
 /// Pixels on a side.

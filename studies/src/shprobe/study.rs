@@ -6,12 +6,11 @@ use std::time::Instant;
 
 use pointillist_shprobe::place;
 
+use crate::common::charts::{chart_along, chart_of};
 use crate::common::data;
 use crate::common::peers;
 use crate::common::provenance::provenance;
-use crate::common::report::{
-    Limit, Outcome, Row, chart_along, chart_of, trial_folder, verdict, write, write_csv,
-};
+use crate::common::report::{Limit, Outcome, Row, trial_folder, verdict, write, write_csv};
 use crate::common::timing::Timing;
 use crate::shprobe::bounces;
 use crate::shprobe::delaunay;

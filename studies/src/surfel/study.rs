@@ -6,9 +6,10 @@ use std::time::Instant;
 use glam::DVec3;
 use pointillist_surfel::{Cloud, Method, Points, Procedure, SampleOptions, SurfelError};
 
+use crate::common::charts::chart_of;
 use crate::common::data;
 use crate::common::picture_layers::PictureLayers;
-use crate::common::report::{Outcome, chart_of, write, write_csv};
+use crate::common::report::{Outcome, write, write_csv};
 use crate::common::timing::HOW;
 use crate::common::true_surface::Surface;
 use crate::surfel::coloured_cloud::ColouredCloud;
