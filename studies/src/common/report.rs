@@ -3,8 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::data::SKIPPED;
-use super::kept::with_former;
+use super::kept::{lacks_something, with_former};
 use super::timing::Timing;
 
 /// What a study tells its caller: whether everything was as it must be.
@@ -125,11 +124,11 @@ pub(crate) fn table(more: &[&str], rows: &[Row]) -> String {
     text
 }
 
-/// Writes a file of results. Sections that lack the large data keep what they said before.
+/// Writes a file of results. Sections that lack the large data or a peer keep what they said before.
 pub(crate) fn write(out_dir: &Path, file: &str, text: &str) -> std::io::Result<()> {
     std::fs::create_dir_all(out_dir)?;
     let path = out_dir.join(file);
-    if !text.contains(SKIPPED) {
+    if !lacks_something(text) {
         return std::fs::write(path, text);
     }
     let former = std::fs::read_to_string(&path).unwrap_or_default();
