@@ -3,6 +3,7 @@
 use super::ply_records::{Face, PlyFault, PlyRecords, Vertex};
 use super::{FileMesh, triangulate};
 use crate::coordinate::{LARGEST, is_usable};
+use crate::input;
 use crate::input_error::InputError;
 use ply_rs_bw::parser::ParseError;
 use ply_rs_bw::ply::{Encoding, Header};
@@ -14,6 +15,7 @@ use pointillist_render::NONE;
 ///
 /// Not a PLY, no vertices with x y z, an index out of range, a number that is not finite.
 pub fn read_ply(name: &str, bytes: &[u8]) -> Result<FileMesh, InputError> {
+    input::not_empty(name, bytes)?;
     let records = PlyRecords::read(bytes).map_err(|problem| match problem {
         PlyFault::Parse(error) => fault(name, bytes, &error),
         _ => InputError::of_file(name, problem.to_string()),
