@@ -115,7 +115,7 @@ fn vertices_that_are_not_finite_are_shown() {
 
 #[test]
 fn a_mesh_without_faces_is_refused() {
-    obj_error("", &["no faces"]);
+    obj_error("", &["the file is empty"]);
     obj_error("v 0 0 0\n", &["no faces"]);
 }
 
