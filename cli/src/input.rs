@@ -48,10 +48,26 @@ pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
     memory::read(path).map_err(|error| cannot_read(&path.display().to_string(), &error))
 }
 
+/// Refuses a file without any byte, of a kind that always has some.
+///
+/// # Errors
+/// It is empty.
+pub fn not_empty(name: &str, bytes: &[u8]) -> Result<(), InputError> {
+    if !bytes.is_empty() {
+        return Ok(());
+    }
+    let error = InputError::of_file(name, "the file is empty");
+    Err(error.with_help("what should have written it may have failed; get or write it again"))
+}
+
 /// A file that cannot be opened or read.
 pub fn cannot_read(name: &str, error: &std::io::Error) -> InputError {
-    InputError::of_file(name, format!("cannot be read: {error}"))
-        .with_help("check the path; it is taken from the folder you are in")
+    // JSON in the place of the name of a file.
+    let help = match name.starts_with(['{', '[']) {
+        true => "a file is named here; text goes in by standard input: echo '…' | pointillist COMMAND",
+        false => "check the path; it is taken from the folder you are in",
+    };
+    InputError::of_file(name, format!("cannot be read: {error}")).with_help(help)
 }
 
 /// What kind of file this is, as the end of a name in lower case: of standard input by its content.

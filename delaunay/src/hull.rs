@@ -3,13 +3,14 @@
 //! The nearest point of a convex body is unique and moves continuously with the position. So weights beyond the hull,
 //! which are those of that point, are continuous.
 
+use crate::vertices::Vertices;
 use glam::DVec3;
 
 /// Sides of cells beyond which there is no cell: triangles, or segments `[a, b, b]`, or ends `[a, a, a]`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hull {
     facets: Vec<[u32; 3]>,
-    /// Normals of any length that point outward.
+    /// Normals of any length that point outward; 0 where rounding hides which way that is.
     outward: Vec<DVec3>,
     /// The facets at point i are `around[first[i]..first[i + 1]]`.
     around: Vec<u32>,
@@ -67,19 +68,18 @@ impl Hull {
     ///
     /// Walks from facet to facet as long as a facet that shares a corner, and has `p` on its outer side, is nearer: on
     /// a convex body a facet without a nearer neighbour is the nearest of all.
-    pub(crate) fn nearest(&self, points: &[DVec3], start: u32, p: DVec3) -> Nearest {
-        let mut best = self.on_facet(points, start, p);
+    pub(crate) fn nearest(&self, vertices: &Vertices, start: u32, p: DVec3) -> Nearest {
+        let mut best = self.on_facet(vertices, start, p);
         // Distances fall with each step, so no facet is met twice; rounding cannot make it endless either.
         for _ in 0..self.facets.len() {
             let mut is_nearest = true;
             for corner in best.corners {
                 let (from, to) = (self.first[corner as usize], self.first[corner as usize + 1]);
                 for &facet in &self.around[from as usize..to as usize] {
-                    let faces_p = self.outward[facet as usize]
-                        .dot(p - points[self.facets[facet as usize][0] as usize])
-                        > 0.0;
-                    if faces_p {
-                        let other = self.on_facet(points, facet, p);
+                    let away = p - vertices.at(self.facets[facet as usize][0]);
+                    let outward = self.outward[facet as usize];
+                    if outward == DVec3::ZERO || outward.dot(away) > 0.0 {
+                        let other = self.on_facet(vertices, facet, p);
                         if other.is_nearer_than(&best, p) {
                             (best, is_nearest) = (other, false);
                         }
@@ -93,10 +93,30 @@ impl Hull {
         best
     }
 
-    fn on_facet(&self, points: &[DVec3], facet: u32, p: DVec3) -> Nearest {
+    pub(crate) fn facet_count(&self) -> u32 {
+        self.facets.len() as u32
+    }
+
+    /// Which of some facets is nearest to `p`.
+    pub(crate) fn nearest_of(
+        &self,
+        vertices: &Vertices,
+        facets: impl IntoIterator<Item = u32>,
+        p: DVec3,
+    ) -> Option<u32> {
+        let all = facets.into_iter().map(|facet| (facet, self.on_facet(vertices, facet, p)));
+        all.reduce(|best, other| if other.1.is_nearer_than(&best.1, p) { other } else { best })
+            .map(|best| best.0)
+    }
+
+    fn on_facet(&self, vertices: &Vertices, facet: u32, p: DVec3) -> Nearest {
         let corners = self.facets[facet as usize];
-        let [a, b, c] = corners.map(|i| points[i as usize]);
-        let weights = if corners[1] == corners[2] { on_segment(a, b, p) } else { on_triangle([a, b, c], p) };
+        let [a, b, c] = corners.map(|i| vertices.at(i));
+        let weights = match corners[1] == corners[2] {
+            true => on_segment(a, b, p),
+            false if is_line(vertices, [a, b, c]) => on_longest_side([a, b, c], p),
+            false => on_triangle([a, b, c], p),
+        };
         let at = a * weights[0] + b * weights[1] + c * weights[2];
         Nearest { corners, weights, at }
     }
@@ -110,13 +130,36 @@ fn on_segment(a: DVec3, b: DVec3, p: DVec3) -> [f64; 3] {
     [1.0 - t, t, 0.0]
 }
 
+/// Whether a triangle is a line up to rounding.
+fn is_line(vertices: &Vertices, [a, b, c]: [DVec3; 3]) -> bool {
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    (b - a).cross(c - a).length() <= vertices.flat_below(longest) * longest
+}
+
+/// Weights of the point that is nearest to `p` of a triangle that is a line up to rounding.
+fn on_longest_side([a, b, c]: [DVec3; 3], p: DVec3) -> [f64; 3] {
+    let [bc, ca, ab] = [c - b, a - c, b - a].map(DVec3::length_squared);
+    if ab >= bc && ab >= ca {
+        on_segment(a, b, p)
+    } else if bc >= ca {
+        let [u, v, _] = on_segment(b, c, p);
+        [0.0, u, v]
+    } else {
+        let [u, v, _] = on_segment(c, a, p);
+        [v, 0.0, u]
+    }
+}
+
 /// Weights of the point of a triangle that is nearest to `p` (Ericson, *Real-time collision detection*, §5.1.5).
 fn on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> [f64; 3] {
     let (ab, ac) = (b - a, c - a);
+    let normal = ab.cross(ac);
     let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
     let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
     let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
-    let (wa, wb, wc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
+    // As products of the above these would be rounded to a part of the longest side's square, which is all that a thin triangle has.
+    let (pa, pb, pc) = (a - p, b - p, c - p);
+    let (wa, wb, wc) = (normal.dot(pb.cross(pc)), normal.dot(pc.cross(pa)), normal.dot(pa.cross(pb)));
     if d1 <= 0.0 && d2 <= 0.0 {
         [1.0, 0.0, 0.0]
     } else if d3 >= 0.0 && d4 <= d3 {

@@ -54,10 +54,10 @@
 //! Points in a plane get the exact Delaunay triangles of that plane, also of a tilted one. Points on a line are ordered
 //! along it.
 //!
-//! [`Locator`] computes in `f64`: weights sum to 1 within 1e-14 and reproduce linear functions up to rounding. Known to
-//! be weak: where a cell is flat up to rounding, as between points of a tilted plane with rounded coordinates, its
-//! barycentric coordinates have no correct digits. Weights there still lie in [0, 1] and sum to 1, but may be those of
-//! another position in the cell. [`circumcentre`] states its bound.
+//! [`Locator`] computes in `f64`: weights sum to 1 within 1e-14 and reproduce linear functions up to rounding. Cells that
+//! are flat up to rounding, as there are between four points of a tilted square, are passed: a position in one gets the
+//! weights of a cell beside it. Rounded points of a tilted plane or line have no other cells, and
+//! [`Partition::up_to_rounding`] gives them triangles or segments. [`circumcentre`] states its bound.
 //!
 //! # Cost
 //! About linear for points spread evenly in space, and for grids; in the worst case, points on a curve, the number of
@@ -90,6 +90,7 @@ mod cells;
 mod circumcentre;
 mod error;
 mod facets;
+mod flat;
 mod graph;
 mod hull;
 #[cfg(feature = "invariants")]
@@ -101,6 +102,8 @@ mod scale;
 mod simplex;
 mod triangulation;
 mod verify;
+mod vertices;
+mod walk;
 mod wide;
 
 use pointillist_parallel as parallel;

@@ -4,6 +4,8 @@ use crate::blend::Blend;
 use crate::hull::Hull;
 use crate::scale::power_of_two_to_one;
 use crate::simplex::{HULL, Simplex};
+use crate::vertices::Vertices;
+use crate::walk::End;
 use crate::{DelaunayError, OUTSIDE, Partition, parallel};
 use glam::{DVec3, UVec3, dvec3, uvec3};
 
@@ -20,7 +22,7 @@ impl Hint {
 ///
 /// Positions outside of the points' hull get the weights of the nearest point on it: weights are continuous everywhere.
 /// The walk from cell to cell is in `f64`: within 1e-12 of a side it may end in either of the cells beside it, whose
-/// weights agree there (but for cells that are flat up to rounding, see the crate's documentation).
+/// weights agree there. It passes cells that are flat up to rounding, and ends in one beside them.
 ///
 /// ```
 /// use glam::dvec3;
@@ -37,10 +39,9 @@ impl Hint {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Locator {
-    cells: Vec<Simplex>,
-    /// Positions, moved and resized to about a unit box about 0.
-    points: Vec<DVec3>,
-    hull: Hull,
+    pub(crate) cells: Vec<Simplex>,
+    pub(crate) vertices: Vertices,
+    pub(crate) hull: Hull,
     centre: DVec3,
     scale: f64,
     starts: Starts,
@@ -48,17 +49,8 @@ pub struct Locator {
     only: u32,
 }
 
-/// A barycentric coordinate this far below 0 is rounding: the position counts as inside.
-const ROUNDING: f64 = 1e-12;
-
 /// Positions farther from the middle than this many sizes of the hull are moved to that distance.
 const FAR: f64 = 1e60;
-
-/// How a walk ended.
-enum End {
-    Inside { cell: u32, coordinates: [f64; 4] },
-    Outside { cell: u32, facet: u32 },
-}
 
 impl Locator {
     /// For points and the cells between them, as [`Delaunay::partition`](crate::Delaunay::partition) gives them.
@@ -76,13 +68,13 @@ impl Locator {
         // Halved first: the sum or the difference of two large numbers could overflow.
         let centre = low * 0.5 + high * 0.5;
         let scale = power_of_two_to_one((high * 0.5 - low * 0.5).max_element().max(0.0));
-        let points: Vec<DVec3> = positions.iter().map(|p| (*p - centre) * scale).collect();
-        let mut facets = Facets { points: &points, corners: vec![], outward: vec![] };
-        let cells = cells(&points, partition, &mut facets);
+        let vertices = Vertices::new(positions, centre, scale);
+        let mut facets = Facets { vertices: &vertices, corners: vec![], outward: vec![] };
+        let cells = cells(&vertices, partition, &mut facets);
         let Facets { corners, outward, .. } = facets;
-        let hull = Hull::new(points.len(), corners, outward);
+        let hull = Hull::new(vertices.len(), corners, outward);
         let only = if let Partition::Point(only) = partition { *only } else { 0 };
-        let mut locator = Self { cells, points, hull, centre, scale, starts: Starts::default(), only };
+        let mut locator = Self { cells, vertices, hull, centre, scale, starts: Starts::default(), only };
         locator.starts = Starts::new(&locator);
         Ok(locator)
     }
@@ -165,34 +157,11 @@ impl Locator {
             }
             End::Outside { cell, facet } => {
                 *hint = Hint(cell);
-                let nearest = self.hull.nearest(&self.points, facet, p);
+                let nearest = self.hull.nearest(&self.vertices, facet, p);
                 let ([a, b, c], [wa, wb, wc]) = (nearest.corners, nearest.weights);
                 Blend::clamped([a, b, c, a], [wa, wb, wc, 0.0])
             }
         }
-    }
-
-    /// Walks from cell to cell through the side that `p` is farthest beyond.
-    ///
-    /// Among Delaunay cells such a walk never visits a cell twice. If rounding makes it do so, it is stopped after as
-    /// many steps as there are cells, and the weights are clamped.
-    fn walk(&self, p: DVec3, start: u32) -> End {
-        let mut cell = if (start as usize) < self.cells.len() { start } else { 0 };
-        for _ in 0..=self.cells.len() {
-            let simplex = &self.cells[cell as usize];
-            let coordinates = simplex.coordinates(p);
-            let (side, least) = least(coordinates);
-            // NaN where a cell is flat to the last digit: the walk ends there.
-            if least >= -ROUNDING || least.is_nan() {
-                return End::Inside { cell, coordinates };
-            }
-            let next = simplex.neighbours[side];
-            if next & HULL != 0 {
-                return End::Outside { cell, facet: next & !HULL };
-            }
-            cell = next;
-        }
-        End::Inside { cell, coordinates: self.cells[cell as usize].coordinates(p) }
     }
 
     fn local(&self, p: DVec3) -> Result<DVec3, DelaunayError> {
@@ -210,17 +179,9 @@ impl Locator {
     }
 }
 
-/// The smallest of four numbers and where it is.
-#[inline]
-fn least(c: [f64; 4]) -> (usize, f64) {
-    let (i, a) = if c[1] < c[0] { (1, c[1]) } else { (0, c[0]) };
-    let (j, b) = if c[3] < c[2] { (3, c[3]) } else { (2, c[2]) };
-    if b < a { (j, b) } else { (i, a) }
-}
-
 /// Collects the facets of the hull.
 struct Facets<'a> {
-    points: &'a [DVec3],
+    vertices: &'a Vertices,
     corners: Vec<[u32; 3]>,
     outward: Vec<DVec3>,
 }
@@ -228,20 +189,24 @@ struct Facets<'a> {
 impl Facets<'_> {
     /// Adds a facet whose outer side is the one where `inner` is not; its number, marked.
     fn add(&mut self, corners: [u32; 3], inner: u32) -> u32 {
-        let [a, b, c] = corners.map(|i| self.points[i as usize]);
-        let inward = self.points[inner as usize] - a;
+        let [a, b, c] = corners.map(|i| self.vertices.at(i));
+        let inward = self.vertices.at(inner) - a;
         let outward = match corners {
             [i, j, k] if i == j && j == k => -inward,
             [_, j, k] if j == k => (b - a).cross(inward).cross(b - a),
             _ => (b - a).cross(c - a),
         };
         self.corners.push(corners);
-        self.outward.push(if outward.dot(inward) > 0.0 { -outward } else { outward });
+        let height = outward.dot(inward);
+        let reach = (b - a).length().max((c - a).length()).max(inward.length());
+        // Which side of a flat cell is the inner one, only exact arithmetic would tell.
+        let is_flat = height.abs() <= self.vertices.flat_below(reach) * outward.length();
+        self.outward.push(if is_flat { DVec3::ZERO } else { outward * -height.signum() });
         (self.corners.len() as u32 - 1) | HULL
     }
 }
 
-fn cells(points: &[DVec3], partition: &Partition, facets: &mut Facets<'_>) -> Vec<Simplex> {
+fn cells(vertices: &Vertices, partition: &Partition, facets: &mut Facets<'_>) -> Vec<Simplex> {
     match partition {
         Partition::Point(_) => vec![],
         Partition::Line(line) => {
@@ -251,7 +216,7 @@ fn cells(points: &[DVec3], partition: &Partition, facets: &mut Facets<'_>) -> Ve
                 // Opposite the first corner lies what follows.
                 let after = if i == last { facets.add([b; 3], a) } else { i as u32 + 1 };
                 let before = if i == 0 { facets.add([a; 3], b) } else { i as u32 - 1 };
-                Simplex::segment(points, [a, b], [after, before])
+                Simplex::segment(vertices, [a, b], [after, before])
             };
             line.windows(2).enumerate().map(segment).collect()
         }
@@ -263,7 +228,7 @@ fn cells(points: &[DVec3], partition: &Partition, facets: &mut Facets<'_>) -> Ve
                         next[k] = facets.add([a, b, b], corners[k]);
                     }
                 }
-                Simplex::triangle(points, *corners, next)
+                Simplex::triangle(vertices, *corners, next)
             };
             triangles.corners.iter().zip(triangles.neighbours.iter().copied()).map(triangle).collect()
         }
@@ -275,7 +240,7 @@ fn cells(points: &[DVec3], partition: &Partition, facets: &mut Facets<'_>) -> Ve
                         next[k] = facets.add(others, corners[k]);
                     }
                 }
-                Simplex::tetrahedron(points, *corners, next)
+                Simplex::tetrahedron(vertices, *corners, next)
             };
             tetrahedra.corners.iter().zip(tetrahedra.neighbours.iter().copied()).map(tetrahedron).collect()
         }
@@ -299,8 +264,7 @@ impl Starts {
         if locator.cells.is_empty() {
             return Self::default();
         }
-        let bounds = |(low, high): (DVec3, DVec3), p: &DVec3| (low.min(*p), high.max(*p));
-        let (low, high) = locator.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), bounds);
+        let (low, high) = locator.vertices.bounds();
         // Flat extents count for little, so that a plane of points gets a plane of boxes.
         let extent = (high - low).max(DVec3::splat((high - low).max_element() * 1e-6));
         let boxes = (locator.cells.len() as f64 / CELLS_PER_BOX).max(1.0);

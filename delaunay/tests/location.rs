@@ -1,6 +1,6 @@
 //! Weights and location: the facts of `invariants::weights`, and what went wrong once.
 
-use glam::{DVec3, dvec3};
+use glam::{DQuat, DVec3, EulerRot, dvec3};
 use pointillist_delaunay::invariants::weights;
 use pointillist_delaunay::{Delaunay, DelaunayError, Hint, Locator, OUTSIDE, Partition, Triangles};
 use proptest::prelude::*;
@@ -9,6 +9,22 @@ use testkit::points::{lattice_points, query};
 
 fn fail(message: String) -> TestCaseError {
     TestCaseError::fail(message)
+}
+
+fn turn() -> impl Strategy<Value = DQuat> {
+    (0.0..6.3, 0.0..6.3, 0.0..6.3).prop_map(|(x, y, z)| DQuat::from_euler(EulerRot::XYZ, x, y, z))
+}
+
+/// Some points of a set, and their shares: of few points, places on edges and sides of cells and, with shares below 0, beyond the hull.
+fn mixture() -> impl Strategy<Value = Vec<(prop::sample::Index, f64)>> {
+    let share = prop_oneof![4 => Just(1.0), 1 => -1.0..3.0];
+    prop::collection::vec((any::<prop::sample::Index>(), share), 1..5)
+}
+
+fn mixed(points: &[DVec3], mixture: &[(prop::sample::Index, f64)]) -> DVec3 {
+    let sum: f64 = mixture.iter().map(|(_, share)| share).sum();
+    let mean: DVec3 = mixture.iter().map(|(index, share)| points[index.index(points.len())] * *share).sum();
+    if sum.abs() > 0.1 { mean / sum } else { mean }
 }
 
 proptest! {
@@ -30,6 +46,17 @@ proptest! {
         weights::weights_find_the_nearest_point(&resized(&points), &resized(&queries), 1e-9).map_err(fail)?;
         let moved = |list: &[DVec3]| list.iter().map(|p| *p + dvec3(1e8, -2e8, 3e8)).collect::<Vec<_>>();
         weights::weights_find_the_nearest_point(&moved(&points), &moved(&queries), 1e-6).map_err(fail)?;
+    }
+
+    /// Squares of a turned lattice have tetrahedra as flat as the rounding of their corners, and its edges triangles that are lines.
+    #[test]
+    fn turned_lattices_are_weighted_as_they_lie(
+        points in lattice_points(), turn in turn(), parts in prop::collection::vec(mixture(), 1..20)
+    ) {
+        let turned: Vec<DVec3> = points.iter().map(|&p| turn * p).collect();
+        let queries: Vec<DVec3> = parts.iter().map(|mixture| mixed(&turned, mixture)).collect();
+        weights::weights_find_the_nearest_point(&turned, &queries, 1e-7).map_err(fail)?;
+        weights::hints_do_not_matter(&turned, &queries, 1e-7).map_err(fail)?;
     }
 
     #[test]
@@ -135,4 +162,28 @@ fn a_partition_that_is_not_of_these_points_is_refused_by_cell() {
     nowhere[3].y = f64::NAN;
     let refused = Locator::new(&nowhere, &Partition::Point(0));
     assert!(matches!(refused, Err(DelaunayError::PointNotFinite { index: 3 })));
+}
+
+/// Of rounded points of a tilted line or plane, weights were those of points far away.
+#[test]
+fn tilted_lines_and_planes_are_weighted_as_they_lie() {
+    let along = |i: u32| dvec3(0.1, 0.3, 0.7) * f64::from(i % 15);
+    let across = |i: u32| dvec3(0.3, -0.1, 0.7) * f64::from(i / 15);
+    for (count, dimension) in [(15, 1), (225, 2)] {
+        for shift in [0.0, 1e3, 1e5, 1e6, 1e8].map(DVec3::splat) {
+            let points: Vec<DVec3> = (0..count).map(|i| along(i) + across(i) + shift).collect();
+            assert_eq!(Partition::up_to_rounding(&points).unwrap().dimension(), dimension);
+            let queries: Vec<DVec3> = points.windows(2).map(|pair| pair[0].lerp(pair[1], 0.3)).collect();
+            let tolerance = 1e-8 + 16.0 * f64::EPSILON * shift.x;
+            weights::weights_find_the_nearest_point(&points, &queries, tolerance).unwrap();
+            weights::hints_do_not_matter(&points, &queries, tolerance).unwrap();
+            // Cells that are exactly Delaunay's are flat, and all queries go to the hull.
+            let locator = Locator::new(&points, &Delaunay::new(&points).unwrap().partition()).unwrap();
+            for query in queries {
+                let blend = locator.locate_anywhere(query).unwrap();
+                let found: DVec3 = blend.parts().map(|(i, weight)| points[i as usize] * weight).sum();
+                assert!(found.distance(query) < tolerance, "{query} is not {found}");
+            }
+        }
+    }
 }

@@ -1,17 +1,19 @@
-//! Points of any kind: cells are Delaunay and fill the hull, weights find the nearest point, centres, edges, facets and nearest vertices
-//! are those of a slow search, and nothing panics.
+//! Points of any kind: cells are Delaunay and fill the hull, however they came about; weights find the nearest point; centres, edges, facets
+//! and nearest vertices are those of a slow search; and nothing panics.
 #![no_main]
 
 use arbitrary::Arbitrary;
-use glam::{DVec3, dvec3};
+use glam::{DQuat, DVec3, EulerRot, dvec3};
 use libfuzzer_sys::fuzz_target;
-use pointillist_delaunay::invariants::{queries as facts, weights};
+use pointillist_delaunay::invariants::{queries as facts, triangulation, weights};
 use pointillist_delaunay::{Delaunay, Locator};
 
 #[derive(Arbitrary, Debug)]
 enum Points {
     /// Of a small lattice: grids, planes, lines and repeats come often.
     Lattice(Vec<[i8; 3]>, i8),
+    /// Of a turned one, by angles in 1/16: whatever was flat is rounded.
+    Turned(Vec<[i8; 3]>, [i8; 3]),
     Raw(Vec<[f64; 3]>),
 }
 
@@ -23,14 +25,18 @@ struct Input {
 }
 
 fuzz_target!(|input: Input| {
-    let lattice = matches!(input.points, Points::Lattice(..));
+    let on_lattice = |list: &[[i8; 3]]| -> Vec<DVec3> {
+        list.iter().take(40).map(|p| DVec3::from_array(p.map(|c| f64::from(c / 16)))).collect()
+    };
     let points: Vec<DVec3> = match &input.points {
         Points::Lattice(list, power) => {
             let scale = 2.0_f64.powi((*power).into());
-            list.iter()
-                .take(40)
-                .map(|&[x, y, z]| dvec3((x / 16).into(), (y / 16).into(), (z / 16).into()) * scale)
-                .collect()
+            on_lattice(list).into_iter().map(|p| p * scale).collect()
+        }
+        Points::Turned(list, angles) => {
+            let [x, y, z] = angles.map(|angle| f64::from(angle) / 16.0);
+            let turn = DQuat::from_euler(EulerRot::XYZ, x, y, z);
+            on_lattice(list).into_iter().map(|p| turn * p).collect()
         }
         Points::Raw(list) => list.iter().take(40).map(|&p| DVec3::from_array(p)).collect(),
     };
@@ -48,10 +54,21 @@ fuzz_target!(|input: Input| {
     facts::hull_facets_have_all_points_on_one_side(&points).unwrap();
     facts::circumcentres_are_equidistant(&points).unwrap();
     facts::nearest_is_that_of_a_search(&points, &queries[..queries.len().min(2)]).unwrap();
-    if lattice {
-        let finite: Vec<DVec3> = queries.into_iter().filter(|q| q.is_finite() && q.length() < 1e6).collect();
-        weights::weights_find_the_nearest_point(&points, &finite, 1e-9).unwrap();
+    let tolerance = match input.points {
+        Points::Lattice(..) => Some(1e-9),
+        Points::Turned(..) => Some(1e-7),
+        Points::Raw(_) => None,
+    };
+    if let Some(tolerance) = tolerance {
+        let finite = queries.into_iter().filter(|q| q.is_finite() && q.length() < 1e6);
+        let halfway = points.windows(2).take(8).map(|pair| pair[0].midpoint(pair[1]));
+        let asked: Vec<DVec3> = finite.chain(halfway).collect();
+        weights::weights_find_the_nearest_point(&points, &asked, tolerance).unwrap();
     }
+    let few = &points[..points.len().min(16)];
+    triangulation::insertion_is_building(few).unwrap();
+    let removed: Vec<usize> = input.taken_out.iter().take(4).map(|&i| i.into()).collect();
+    triangulation::removal_is_building(few, &removed).unwrap();
     for &index in input.taken_out.iter().take(8) {
         let _ = delaunay.remove(index.into());
         let _ = delaunay.partition();

@@ -112,10 +112,7 @@ impl Mean<'_> {
         }
         // The middles of the sides: exact for what is quadratic in the picture.
         for (_, position) in [ab, middle(b.0, c.0), middle(c.0, a.0)] {
-            let to_eye = match self.tile.lens().kind {
-                LensKind::Perspective => (self.shader.eye - position).normalize_or_zero().as_vec3(),
-                LensKind::Orthographic => self.point.place.to_eye,
-            };
+            let to_eye = self.shader.to_eye(position);
             let there = Point { place: Place { position, to_eye, ..self.point.place }, ..*self.point };
             self.sum += self.shader.arriving(self.light, &there, self.face) * (weight / 3.0) as f32;
         }

@@ -7,7 +7,7 @@ use crate::scene::MeasuredBrdf;
 use crate::shader::{Economy, Point, Shader};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Face, Fragment, Micropoint, Tile};
-use pointillist_shade::{Incident, Interpolation, interpolate_color, sees_light, turn_to};
+use pointillist_shade::{Incident, Interpolation, Light, interpolate_color, sees_light, turn_to};
 use pointillist_shadow::{AreaScratch, LineScratch, Receivers, ShadowScratch, Viewer};
 use std::ops::Range;
 
@@ -19,6 +19,19 @@ pub(crate) struct Arrival {
     pub(crate) fraction: f64,
     /// The light varies over the micropoint.
     pub(crate) is_close: bool,
+}
+
+/// Light before it is reflected.
+struct Arriving {
+    diffuse: Incident,
+    /// For the highlight, if it is of another colour.
+    highlight: Option<Incident>,
+}
+
+impl Arriving {
+    fn is_dark(&self) -> bool {
+        self.diffuse.is_dark() && self.highlight.as_ref().is_none_or(Incident::is_dark)
+    }
 }
 
 /// Memory for shadows.
@@ -112,13 +125,17 @@ impl Shader<'_> {
         if self.is_black(p, face.id) {
             return Vec3::ZERO;
         }
+        let of_highlights = light.of_highlights.as_ref().filter(|_| p.material.model.is_opengl());
         let arrives = |position: DVec3| {
-            let mut incident = source.illuminate(light.sample, position);
-            incident.irradiance *= light.channels;
-            incident
+            let from = |lamp: &Light| {
+                let mut incident = lamp.illuminate(light.sample, position);
+                incident.irradiance *= light.channels;
+                incident
+            };
+            Arriving { diffuse: from(source), highlight: of_highlights.map(from) }
         };
-        let incident = arrives(p.place.position);
-        if incident.is_dark() || !sees_light(p.place.face_normal, incident.to_light) {
+        let arriving = arrives(p.place.position);
+        if arriving.is_dark() || !sees_light(p.place.face_normal, arriving.diffuse.to_light) {
             return Vec3::ZERO;
         }
         if self.scene.render.shading == Interpolation::Gouraud
@@ -126,13 +143,30 @@ impl Shader<'_> {
         {
             let corners = self.scene.corners(face.id);
             let at = |k: usize| {
-                let to_eye = (self.eye - corners[k]).normalize_or_zero().as_vec3();
-                let incident = arrives(corners[k]);
-                self.reflect(p, face.id, &incident, turn_to(normals[k], p.place.face_normal), to_eye)
+                let to_eye = self.to_eye(corners[k]);
+                let normal = turn_to(normals[k], p.place.face_normal);
+                self.reflect_arriving(p, face.id, &arrives(corners[k]), normal, to_eye)
             };
             return interpolate_color([at(0), at(1), at(2)], p.place.barycentric);
         }
-        self.reflect(p, face.id, &incident, p.normal, p.place.to_eye)
+        self.reflect_arriving(p, face.id, &arriving, p.normal, p.place.to_eye)
+    }
+
+    /// As [`Self::reflect`], with light of another colour for the highlight.
+    fn reflect_arriving(
+        &self,
+        p: &Point,
+        triangle: u32,
+        arriving: &Arriving,
+        normal: Vec3,
+        to_eye: Vec3,
+    ) -> Vec3 {
+        let Arriving { diffuse, highlight } = arriving;
+        let Some(highlight) = highlight else { return self.reflect(p, triangle, diffuse, normal, to_eye) };
+        let mut matt = p.material;
+        matt.specular = Vec3::ZERO;
+        let shiny = p.material.with_diffuse(Vec3::ZERO);
+        matt.reflect(diffuse, normal, to_eye) + shiny.reflect(highlight, normal, to_eye)
     }
 
     /// Whether a micropoint reflects nothing.

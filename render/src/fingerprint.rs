@@ -85,6 +85,10 @@ pub fn of_light(scene: &Scene) -> u64 {
         if light.ambient != Vec3::ZERO {
             hash.color(light.ambient);
         }
+        if let Some(specular) = light.specular {
+            hash.text("specular");
+            hash.color(specular);
+        }
         hash.int(u64::from(light.shadow));
         hash.int(match light.resolution {
             Resolution::Auto => 0,

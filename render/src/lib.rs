@@ -89,6 +89,7 @@ mod lightmap;
 mod lights;
 mod lit_parts;
 mod look;
+mod mapped_light;
 mod mirrors;
 mod monitor;
 mod painter;

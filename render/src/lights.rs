@@ -20,6 +20,8 @@ pub(crate) struct LightSample<'a> {
     pub(crate) sample: u32,
     /// 1 for the channels of the light that it brings, 0 for the others.
     pub(crate) channels: Vec3,
+    /// The light as highlights of OpenGL's formula have it, if that is another colour.
+    pub(crate) of_highlights: Option<Light>,
     pub(crate) occasion: Occasion,
     pub(crate) origin: Origin,
     /// `None`: casts no shadow.
@@ -94,7 +96,10 @@ pub(crate) fn scene_lights<'a>(
             lights.ambient.push(source.light.with_color(source.ambient));
         }
         // Nothing can show that it is there.
-        let is_idle = !shown(light) && !source.light.may_reach(all.low, all.high);
+        let of_highlights = source.of_highlights();
+        let may_reach = |light: &Light| light.may_reach(all.low, all.high);
+        let is_idle =
+            !shown(light) && !may_reach(&source.light) && !of_highlights.as_ref().is_some_and(may_reach);
         let unhindered = (!source.shadow).then_some((Vec3::ONE, &*prepared.geometry, Occasion::Always));
         let casters = unhindered.into_iter().chain(prepared.casters().filter(|_| source.shadow));
         for cast @ (channels, geometry, occasion) in casters {
@@ -137,6 +142,7 @@ pub(crate) fn scene_lights<'a>(
                     light,
                     sample,
                     channels,
+                    of_highlights,
                     occasion,
                     origin,
                     shadow,

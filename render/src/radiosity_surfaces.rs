@@ -2,7 +2,11 @@
 //!
 //! Two triangles that form a convex quadrangle become one surface. A surface has the mean albedo and the mean exitance of its
 //! material: constants times the means of whole textures times the mean of its vertices' colours.
+//!
+//! What a light map holds is all that arrives, but for lamps: its surfaces send out what they reflect of its mean over them, and
+//! reflect no more.
 
+use crate::mapped_light::MappedLight;
 use crate::scene::{Details, Map, Material, Mesh, Scene, SceneError, Texture};
 use crate::split_surfaces::split_where_they_cross;
 use glam::{DVec3, DVec4, Vec3, Vec4};
@@ -25,6 +29,8 @@ pub struct SceneSurfaces {
     pub faces: Vec<Vec<u32>>,
     /// Triangles that were left out because they let light through.
     pub translucent: usize,
+    /// Triangles whose light is known, from a map, so that they reflect nothing of what is solved for.
+    pub light_mapped: usize,
 }
 
 /// The surfaces of a scene, cut where they run through each other: no patch is then half inside of a wall.
@@ -38,6 +44,7 @@ pub fn scene_surfaces(scene: &Scene) -> Result<SceneSurfaces, SceneError> {
     let mean = |i: usize| *means[i].get_or_init(|| mean_texel(&scene.textures[i]));
     let looks: Vec<Look> = scene.materials.iter().map(|material| look_of(material, &mean)).collect();
     let mesh = &scene.mesh;
+    let mapped = MappedLight::of_materials(scene)?;
     let mut taken = vec![false; mesh.triangles.len()];
     let partners = Partners::new(scene);
     for triangle in 0..mesh.triangles.len() as u32 {
@@ -64,8 +71,16 @@ pub fn scene_surfaces(scene: &Scene) -> Result<SceneSurfaces, SceneError> {
         }
         // What lights others directly is a lamp.
         let emits = scene.materials[material].details.emits;
-        let radiance = if emits { Vec3::ZERO } else { look.radiance };
-        let mut surface = Surface::new(&vertices, bands(albedo)).emitting(bands(radiance).map(|l| l * PI));
+        let own = if emits { Vec3::ZERO } else { look.radiance };
+        let (reflectance, known) = match &mapped[material] {
+            Some(light) => {
+                found.light_mapped += faces.len();
+                (Vec3::ZERO, albedo * light.mean(scene, &faces))
+            }
+            None => (albedo, Vec3::ZERO),
+        };
+        let exitance = bands(own + known).map(|radiance| radiance * PI);
+        let mut surface = Surface::new(&vertices, bands(reflectance)).emitting(exitance);
         surface.two_sided = mesh.objects[mesh.object_of[triangle as usize] as usize].two_sided
             && !scene.materials[material].details.one_sided;
         found.surfaces.push(surface);

@@ -65,6 +65,8 @@ pub(crate) struct Shader<'a> {
     pub(crate) mattes: MatteIds,
     pub(crate) eye: DVec3,
     pub(crate) forward: DVec3,
+    /// Whether all is seen along `forward`: there is no field of view.
+    pub(crate) is_parallel: bool,
     /// 1 for the channels that are shaded, 0 for the others.
     pub(crate) channels: Vec3,
     /// As [`Sight::own_light`].
@@ -150,6 +152,7 @@ impl<'a> Shader<'a> {
             mattes: MatteIds::default(),
             eye: view.eye(),
             forward: view.forward(),
+            is_parallel: !view.projection().is_perspective(),
             channels,
             own_light: &sight.own_light,
         }
@@ -163,6 +166,14 @@ impl<'a> Shader<'a> {
             Occasion::Tinted => self.clear.may_tint(origin, receivers),
         };
         channels * self.channels != Vec3::ZERO && on_occasion
+    }
+
+    /// Unit vector from a place towards the eye.
+    pub(crate) fn to_eye(&self, position: DVec3) -> Vec3 {
+        match self.is_parallel {
+            true => -self.forward.as_vec3(),
+            false => (self.eye - position).normalize_or_zero().as_vec3(),
+        }
     }
 
     /// Unit normals of a face's corners, if it has them, on the side that is seen.

@@ -182,7 +182,7 @@ mod tests {
 
     fn split(surfaces: Vec<Surface>) -> SceneSurfaces {
         let faces = (0..surfaces.len() as u32).map(|i| vec![i]).collect();
-        let mut found = SceneSurfaces { surfaces, faces, translucent: 0 };
+        let mut found = SceneSurfaces { surfaces, faces, ..SceneSurfaces::default() };
         split_where_they_cross(&mut found);
         found
     }

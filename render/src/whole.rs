@@ -142,7 +142,7 @@ impl Shader<'_> {
         }
         let corners = self.scene.corners(face.id);
         let at = |k: usize| {
-            let to_eye = (self.eye - corners[k]).normalize_or_zero().as_vec3();
+            let to_eye = self.to_eye(corners[k]);
             let whole = light.unhindered(corners[k], above);
             self.reflect_seen(light, p, face.id, &*whole, turn_to(normals[k], p.place.face_normal), to_eye)
         };

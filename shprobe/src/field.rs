@@ -1,6 +1,6 @@
 //! Light interpolated between probes.
 
-use crate::delaunay::{Delaunay, Hint, Locator, Partition};
+use crate::delaunay::{Hint, Locator, Partition};
 use crate::glossy::GlossyLight;
 use crate::sh::{Irradiance, Lobe, MAX_COUNT, Sh, basis, coefficient_count};
 use crate::sight::{MOST, Shares, Spot, by_cell, by_sight};
@@ -79,7 +79,7 @@ impl Field {
     /// [`ProbeError::BadRadiance`].
     pub fn new(positions: &[DVec3], radiance: &[Sh]) -> Result<Self, ProbeError> {
         expect_count(positions.len(), radiance.len())?;
-        Self::from_parts(positions, Delaunay::new(positions)?.partition(), radiance)
+        Self::from_parts(positions, Partition::up_to_rounding(positions)?, radiance)
     }
 
     /// The same with cells that are known already, from [`Field::partition`] of an equal field: nothing is divided
@@ -118,7 +118,7 @@ impl Field {
     /// Divides space between other positions; if they are refused, the field is as it was.
     pub(crate) fn divide(&mut self, positions: Vec<DVec3>) -> Result<(), ProbeError> {
         check_positions(&positions)?;
-        let partition = Delaunay::new(&positions)?.partition();
+        let partition = Partition::up_to_rounding(&positions)?;
         self.locator = Locator::new(&positions, &partition)?;
         self.partition = partition;
         self.positions = positions;

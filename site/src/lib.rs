@@ -20,6 +20,9 @@ mod error;
 pub mod exports;
 mod model;
 mod paper;
+// The reader that the command line has: a package of its own for one file would be more to keep than this line.
+#[path = "../../cli/src/mesh_io/ply_records.rs"]
+mod ply_records;
 mod probes;
 mod rays;
 mod reply;

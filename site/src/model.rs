@@ -4,11 +4,10 @@
 //! box around all.
 
 use crate::SiteError;
+use crate::ply_records::{Face, PlyRecords};
 use crate::reply::Reply;
 use crate::request::Request;
 use glam::DVec3;
-use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 use std::io::Cursor;
 
 const RABBIT: &[u8] = include_bytes!("../../examples/rabbit.obj");
@@ -92,94 +91,14 @@ fn read_obj(bytes: &[u8]) -> Result<Model, String> {
 }
 
 fn read_ply(bytes: &[u8]) -> Result<Model, String> {
-    let mut reader = Reader::new(Cursor::new(bytes));
-    let header = Parser::<Other>::new().read_header(&mut reader).map_err(|e| e.to_string())?;
-    let (mut vertices, mut faces) = (vec![], vec![]);
-    for (name, element) in &header.elements {
-        // Each takes a byte at least: memory is not allocated on the header's word.
-        if element.count > bytes.len() {
-            return Err(format!("{} of `{name}` are announced, more than the file can hold", element.count));
-        }
-        let read = match name.as_str() {
-            "vertex" => Parser::<Vertex>::new()
-                .read_payload_for_element(&mut reader, element, &header)
-                .map(|read| vertices = read),
-            "face" => Parser::<Face>::new()
-                .read_payload_for_element(&mut reader, element, &header)
-                .map(|read| faces = read),
-            _ => Parser::<Other>::new().read_payload_for_element(&mut reader, element, &header).map(drop),
-        };
-        read.map_err(|error| error.to_string())?;
-    }
-    let fan = |face: &Face| {
-        let corners = face.0.clone();
-        (2..corners.len()).map(move |i| [corners[0], corners[i - 1], corners[i]]).collect::<Vec<_>>()
+    let records = PlyRecords::read(bytes).map_err(|fault| fault.to_string())?;
+    // Negative corners become larger than any file has vertices, and are refused as those.
+    let corner = |index: i64| u32::try_from(index).unwrap_or(u32::MAX);
+    let fan = |Face(corners): &Face| -> Vec<[u32; 3]> {
+        (2..corners.len()).map(|i| [corners[0], corners[i - 1], corners[i]].map(corner)).collect()
     };
     Ok(Model {
-        positions: vertices.into_iter().map(|v: Vertex| v.0).collect(),
-        triangles: faces.iter().flat_map(fan).collect(),
+        positions: records.vertices.iter().map(|vertex| vertex.position).collect(),
+        triangles: records.faces.iter().flat_map(fan).collect(),
     })
-}
-
-struct Vertex(DVec3);
-
-impl PropertyAccess for Vertex {
-    fn new() -> Self {
-        Self(DVec3::ZERO)
-    }
-
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        let axis = match name {
-            "x" => 0,
-            "y" => 1,
-            "z" => 2,
-            _ => return PropertyAccessResult::Ignored,
-        };
-        self.0[axis] = match value {
-            Property::Float(v) => v.into(),
-            Property::Double(v) => v,
-            Property::Char(v) => v.into(),
-            Property::UChar(v) => v.into(),
-            Property::Short(v) => v.into(),
-            Property::UShort(v) => v.into(),
-            Property::Int(v) => v.into(),
-            Property::UInt(v) => v.into(),
-            _ => return PropertyAccessResult::UnsupportedType,
-        };
-        PropertyAccessResult::Set
-    }
-}
-
-struct Face(Vec<u32>);
-
-impl PropertyAccess for Face {
-    fn new() -> Self {
-        Self(vec![])
-    }
-
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        if name != "vertex_indices" && name != "vertex_index" {
-            return PropertyAccessResult::Ignored;
-        }
-        // Negative corners become larger than any file has vertices, and are refused as those.
-        self.0 = match value {
-            Property::ListChar(list) => list.into_iter().map(|v| v as u32).collect(),
-            Property::ListUChar(list) => list.into_iter().map(u32::from).collect(),
-            Property::ListShort(list) => list.into_iter().map(|v| v as u32).collect(),
-            Property::ListUShort(list) => list.into_iter().map(u32::from).collect(),
-            Property::ListInt(list) => list.into_iter().map(|v| v as u32).collect(),
-            Property::ListUInt(list) => list,
-            _ => return PropertyAccessResult::UnsupportedType,
-        };
-        PropertyAccessResult::Set
-    }
-}
-
-/// Something that is read and thrown away.
-struct Other;
-
-impl PropertyAccess for Other {
-    fn new() -> Self {
-        Self
-    }
 }

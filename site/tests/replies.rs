@@ -46,10 +46,18 @@ fn what_is_wrong_with_a_request_is_said() {
     assert!(error(b"model none.obj\nv 0 0\n").contains("none.obj"));
     assert!(error(b"model none.obj\n").contains("no surface"));
     assert!(error(b"model far.obj\nv 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n").contains("vertex 1"));
-    let ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    assert!(error(format!("model a.ply\n{ply}1\n3 0 0 7\n").as_bytes()).contains("a.ply"));
-    let many = ply.replace("vertex 1", "vertex 4000000000");
-    assert!(error(format!("model a.ply\n{many}").as_bytes()).contains("more than the file can hold"));
+    let ply = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n";
+    let of_ply = |text: String| error(format!("model a.ply\n{text}").as_bytes());
+    for corners in ["3 0 1 7", "3 0 1 -1"] {
+        assert!(
+            of_ply(format!("{ply}{corners}\n"))
+                .contains("triangle 0 (from 0) names a vertex that is not there")
+        );
+    }
+    assert!(
+        of_ply(ply.replace("vertex 2", "vertex 4000000000")).contains("announced, but the file has only")
+    );
+    assert!(of_ply(ply.replace("float z", "float w")).contains("no element `vertex` with x, y and z"));
 }
 
 #[test]

@@ -145,6 +145,7 @@ fn scenes(folder: &Path) -> std::io::Result<Vec<(String, Vec<String>)>> {
     ];
     for name in [
         "cornell",
+        "shade-glass",
         "shade-helmet",
         "shade-lion",
         "shade-maps",
@@ -157,7 +158,9 @@ fn scenes(folder: &Path) -> std::io::Result<Vec<(String, Vec<String>)>> {
         for (before, place) in places {
             text = text.replace(before, &format!("\"{}", data.join(place).display()));
         }
-        text = text.replace("\"unit-sphere.obj", &format!("\"{}", file("docs/unit-sphere.obj")));
+        for own in ["unit-sphere.obj", "panes.obj"] {
+            text = text.replace(&format!("\"{own}"), &format!("\"{}", file(&format!("docs/{own}"))));
+        }
         let scene = folder.join(format!("{name}.toml"));
         std::fs::write(&scene, text)?;
         list.push((name.to_owned(), vec![scene.display().to_string()]));

@@ -14,8 +14,9 @@ use pointillist_shprobe::place;
 use pointillist_surfel as surfel;
 
 use crate::common::casters::hills;
+use crate::common::charts::chart_along;
 use crate::common::provenance::provenance;
-use crate::common::report::{Outcome, Row, chart_along, on_one_thread, write};
+use crate::common::report::{Outcome, Row, on_one_thread, write};
 use crate::common::scenes::{Sketch, lit_spheres, spheres};
 use crate::common::timing::Timing;
 
@@ -37,7 +38,7 @@ const STEEP: f64 = 1.2;
 /// Sizes below which a row says little of growth: what a frame costs whatever is in it.
 const FROM_SECONDS: f64 = 0.02;
 
-const STAGES: [Stage; 8] = [
+const STAGES: [Stage; 9] = [
     Stage {
         name: "terrain, under the sun with shadows",
         of: "triangles",
@@ -49,6 +50,12 @@ const STAGES: [Stage; 8] = [
         of: "triangles",
         sizes: &[1_000, 10_000, 100_000, 1_000_000],
         prepare: balls,
+    },
+    Stage {
+        name: "spheres of 512 triangles in 64×64 pixels, in the sun with shadows",
+        of: "triangles",
+        sizes: &[4_096, 40_960, 409_600, 4_096_000],
+        prepare: small_balls,
     },
     Stage {
         name: "twelve spheres",
@@ -92,6 +99,16 @@ struct Measured {
 
 /// Measures and writes `growth.md` and `growth.svg`.
 pub(crate) fn run(out_dir: &Path) -> Outcome {
+    measure(out_dir, usize::MAX)
+}
+
+/// The same of small sizes.
+pub(crate) fn run_quick(out_dir: &Path) -> Outcome {
+    measure(out_dir, 100_000)
+}
+
+/// Measures sizes up to `largest`.
+fn measure(out_dir: &Path, largest: usize) -> Outcome {
     let mut text = format!(
         "# Growth with size\n\n`cargo run --release -p studies -- growth` made this, on one thread ({}). Processor time of the stage alone, once, and the memory \
          that it adds to that of its input. The exponent is that of time against size since the row above, where that row takes at least {FROM_SECONDS} s; \
@@ -109,7 +126,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
             capitalised(stage.name)
         );
         let mut before: Option<(usize, f64)> = None;
-        for &size in stage.sizes {
+        for &size in stage.sizes.iter().filter(|size| **size <= largest) {
             eprintln!("growth: {}, {size} {of}", stage.name);
             let Measured { seconds, bytes } = in_child(index, size)?;
             let exponent = before
@@ -218,6 +235,19 @@ fn balls(count: usize) -> Work {
         let (x, y) = (f64::from((i % 6) as u32) - 2.5, f64::from((i / 6) as u32) - 1.5);
         s.sphere(dvec3(0.7 * x + 0.2 * y, 0.6 * y, -1.2 * y - 0.2 * x), 0.4, level, material);
     }
+    draw(s.scene)
+}
+
+/// Copies of one mesh about a pixel large, all over a cube: up to a thousand triangles a pixel.
+fn small_balls(count: usize) -> Work {
+    const LEVEL: u32 = 3;
+    let mut s = Sketch::new(dvec3(0.0, 0.0, 140.0), DVec3::ZERO, 40.0, 64);
+    let material = s.matt(0.7, 1.0);
+    let (low, high) = (DVec3::splat(-40.0), DVec3::splat(40.0));
+    for place in place::random(low, high, count / (8 << (2 * LEVEL)), 5) {
+        s.sphere(place, 1.0, LEVEL, material);
+    }
+    s.sun(DVec3::splat(-1.0));
     draw(s.scene)
 }
 

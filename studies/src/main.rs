@@ -9,6 +9,7 @@ mod expected;
 mod growth;
 mod ibpr;
 mod micropoint;
+mod quote;
 mod radiosity;
 mod report;
 mod shade;
@@ -19,36 +20,89 @@ mod speed;
 mod stress;
 mod surfel;
 
-use common::report::Outcome;
+use common::report::{Outcome, trial_folder};
+use common::timing::take_one_run_each;
 
-/// Name, what it measures, and the study itself.
-type Study = (&'static str, &'static str, fn(&Path) -> Outcome);
+/// Something that is measured and written to files of its name.
+struct Study {
+    name: &'static str,
+    what: &'static str,
+    run: fn(&Path) -> Outcome,
+    /// The same with small sizes, in a minute or less.
+    quick: Option<fn(&Path) -> Outcome>,
+}
+
+impl Study {
+    const fn new(name: &'static str, what: &'static str, run: fn(&Path) -> Outcome) -> Self {
+        Self { name, what, run, quick: None }
+    }
+
+    const fn with_quick(mut self, quick: fn(&Path) -> Outcome) -> Self {
+        self.quick = Some(quick);
+        self
+    }
+}
 
 const STUDIES: [Study; 15] = [
-    ("dice", "areas of a triangle in the cells of a grid", run_dice),
-    ("micropoint", "pictures against point sampling; foliage; shadows across texels", micropoint::run),
-    ("shadow", "shadows against a shadow map, area lights against samples", shadow::run),
-    ("shade", "energy, reciprocity and time of every reflection model; fails if one makes light", shade::run),
-    ("ibpr", "raw range scans against the surface that they measured", ibpr::run),
-    ("surfel", "point clouds against rays through a lens; fails if order or threads show", surfel::run),
-    (
+    Study::new("dice", "areas of a triangle in the cells of a grid", run_dice).with_quick(run_dice),
+    Study::new(
+        "micropoint",
+        "pictures against point sampling; foliage; shadows across texels",
+        micropoint::run,
+    )
+    .with_quick(micropoint::run_quick),
+    Study::new("shadow", "shadows against a shadow map, area lights against samples", shadow::run),
+    Study::new(
+        "shade",
+        "energy, reciprocity and time of every reflection model; fails if one makes light",
+        shade::run,
+    )
+    .with_quick(shade::run),
+    Study::new("ibpr", "raw range scans against the surface that they measured", ibpr::run),
+    Study::new(
+        "surfel",
+        "point clouds against rays through a lens; fails if order or threads show",
+        surfel::run,
+    )
+    .with_quick(surfel::run_quick),
+    Study::new(
         "shprobe",
         "light probes: coefficients, tetrahedra, placement, against direct integration",
         shprobe::run,
     ),
-    ("together", "whole pictures by radiosity and by probes, against paths", shprobe::together::run),
-    ("radiosity", "form factors, hemicubes and solutions: time against error", radiosity::run),
-    ("stress", "input at the limits of numbers; fails if a row does", stress::run),
-    ("expected", "what `--dry-run` and `--error` say beside what is true", expected::run),
-    ("speed", "whole pictures: seconds, threads, memory", speed::run),
-    ("growth", "time and memory of every stage against its size", growth::run),
-    ("skip", "what costs nothing where it has nothing to do", skip::run),
-    ("report", "report.html, one page of all that is there", report::run),
+    Study::new(
+        "together",
+        "whole pictures by radiosity and by probes, against paths",
+        shprobe::together::run,
+    ),
+    Study::new("radiosity", "form factors, hemicubes and solutions: time against error", radiosity::run),
+    Study::new("stress", "input at the limits of numbers; fails if a row does", stress::run)
+        .with_quick(stress::run),
+    Study::new("expected", "what `--dry-run` and `--error` say beside what is true", expected::run),
+    Study::new("speed", "whole pictures: seconds, threads, memory", speed::run),
+    Study::new("growth", "time and memory of every stage against its size", growth::run)
+        .with_quick(growth::run_quick),
+    Study::new("skip", "what costs nothing where it has nothing to do", skip::run),
+    Study::new("report", "report.html, one page of all that is there", report::run).with_quick(report::run),
 ];
 
 fn run_dice(out_dir: &Path) -> Outcome {
     dice::run(out_dir)?;
     Ok(true)
+}
+
+/// Small sizes of those that have such, into the temporary folder; `false` if one of them failed.
+fn run_quick(studies: &[Study]) -> Outcome {
+    let out_dir = trial_folder();
+    take_one_run_each();
+    let mut passed = true;
+    for study in studies {
+        let Some(quick) = study.quick else { continue };
+        let start = std::time::Instant::now();
+        passed &= quick(&out_dir)?;
+        eprintln!("{}: {:.0} s", study.name, start.elapsed().as_secs_f64());
+    }
+    Ok(passed)
 }
 
 /// Draws the pictures, too; the table is printed.
@@ -60,10 +114,10 @@ fn together_with_pictures(folder: &str) -> Outcome {
 
 fn usage() -> String {
     let mut text = "usage: studies NAME\n\nWrites studies/results/NAME.*; NAME is one of\n".to_owned();
-    for (name, what, _) in STUDIES {
+    for Study { name, what, .. } in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`micropoint quick` prints a trial of a minute; `surfel quick` and `shprobe quick` take some minutes and write elsewhere. `shprobe --pictures DIR` and `together DIR` draw, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`.\n"
+    text + "  all         all of these\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`.\n"
 }
 
 fn main() -> ExitCode {
@@ -85,22 +139,30 @@ fn main() -> ExitCode {
             let ended = row.is_some_and(|(stage, size)| growth::run_row(stage, size));
             return if ended { ExitCode::SUCCESS } else { ExitCode::FAILURE };
         }
-        ["surfel", "quick"] => return code(surfel::run_quick()),
-        ["micropoint", "quick"] => return code(micropoint::run_quick()),
+        ["quote"] => return code(quote::run(&out_dir, false)),
+        ["quote", "--check"] => return code(quote::run(&out_dir, true)),
+        ["quick"] => return code(run_quick(&STUDIES)),
+        [name, "quick"] if name != "shprobe" => match STUDIES.iter().find(|s| s.name == name) {
+            Some(study) if study.quick.is_some() => return code(run_quick(std::slice::from_ref(study))),
+            _ => {
+                eprintln!("`{name}` has no quick form; see --help");
+                return ExitCode::from(2);
+            }
+        },
         ["micropoint", "foliage"] => return code(micropoint::foliage::run(&out_dir)),
         ["micropoint", "checker"] => return code(micropoint::checker::run(&out_dir)),
         ["shadow", "area"] => return code(shadow::area::run(&out_dir)),
         ["radiosity", _, ..] => return code(radiosity::run_parts(&out_dir, &arguments[1..])),
         ["together", folder] => return code(together_with_pictures(folder)),
         ["shprobe", _, ..] => return code(shprobe::run_with(&out_dir, &arguments[1..])),
-        [name] if name == "all" || STUDIES.iter().any(|s| s.0 == name) => name,
+        [name] if name == "all" || STUDIES.iter().any(|s| s.name == name) => name,
         _ => {
             eprint!("{}", usage());
             return ExitCode::from(2);
         }
     };
-    let chosen = STUDIES.iter().filter(|s| name == "all" || s.0 == name);
-    let codes: Vec<ExitCode> = chosen.map(|(_, _, study)| code(study(&out_dir))).collect();
+    let chosen = STUDIES.iter().filter(|s| name == "all" || s.name == name);
+    let codes: Vec<ExitCode> = chosen.map(|study| code((study.run)(&out_dir))).collect();
     codes.into_iter().find(|c| *c != ExitCode::SUCCESS).unwrap_or(ExitCode::SUCCESS)
 }
 

@@ -14,6 +14,7 @@ use glam::{DVec3, dvec3};
 use pointillist_micropoint::{MicropointOptions, Occlusion};
 use pointillist_render::Scene;
 
+use crate::common::charts::chart;
 use crate::common::closed_form;
 use crate::common::data;
 use crate::common::draw;
@@ -22,9 +23,7 @@ use crate::common::picture::Picture;
 use crate::common::point_sampling;
 use crate::common::provenance::provenance;
 use crate::common::ray_reference::Tree;
-use crate::common::report::{
-    Outcome, Row, chart, on_one_thread, scenes, table, time_ratio, write, write_csv,
-};
+use crate::common::report::{Outcome, Row, on_one_thread, scenes, table, time_ratio, write, write_csv};
 use crate::common::timing::{HOW, Timing, timed};
 
 /// Pixels on a side.
@@ -66,17 +65,23 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     Ok(foliage::run(out_dir)? && checker::run(out_dir)?)
 }
 
-/// A trial of a minute: pictures by the default rule alone, printed and not written.
-pub(crate) fn run_quick() -> Outcome {
-    println!("| scene | setting | RMSE | largest error | seconds |\n| --- | --- | ---: | ---: | ---: |");
+/// A trial of a minute: pictures by the default rule alone.
+pub(crate) fn run_quick(out_dir: &Path) -> Outcome {
+    let mut text = format!(
+        "# Pictures: a trial\n\n`studies -- micropoint quick` made this ({}).\n\n| scene | setting | RMSE | largest error | seconds |\n\
+         | --- | --- | ---: | ---: | ---: |\n",
+        provenance()
+    );
     for case in cases(QUICK_LINES) {
         let rows =
             on_one_thread(|| [1, 2, 4].map(|cells| our_row(&case, Occlusion::Correlated, true, cells)));
         for Row { scene, setting, rmse, largest, time, .. } in rows {
-            println!("| {scene} | {setting} | {rmse:.2e} | {largest:.2e} | {time} |");
+            let _ = writeln!(text, "| {scene} | {setting} | {rmse:.2e} | {largest:.2e} | {time} |");
         }
     }
-    print!("{}{}", growth::section(), bumps::section());
+    text += &(growth::section() + &bumps::section());
+    print!("{text}");
+    write(out_dir, "micropoint.md", &text)?;
     Ok(true)
 }
 

@@ -28,7 +28,7 @@ pub struct FrameCounts {
     pub nodes: usize,
     /// Nodes among them that were skipped in all tiles, because other surfaces hide them.
     pub nodes_hidden: usize,
-    /// Nodes outside the view; their children are not visited.
+    /// Nodes outside the view, whose children are not visited, and of those in view the ones beside the window.
     pub nodes_outside: usize,
     /// Nodes that face away; their children are not visited.
     pub nodes_facing_away: usize,

@@ -13,7 +13,6 @@ use crate::shade::Shader;
 use crate::tile::Tile;
 use pointillist_parallel::{self as parallel, Pool};
 use pointillist_view::{PixelRect, View};
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Draws frames. Keeps its working memory, so that later frames allocate next to nothing.
@@ -59,8 +58,15 @@ impl Renderer {
         options.check()?;
         let camera = Camera::new(view, &cloud.lattice, &cloud.nodes[0], &options.focus);
         frame.reshape(width as usize, height as usize, options.surface_layers);
+        let wanted = options.window.unwrap_or(view.picture());
+        // What lies beside the window is not looked at, so it is not known to be hidden. The paper's procedure has no windows.
+        let tiles = match options.procedure {
+            Procedure::Blended => tiles_of(&wanted),
+            Procedure::Paper => tiles_of(&view.picture()),
+        };
         let mut counts = FrameCounts::default();
-        select::select(cloud, &camera, options, &mut self.selected, &mut self.stack, &mut counts);
+        let lists = (&mut self.selected, &mut self.stack);
+        select::select(cloud, &camera, options, &tiles, lists, &mut counts);
         let shader = Shader::new(&camera, options, cloud.has_colors());
         let mut shown = std::mem::take(&mut self.shown);
         shown.clear();
@@ -69,15 +75,11 @@ impl Renderer {
         shown.resize_with(self.selected.len(), || AtomicBool::new(is_paper));
         let Options { culling, surface_layers: normals, .. } = *options;
         let scene = Scene { cloud, camera, shader, culling, normals, shown: &shown };
-        let wanted = options.window.unwrap_or(view.picture());
         match options.procedure {
             Procedure::Blended => self.blend(&scene, &wanted, frame),
             Procedure::Paper => self.link_and_filter(&scene, frame),
         }
-        // What lies beside the window is not looked at, so it is not known to be hidden.
-        let tiles = tiles_of(&wanted);
-        let looked_at = nodes_in(&self.selected, &tiles);
-        counts.nodes_hidden = looked_at.filter(|s| !shown[s.place as usize].load(Ordering::Relaxed)).count();
+        counts.nodes_hidden = shown.iter().filter(|shown| !shown.load(Ordering::Relaxed)).count();
         frame.counts = counts;
         self.shown = shown;
         Ok(())
@@ -140,9 +142,5 @@ fn tiles_of(window: &PixelRect) -> TileRect {
 
 /// The nodes with parts in some of the pixels.
 fn nodes_in(selected: &[Selected], rect: &TileRect) -> impl Iterator<Item = Selected> + Clone {
-    let (x, y) = (rect.x..rect.x + rect.width, rect.y..rect.y + rect.height);
-    let meets = |ends: [u16; 2], range: &Range<usize>| {
-        usize::from(ends[0]) < range.end && usize::from(ends[1]) >= range.start
-    };
-    selected.iter().filter(move |s| meets(s.y, &y) && meets(s.x, &x)).copied()
+    selected.iter().filter(|s| s.meets(rect)).copied()
 }

@@ -3,6 +3,7 @@
 use crate::camera::{Camera, REACH};
 use crate::cloud::Cloud;
 use crate::frame::FrameCounts;
+use crate::grid::TileRect;
 use crate::node::Node;
 use crate::options::Options;
 use crate::spacing::{Angles, Depths, REACH_ROUNDED_UP, largest_spacing};
@@ -28,13 +29,23 @@ pub(crate) struct Selected {
     pub(crate) thickness: f32,
 }
 
-/// Walks the tree from its root. The nearest nodes come first.
+impl Selected {
+    /// Whether some of its parts are in some of the pixels.
+    pub(crate) fn meets(&self, rect: &TileRect) -> bool {
+        let meets = |ends: [u16; 2], from: usize, size: usize| {
+            usize::from(ends[0]) < from + size && usize::from(ends[1]) >= from
+        };
+        meets(self.y, rect.y, rect.height) && meets(self.x, rect.x, rect.width)
+    }
+}
+
+/// Walks the tree from its root and lists what is to be drawn in `tiles`, the nearest nodes first.
 pub(crate) fn select(
     cloud: &Cloud,
     camera: &Camera,
     options: &Options,
-    selected: &mut Vec<Selected>,
-    stack: &mut Vec<u32>,
+    tiles: &TileRect,
+    (selected, stack): (&mut Vec<Selected>, &mut Vec<u32>),
     counts: &mut FrameCounts,
 ) {
     selected.clear();
@@ -59,12 +70,17 @@ pub(crate) fn select(
             stack.extend(node.children.clone());
             continue;
         }
+        let Seen { x, y, margin, nearest, thickness, .. } = seen;
+        let found = Selected { node: number, place: 0, x, y, margin, in_pairs, nearest, thickness };
+        if !found.meets(tiles) {
+            counts.nodes_outside += 1;
+            continue;
+        }
         let drawn = if in_pairs { node.count_in_pairs() } else { node.items.len() };
         counts.nodes += 1;
         counts.points += drawn;
         counts.links += if node.is_leaf() { 0 } else { drawn };
-        let Seen { x, y, margin, nearest, thickness, .. } = seen;
-        selected.push(Selected { node: number, place: 0, x, y, margin, in_pairs, nearest, thickness });
+        selected.push(found);
     }
     selected.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.node.cmp(&b.node)));
     selected.iter_mut().zip(0..).for_each(|(s, place)| s.place = place);

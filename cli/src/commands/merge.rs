@@ -80,8 +80,14 @@ fn with_numbers(options: &MergeOptions) -> Result<MergeOptions, CliError> {
 
 fn read_part(path: &Path) -> Result<Part, CliError> {
     let name = name_of(path);
-    let fault = |message: String| CliError::Input(InputError::of_file(&name, message));
+    let fault = |message: String| {
+        let error = InputError::of_file(&name, message);
+        CliError::Input(error.with_help(
+            "parts are the EXR files of `--tile`, as in `render scene.toml --tile 0/4 -o part0.exr`",
+        ))
+    };
     let bytes = input::read(path)?;
+    input::not_empty(&name, &bytes)?;
     let mut file = ExrFile::read(&bytes).map_err(|error| fault(format!("cannot be decoded: {error}")))?;
     let stamp = file.stamp.take();
     let stamp =

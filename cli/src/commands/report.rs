@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::image_io::{check_writable, write_atomically};
 use crate::input::is_standard;
-use crate::job::{Expected, Progress, Stats};
+use crate::job::{Expected, IS_DEBUG_BUILD, Progress, Stats};
 use crate::memory;
 use crate::options::Common;
 use std::io::{self, BufWriter, Write};
@@ -101,6 +101,11 @@ impl<'a> Report<'a> {
     /// Writes `--stats`, and with `-v` the seconds of every stage.
     pub(super) fn finish(&self) -> Result<(), CliError> {
         let json = self.stats.to_json();
+        let shows_times =
+            self.common.stats.is_some() || self.common.verbose || json.get("expected").is_some();
+        if IS_DEBUG_BUILD && shows_times {
+            self.warn("this is a debug build: it takes several times as long as one made with `cargo build --release`");
+        }
         if let Some(seconds) = json["seconds"].as_object() {
             for (stage, value) in seconds {
                 self.detail(&format!("{stage:>10} {:.3} s", value.as_f64().unwrap_or_default()));

@@ -87,6 +87,7 @@ enum Decoded {
 fn decode(path: &Path) -> Result<Decoded, InputError> {
     let name = input::name_of(path);
     let bytes = input::read(path)?;
+    input::not_empty(&name, &bytes)?;
     let fault = |message: String| {
         let error = InputError::of_file(&name, format!("cannot be decoded: {message}"));
         error.with_help("EXR, PNG, JPEG and HDR pictures can be read")

@@ -8,7 +8,7 @@ mod watch;
 
 pub use expected::Expected;
 pub use progress::{Progress, ProgressMode};
-pub use stats::{Stats, ThreadClock};
+pub use stats::{IS_DEBUG_BUILD, Stats, ThreadClock};
 pub use watch::{Piece, Watch};
 
 use crate::image_io::{LayerKind, PixelRect};

@@ -8,6 +8,9 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+/// Whether this program was compiled for debugging, with checks and without optimisation.
+pub const IS_DEBUG_BUILD: bool = cfg!(debug_assertions);
+
 thread_local! {
     /// When the lap of this thread began.
     static LAP: Cell<Option<ThreadTime>> = const { Cell::new(None) };
@@ -40,6 +43,9 @@ struct Record {
     frame_ms: Option<FrameTimes>,
     #[serde(skip_serializing_if = "Option::is_none")]
     frame_cpu_ms: Option<FrameTimes>,
+    /// Whether it was not optimised: its seconds are not those of the program that people install.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    debug_build: bool,
     #[serde(skip)]
     frames: Vec<(Duration, Duration)>,
 }
@@ -151,6 +157,7 @@ impl Stats {
             record.seconds.entry(key.clone()).or_default();
             record.cpu_seconds.entry(key).or_default();
         }
+        record.debug_build = IS_DEBUG_BUILD;
         record.peak_bytes = crate::memory::peak_bytes();
         record.frame_ms = FrameTimes::of(record.frames.iter().map(|f| f.0));
         record.frame_cpu_ms = FrameTimes::of(record.frames.iter().map(|f| f.1));

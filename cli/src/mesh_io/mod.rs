@@ -12,6 +12,7 @@ mod obj_index;
 mod obj_lines;
 mod obj_plain;
 mod ply;
+mod ply_records;
 mod triangulate;
 
 pub use mtl::{MtlMaterial, read_mtl};

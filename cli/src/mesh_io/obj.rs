@@ -4,6 +4,7 @@ use super::obj_index::Kinds;
 use super::obj_lines::{LineFault, ObjLines};
 use super::{FileMesh, triangulate};
 use crate::coordinate::{LARGEST, is_usable};
+use crate::input;
 use crate::input_error::InputError;
 use glam::{DVec2, DVec3, Vec3};
 use pointillist_render::NONE;
@@ -23,6 +24,7 @@ const OPTIONS: LoadOptions =
 ///
 /// A line that cannot be read, an index out of range, a number that is not finite: with the line.
 pub fn read_obj(name: &str, bytes: &[u8]) -> Result<FileMesh, InputError> {
+    input::not_empty(name, bytes)?;
     // A second look finds the line of what is wrong.
     read_lines(name, bytes, ObjLines::new(bytes))
         .or_else(|_| read_lines(name, bytes, ObjLines::one_by_one(bytes)))

@@ -1,94 +1,13 @@
 //! PLY: ascii and binary, vertices with x y z (and nx ny nz, u v or s t), faces of any size.
 
+use super::ply_records::{Face, PlyFault, PlyRecords, Vertex};
 use super::{FileMesh, triangulate};
 use crate::coordinate::{LARGEST, is_usable};
+use crate::input;
 use crate::input_error::InputError;
-use glam::{DVec2, DVec3, Vec3};
-use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::parser::ParseError;
+use ply_rs_bw::ply::{Encoding, Header};
 use pointillist_render::NONE;
-use std::io::Cursor;
-
-#[derive(Debug, Default)]
-struct Vertex {
-    position: DVec3,
-    normal: Vec3,
-    uv: DVec2,
-}
-
-#[derive(Debug, Default)]
-struct Face(Vec<i64>);
-
-impl Vertex {
-    fn set(&mut self, name: &str, value: f64) -> PropertyAccessResult {
-        match name {
-            "x" => self.position.x = value,
-            "y" => self.position.y = value,
-            "z" => self.position.z = value,
-            "nx" => self.normal.x = value as f32,
-            "ny" => self.normal.y = value as f32,
-            "nz" => self.normal.z = value as f32,
-            "u" | "s" | "texture_u" => self.uv.x = value,
-            "v" | "t" | "texture_v" => self.uv.y = value,
-            _ => return PropertyAccessResult::Ignored,
-        }
-        PropertyAccessResult::Set
-    }
-}
-
-impl PropertyAccess for Vertex {
-    fn new() -> Self {
-        Self::default()
-    }
-    fn set_float(&mut self, name: &str, value: f32) -> PropertyAccessResult {
-        self.set(name, f64::from(value))
-    }
-    fn set_double(&mut self, name: &str, value: f64) -> PropertyAccessResult {
-        self.set(name, value)
-    }
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        match value {
-            Property::Char(n) => self.set(name, f64::from(n)),
-            Property::UChar(n) => self.set(name, f64::from(n)),
-            Property::Short(n) => self.set(name, f64::from(n)),
-            Property::UShort(n) => self.set(name, f64::from(n)),
-            Property::Int(n) => self.set(name, f64::from(n)),
-            Property::UInt(n) => self.set(name, f64::from(n)),
-            _ => PropertyAccessResult::Ignored,
-        }
-    }
-}
-
-impl PropertyAccess for Face {
-    fn new() -> Self {
-        Self::default()
-    }
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        if name != "vertex_indices" && name != "vertex_index" {
-            return PropertyAccessResult::Ignored;
-        }
-        self.0 = match value {
-            Property::ListChar(list) => list.into_iter().map(i64::from).collect(),
-            Property::ListUChar(list) => list.into_iter().map(i64::from).collect(),
-            Property::ListShort(list) => list.into_iter().map(i64::from).collect(),
-            Property::ListUShort(list) => list.into_iter().map(i64::from).collect(),
-            Property::ListInt(list) => list.into_iter().map(i64::from).collect(),
-            Property::ListUInt(list) => list.into_iter().map(i64::from).collect(),
-            _ => return PropertyAccessResult::UnsupportedType,
-        };
-        PropertyAccessResult::Set
-    }
-}
-
-/// Something that is read and thrown away.
-#[derive(Debug)]
-struct Other;
-
-impl PropertyAccess for Other {
-    fn new() -> Self {
-        Self
-    }
-}
 
 /// Reads a PLY; `name` is how messages call it.
 ///
@@ -96,33 +15,16 @@ impl PropertyAccess for Other {
 ///
 /// Not a PLY, no vertices with x y z, an index out of range, a number that is not finite.
 pub fn read_ply(name: &str, bytes: &[u8]) -> Result<FileMesh, InputError> {
-    let mut reader = Reader::new(Cursor::new(bytes));
-    let header = Parser::<Other>::new().read_header(&mut reader).map_err(|e| fault(name, bytes, &e))?;
-    let has = |property: &str| {
-        header.elements.get("vertex").is_some_and(|vertex| vertex.properties.contains_key(property))
-    };
-    if !["x", "y", "z"].into_iter().all(has) {
-        return Err(InputError::of_file(name, "the PLY file has no element `vertex` with x, y and z"));
-    }
-    let has_normals = ["nx", "ny", "nz"].into_iter().all(has);
-    let has_uvs =
-        [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]].iter().any(|pair| pair.iter().all(|p| has(p)));
-    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
-    for (element_name, element) in &header.elements {
-        check_count(name, element_name, element.count, bytes.len())?;
-        let result = match element_name.as_str() {
-            "vertex" => Parser::<Vertex>::new()
-                .read_payload_for_element(&mut reader, element, &header)
-                .map(|read| vertices = read),
-            "face" => Parser::<Face>::new()
-                .read_payload_for_element(&mut reader, element, &header)
-                .map(|read| faces = read),
-            _ => Parser::<Other>::new().read_payload_for_element(&mut reader, element, &header).map(|_| ()),
-        };
-        result.map_err(|error| fault(name, bytes, &error))?;
-    }
-    check_numbers(name, bytes, &header, &vertices)?;
-    build(name, &vertices, &faces, has_normals, has_uvs)
+    input::not_empty(name, bytes)?;
+    let records = PlyRecords::read(bytes).map_err(|problem| match problem {
+        PlyFault::Parse(error) => fault(name, bytes, &error),
+        _ => InputError::of_file(name, problem.to_string()),
+    })?;
+    check_numbers(name, bytes, &records.header, &records.vertices)?;
+    let has_all = |properties: &[&str]| properties.iter().all(|property| records.has(property));
+    let has_normals = has_all(&["nx", "ny", "nz"]);
+    let has_uvs = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]].iter().any(|pair| has_all(pair));
+    build(name, &records.vertices, &records.faces, has_normals, has_uvs)
 }
 
 /// Refuses numbers that are not finite or too large, with the line if they stand in text.
@@ -139,15 +41,6 @@ fn check_numbers(name: &str, bytes: &[u8], header: &Header, vertices: &[Vertex])
         Some(end) => InputError::in_line(name, bytes, end + 2 + index, message),
         None => InputError::of_file(name, message),
     })
-}
-
-/// A header that promises more than the file can hold is refused before memory is asked for.
-fn check_count(name: &str, element: &str, count: usize, bytes: usize) -> Result<(), InputError> {
-    if count > bytes || u32::try_from(count).is_err() {
-        let message = format!("{count} of `{element}` are announced, but the file has only {bytes} bytes");
-        return Err(InputError::of_file(name, message));
-    }
-    Ok(())
 }
 
 fn fault(name: &str, bytes: &[u8], error: &ParseError) -> InputError {

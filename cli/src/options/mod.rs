@@ -10,6 +10,7 @@ mod render;
 mod sample;
 mod scan;
 mod surfel;
+mod tips;
 mod values;
 
 pub use cloud_look::{BoxValue, CloudLook, RangeValue};
@@ -53,8 +54,9 @@ impl Cli {
     /// Reads the command line. Ends the program after `--help`, and for options that cannot be used.
     #[must_use]
     pub fn read() -> Self {
-        let matches = with_negative_numbers(Self::command()).get_matches();
-        Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+        let matches = with_negative_numbers(Self::command()).try_get_matches();
+        let read = matches.and_then(|matches| Self::from_arg_matches(&matches));
+        read.unwrap_or_else(|error| tips::with_tip(error).exit())
     }
 }
 

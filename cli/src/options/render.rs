@@ -1,7 +1,7 @@
 //! `render`.
 
 use super::Common;
-use super::values::{self, Colour, FrameRange, Tile, Vector};
+use super::values::{self, Colour, FrameRange, Surroundings, Tile, Vector};
 use crate::error::CliError;
 use crate::image_io::{Bits, PixelRect};
 use crate::scene::Overrides;
@@ -33,9 +33,10 @@ pub struct RenderOptions {
     #[arg(long, value_name = "N", value_parser = values::whole::<u32>(1..=100_000))]
     pub turntable: Option<u32>,
     /// For models: a map of their surroundings (.hdr, .exr, .png, .jpg; equirectangular, +Y up), which lights them, is mirrored, and is
-    /// seen behind them, in a PNG and EXR under alpha 0 (with --bg the colour is)
+    /// seen behind them, in a PNG and EXR under alpha 0 (with --bg the colour is). Or a cube: one picture of six faces in a strip,
+    /// or six with commas between them, +X,-X,+Y,-Y,+Z,-Z
     #[arg(long, value_name = "MAP")]
-    pub env: Option<PathBuf>,
+    pub env: Option<Surroundings>,
     /// Further layers in the EXR: `all`, or a list of N, P, albedo, direct, indirect, lit, lit.NAME, id, and cryptomatte, which `all` leaves
     /// out (objects and materials by name with their coverage; cryptomatte.object and cryptomatte.material are one of the two)
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
@@ -72,9 +73,7 @@ impl RenderOptions {
             overrides.assignments.push((option.to_owned(), assignment));
         };
         if let Some(map) = &self.env {
-            // A JSON string is a TOML string, too, whatever characters the name holds.
-            let path = serde_json::Value::from(map.to_string_lossy().as_ref());
-            add("--env", format!("image.environment={path}"));
+            add("--env", map.assignment());
             if !self.set.iter().any(|assignment| assignment.trim_start().starts_with("ambient.")) {
                 add("--env", "ambient.environment=true".to_owned());
             }

@@ -61,6 +61,42 @@ impl FromStr for Colour {
     }
 }
 
+/// Pictures of all directions: one, or the six faces of a cube.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Surroundings(Vec<String>);
+
+impl FromStr for Surroundings {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let pieces: Vec<&str> = text.split(',').collect();
+        // A name with commas is the name of a file if there is one.
+        let one = pieces.len() == 1 || Path::new(text).is_file();
+        let names = if one { vec![text] } else { pieces };
+        if names.iter().any(|name| name.is_empty()) {
+            return Err("the name of a picture is empty".to_owned());
+        }
+        match names.len() {
+            1 | 6 => Ok(Self(names.into_iter().map(str::to_owned).collect())),
+            count => Err(format!(
+                "{count} pictures; it must be one of all directions, or six of the faces of a cube: +X,-X,+Y,-Y,+Z,-Z"
+            )),
+        }
+    }
+}
+
+impl Surroundings {
+    /// What `--set` takes.
+    pub fn assignment(&self) -> String {
+        // A JSON string is a TOML string, too, whatever characters the name holds.
+        let value = match &self.0[..] {
+            [name] => serde_json::Value::from(name.as_str()),
+            faces => serde_json::Value::from(faces),
+        };
+        format!("image.environment={value}")
+    }
+}
+
 /// Bits of a number in a PNG.
 pub(super) fn bits(text: &str) -> Result<Bits, String> {
     match text {

@@ -101,10 +101,13 @@ impl Finder<'_> {
             );
         }
         if !has_opengl {
-            report("ambient", "no material has model = \"opengl\"");
+            for key in ["ambient", "specular"] {
+                report(key, "no material has model = \"opengl\"");
+            }
         }
         if let Some((key, Vec3::ZERO)) = power(&light.light)
             && light.ambient == Vec3::ZERO
+            && light.specular.is_none_or(|specular| specular == Vec3::ZERO || !has_opengl)
         {
             report(key, "the light is black");
         }

@@ -175,7 +175,8 @@ fn ambient(
 fn lights(description: &Description) -> Vec<LightSource> {
     let source = |light: &super::description::LightDescription| {
         let source = LightSource::new(&light.name, light.light);
-        source.with_ambient(light.ambient).with_shadow(light.shadow).with_resolution(light.resolution)
+        let source = source.with_ambient(light.ambient).with_specular(light.specular);
+        source.with_shadow(light.shadow).with_resolution(light.resolution)
     };
     description.lights.iter().map(source).collect()
 }

@@ -115,7 +115,7 @@ fn vertices_that_are_not_finite_are_shown() {
 
 #[test]
 fn a_mesh_without_faces_is_refused() {
-    obj_error("", &["no faces"]);
+    obj_error("", &["the file is empty"]);
     obj_error("v 0 0 0\n", &["no faces"]);
 }
 
@@ -155,6 +155,37 @@ fn more_pixels_than_memory_are_refused_with_the_amount() {
         2,
         &["--size 1000000x1000000", "TiB", "--tile"],
     );
+}
+
+/// What new users stumbled over: each message says what to do instead.
+#[test]
+fn usual_slips_have_a_way_out() {
+    let folder = Folder::new();
+    folder.fails(&["scene.toml"], 2, &["a command comes first: pointillist render scene.toml"]);
+    folder.fails(&["house.conf"], 2, &["a command comes first: pointillist scan house.conf"]);
+    folder.fails(&["rendr", "scene.toml"], 2, &["'render'"]);
+    folder.fails(
+        &["render", "scene.toml", "--eye", "1", "2", "3"],
+        2,
+        &["commas between them", "--eye 1,2,3"],
+    );
+    folder.fails(&["render", "scene.toml", "--sise", "4x3"], 2, &["'--size'"]);
+    folder.write("bare.toml", "[[object]]\nmesh = models/house.obj # as it is\n");
+    folder.fails(
+        &["check", "bare.toml"],
+        3,
+        &["bare.toml:2:", "text stands in quotes: \"models/house.obj\""],
+    );
+    folder.fails(&["dice", "{\"polygon\":[]}"], 3, &["by standard input: echo"]);
+    for name in ["e.obj", "e.ply", "e.glb", "e.gltf"] {
+        folder.write(name, "");
+        folder.fails(&["render", name], 3, &[name, "the file is empty", "get or write it again"]);
+    }
+    folder.write("e.exr", "");
+    folder.fails(&["compare", "e.exr", "e.exr"], 3, &["e.exr", "the file is empty"]);
+    folder.fails(&["merge", "e.exr", "-o", "all.exr"], 3, &["e.exr", "the file is empty"]);
+    folder.prints(&["render", "scene.toml", "-o", "a.png", "--quiet"]);
+    folder.fails(&["merge", "a.png", "-o", "all.exr"], 3, &["a.png", "parts are the EXR files of `--tile`"]);
 }
 
 #[test]

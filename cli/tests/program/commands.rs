@@ -142,6 +142,25 @@ fn compare_measures_and_limits() {
 }
 
 #[test]
+fn times_of_a_debug_build_are_called_so() {
+    let folder = Folder::new();
+    let told = |line: &[&str]| {
+        let output = folder.command(line).output().expect("the command runs");
+        assert!(output.status.success());
+        String::from_utf8_lossy(&output.stderr).contains("this is a debug build")
+    };
+    let stats = |name: &str| -> serde_json::Value {
+        serde_json::from_slice(&fs::read(folder.path(name)).unwrap()).unwrap()
+    };
+    // The program is of the same build as this test.
+    let is_debug = cfg!(debug_assertions);
+    assert_eq!(told(&["render", "scene.toml", "-o", "a.png", "--stats", "s.json"]), is_debug);
+    assert_eq!(stats("s.json").get("debug_build").is_some_and(|v| v == true), is_debug);
+    assert_eq!(told(&["render", "scene.toml", "--dry-run"]), is_debug);
+    assert!(!told(&["render", "scene.toml", "-o", "b.png"]), "no times were asked for");
+}
+
+#[test]
 fn stats_have_the_keys_that_are_promised() {
     let folder = Folder::new();
     folder.prints(&["render", "scene.toml", "-o", "a.png", "--stats", "s.json"]);

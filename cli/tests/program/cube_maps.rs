@@ -99,6 +99,42 @@ fn mirrors_and_matt_surfaces_see_the_cube() {
 }
 
 #[test]
+fn plain_models_stand_in_a_cube_of_six_pictures() {
+    let folder = folder();
+    faces(&folder);
+    let model = ["render", "square.obj", "--size", "24x24", "--float", "--overwrite", "-o", "m.exr"];
+    let draw = |env: &str| {
+        folder.prints(&[&model[..], &["--env", env]].concat());
+        std::fs::read(folder.path("m.exr")).expect("a picture")
+    };
+    // The same cube in one picture gives the same bytes, but for the fingerprint.
+    let six = FACES.join(",");
+    let seen = |bytes: &[u8]| {
+        let file = pointillist_cli::image_io::ExrFile::read(bytes).expect("EXR");
+        ["R", "G", "B", "A"].map(|c| file.plane(c).expect("a channel"))
+    };
+    assert_eq!(seen(&draw(&six)), seen(&draw("right.png")));
+    assert_ne!(seen(&draw(&six)), seen(&draw("px.png")));
+    let fails = |env: &str, code: i32, pieces: &[&str]| {
+        folder.fails(&[&model[..], &["--env", env]].concat(), code, pieces);
+    };
+    fails("px.png,nx.png", 2, &["--env", "2 pictures", "+X,-X,+Y,-Y,+Z,-Z"]);
+    fails("px.png,,py.png", 2, &["--env", "empty"]);
+    fails("", 2, &["--env", "empty"]);
+    fails(&six.replace("pz", "lost"), 3, &["--env", "lost.png", "cannot be read"]);
+    picture(&folder, "wide.png", 8, 4, |_, _| [0; 3]);
+    fails(&six.replace("ny", "wide"), 3, &["wide.png", "all six faces of a cube must be 8×8"]);
+    // A comma in the name of a file that is there is part of the name.
+    std::fs::copy(folder.path("right.png"), folder.path("a,b.png")).expect("copied");
+    assert_eq!(seen(&draw("a,b.png")), seen(&draw(&six)));
+    folder.fails(
+        &["render", "scene.toml", "--env", &six],
+        2,
+        &["--env is for models", "--set 'image.environment=[\"px.png\",\"nx.png\""],
+    );
+}
+
+#[test]
 fn maps_are_looked_up_by_normals_where_that_is_asked_for() {
     let folder = folder();
     faces(&folder);

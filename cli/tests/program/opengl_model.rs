@@ -14,6 +14,7 @@ position = [2, 1, 3]
 intensity = [0.9, 0.5, 0.7]
 attenuation = [0.5, 0.1, 0.02]
 ambient = [0.2, 0.1, 0.05]
+specular = [0.1, 0.8, 0.4]
 [[light]]
 type = "spot"
 position = [-1, 0, 4]
@@ -28,6 +29,7 @@ type = "directional"
 direction = [-1, -2, -2]
 irradiance = [0.3, 0.3, 0.6]
 ambient = [0.02, 0, 0]
+specular = [0.5, 0, 0.1]
 "#;
 
 fn lights() -> [gl::Light; 3] {
@@ -43,17 +45,23 @@ fn lights() -> [gl::Light; 3] {
     let at = |x, y, z| gl::Placement::At(dvec3(x, y, z));
     let constant = [1.0, 0.0, 0.0];
     [
-        light(vec3(0.9, 0.5, 0.7), vec3(0.2, 0.1, 0.05), at(2.0, 1.0, 3.0), [0.5, 0.1, 0.02]),
+        gl::Light {
+            specular: vec3(0.1, 0.8, 0.4),
+            ..light(vec3(0.9, 0.5, 0.7), vec3(0.2, 0.1, 0.05), at(2.0, 1.0, 3.0), [0.5, 0.1, 0.02])
+        },
         gl::Light {
             spot: Some(spot),
             ..light(vec3(0.4, 0.8, 0.2), vec3(0.05, 0.1, 0.2), at(-1.0, 0.0, 4.0), constant)
         },
-        light(
-            vec3(0.3, 0.3, 0.6),
-            vec3(0.02, 0.0, 0.0),
-            gl::Placement::Towards(dvec3(1.0, 2.0, 2.0)),
-            constant,
-        ),
+        gl::Light {
+            specular: vec3(0.5, 0.0, 0.1),
+            ..light(
+                vec3(0.3, 0.3, 0.6),
+                vec3(0.02, 0.0, 0.0),
+                gl::Placement::Towards(dvec3(1.0, 2.0, 2.0)),
+                constant,
+            )
+        },
     ]
 }
 
@@ -78,6 +86,36 @@ fn every_term_is_in_the_picture() {
         assert!(error < 3e-3, "{i}: {pixel:?} {wanted}");
     }
     assert_eq!(warnings(&folder, "m.toml"), "");
+}
+
+#[test]
+fn highlights_have_the_specular_light_of_their_lamp_in_every_kind_of_shading() {
+    let folder = folder();
+    let material = "model = \"opengl\"\ndiffuse = [0.5, 0.5, 0.5]\nspecular = [1, 1, 1]\nshininess = 2\n";
+    for shading in ["flat", "gouraud", "phong"] {
+        let seen = |specular: &str| {
+            draw(&folder, &format!("[render]\nshading = \"{shading}\"\n{HEAD_LIGHT}{specular}"), material)
+        };
+        // Straight from the eye both factors are 1: diffuse light of 2 · 0.5, and the highlight.
+        all(&seen(""), [3.0; 3], 1e-5);
+        all(&seen("specular = [0.25, 0, 7]\n"), [1.25, 1.0, 8.0], 1e-5);
+    }
+    // A lamp that makes nothing but highlights; its shadow is theirs, too.
+    let dark = HEAD_LIGHT.replace("[2, 2, 2]", "[0, 0, 0]") + "specular = [0.5, 1, 2]\n";
+    all(&draw(&folder, &dark, material), [0.5, 1.0, 2.0], 1e-5);
+    assert_eq!(warnings(&folder, "m.toml"), "");
+    let wall = "[[object]]\nmesh = \"square.obj\"\ntranslate = [0, 0, 5]\nscale = 3\n";
+    all(&draw(&folder, &format!("{wall}{dark}"), material), [0.0; 3], 0.0);
+    // Other materials have the light's own colour, and `check` says that the key does nothing.
+    let matt =
+        "model = \"blinn-phong\"\ndiffuse = [0.5, 0.5, 0.5]\nspecular = [0.1, 0.1, 0.1]\nshininess = 2\n";
+    let (with, without) = (
+        draw(&folder, &format!("{HEAD_LIGHT}specular = [9, 0, 0]\n"), matt),
+        draw(&folder, HEAD_LIGHT, matt),
+    );
+    assert_eq!(with, without);
+    draw(&folder, &format!("{HEAD_LIGHT}specular = [9, 0, 0]\n"), matt);
+    assert!(warnings(&folder, "m.toml").contains("`light.0.specular` has no effect"));
 }
 
 #[test]
@@ -161,6 +199,10 @@ fn keys_of_the_formula_are_refused_elsewhere() {
     let lamp =
         "type = \"line\"\nfrom = [0, 0, 1]\nto = [1, 0, 1]\nradiance = [1, 1, 1]\nambient = [1, 1, 1]\n";
     refused(&format!("[[light]]\n{lamp}"), &["unknown key `light[0].ambient`"]);
+    refused(
+        &format!("[[light]]\n{}", lamp.replace("ambient", "specular")),
+        &["unknown key `light[0].specular`"],
+    );
     let spot = "type = \"spot\"\nposition = [0, 0, 1]\ndirection = [0, 0, -1]\nintensity = [1, 1, 1]\ncutoff = 30\nexponent = -2\n";
     refused(&format!("[[light]]\n{spot}"), &["`light[0].exponent` is -2", "0 or more"]);
     draw(&folder, &format!("{HEAD_LIGHT}ambient = [1, 1, 1]\n"), "diffuse = [1, 1, 1]\n");

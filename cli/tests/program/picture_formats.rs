@@ -162,7 +162,7 @@ fn a_model_is_lit_by_a_map_and_seen_in_front_of_it() {
         assert!((hidden[i] - albedo[i]).abs() < 2e-3, "pixel {i}: {}", hidden[i]);
     }
     // Scenes name their own; what ambient light there is otherwise can be said beside the map.
-    folder.fails(&["render", "m.toml", "--env", "sky.png"], 2, &["--set image.environment=sky.png"]);
+    folder.fails(&["render", "m.toml", "--env", "sky.png"], 2, &["--set 'image.environment=\"sky.png\"'"]);
     folder.fails(&["render", "--env", "sky.png"], 2, &["--env is for models"]);
     folder.fails(&[&model[..5], &["none.hdr", "-o", "n.exr"]].concat(), 3, &["none.hdr"]);
     let dark = ["-o", "d.exr", "--bg", "black", "--set", "ambient.color=[0,0,0]", "--set", "light=[]"];

@@ -122,6 +122,79 @@ fn render_takes_the_baked_light_and_refuses_that_of_other_triangles() {
     folder.fails(&["render", "own.toml", "-o", "b.exr"], 3, &["geometry"]);
 }
 
+/// Baked light of other lights or materials fits the triangles: it is drawn, and the user is told that it is old.
+#[test]
+fn light_of_other_materials_or_lights_is_drawn_with_a_warning() {
+    let folder = corner();
+    let named = format!("{SCENE}[ambient]\nradiosity = \"baked.json\"\n");
+    let told = |scene: String, line: &[&str]| {
+        folder.write("own.toml", scene);
+        let output = folder.command(line).output().expect("it runs");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        message.contains("warning: `baked.json` was baked with other lights or materials; bake again")
+    };
+    let render = ["render", "own.toml", "--overwrite", "-o", "a.exr"];
+    let red_wall = named.replace("[0.8, 0.1, 0.1]", "[0.1, 0.1, 0.8]");
+    folder.write("own.toml", &named);
+    folder.prints(&["radiosity", "own.toml", "-o", "baked.json"]);
+    assert!(!told(named.clone(), &render));
+    for changed in [&red_wall, &named.replace("[10, 10, 10]", "[10, 10, 9]")] {
+        assert!(told(changed.clone(), &render) && told(changed.clone(), &["check", "own.toml"]));
+    }
+    // The camera and highlights are not what light was baked of.
+    assert!(!told(named.replace("fov = 40", "fov = 30"), &render));
+    folder.write("own.toml", &red_wall);
+    folder.prints(&["radiosity", "own.toml", "-o", "baked.json"]);
+    assert!(!told(red_wall, &render), "baked again");
+}
+
+#[test]
+fn light_maps_are_light_that_is_known() {
+    let folder = Folder::new();
+    // A floor, and a wall at its side whose light is mapped: one half of the map is bright, and the wall lies in the dark half, or in the bright one.
+    let mesh = |u: f64| {
+        format!(
+            "v 0 0 0\nv 2 0 0\nv 2 0 2\nv 0 0 2\nv 0 2 0\nv 0 2 2\nvt {u} 0\nvt {} 0\nvt {} 1\nvt {u} 1\n\
+             usemtl floor\nf 1 4 3\nf 1 3 2\nusemtl wall\nf 1/1 5/4 6/3\nf 1/1 6/3 4/2\n",
+            u + 0.25,
+            u + 0.25
+        )
+    };
+    super::common::square::picture(&folder, "light.png", 8, 8, |x, _| if x < 4 { [255; 3] } else { [0; 3] });
+    let scene = |wall: &str, more: &str| {
+        format!(
+            "[[object]]\nmesh = \"corner.obj\"\n[material.floor]\ndiffuse = [0.5, 0.5, 0.5]\n[material.wall]\n{wall}\n{more}"
+        )
+    };
+    let mapped = "diffuse = [0.8, 0.4, 0.2]\ncolor_space = \"linear\"\nlightmap = { file = \"light.png\", uv_set = 0 }";
+    // What it reflects of light 1: its albedo, as radiance.
+    let glowing = "diffuse = [0, 0, 0]\nemission = [0.8, 0.4, 0.2]";
+    let bake = |u: f64, wall: &str, more: &str| {
+        folder.write("corner.obj", mesh(u));
+        folder.write("c.toml", scene(wall, more));
+        let output =
+            folder.command(&["radiosity", "c.toml", "--patch", "0.5", "-o", "-"]).output().expect("it runs");
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{told}");
+        let baked: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let numbers =
+            |v: &serde_json::Value| v.as_array().expect("three").iter().filter_map(|v| v.as_f64()).collect();
+        let list =
+            baked["irradiance"].as_array().expect("a list").iter().map(numbers).collect::<Vec<Vec<f64>>>();
+        (list.concat(), told.contains("triangles have a lightmap"))
+    };
+    let (bright, told) = bake(0.125, mapped, "");
+    assert!(!told, "without lights nothing is left out");
+    let (known, _) = bake(0.125, glowing, "");
+    assert!(known.iter().any(|&e| e > 0.1));
+    assert!(bright.iter().zip(&known).all(|(a, b)| (a - b).abs() < 1e-6), "{bright:?} {known:?}");
+    let (dark, _) = bake(0.625, mapped, "");
+    assert!(dark.iter().all(|&e| e == 0.0), "{dark:?}");
+    let lamp = "[[light]]\ntype = \"point\"\nposition = [1, 1.5, 1]\nintensity = [1, 1, 1]\n";
+    assert!(bake(0.125, mapped, lamp).1, "lights are not passed on, which is told");
+}
+
 #[test]
 fn methods_agree_and_factors_add_up() {
     let folder = corner();

@@ -183,6 +183,28 @@ fn tiles_join_to_the_whole_picture_bit_for_bit() {
     }
 }
 
+/// A band of a picture costs what it shows: what lies beside it is not drawn. (Seconds would depend on the machine.)
+#[test]
+fn a_part_draws_the_points_that_it_shows() {
+    let folder = Folder::new();
+    let rabbit = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/rabbit.obj");
+    folder.prints(&["sample", rabbit, "--count", "40000", "--method", "ldi", "-o", "r.ply", "--quiet"]);
+    let drawn = |more: &[&str]| {
+        let line =
+            ["surfel", "r.ply", "--size", "640x1024", "-o", "r.exr", "--stats", "s.json", "--overwrite"];
+        folder.prints(&[&line[..], more].concat());
+        let stats: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(folder.path("s.json")).unwrap()).unwrap();
+        stats["counts"]["points_drawn"].as_u64().unwrap()
+    };
+    let whole = drawn(&[]);
+    // Eight bands of tiles; points near their borders are in both.
+    let parts: Vec<u64> = (0..8).map(|i| drawn(&["--tile", &format!("{i}/8")])).collect();
+    assert!(parts.iter().all(|&part| 2 * part < whole), "{parts:?} of {whole}");
+    assert!((whole..2 * whole).contains(&parts.iter().sum()), "{parts:?} of {whole}");
+    assert_eq!(drawn(&["--crop", "0,0,8,8"]), 0);
+}
+
 #[test]
 fn parts_of_another_picture_do_not_join() {
     let folder = folder();

@@ -1,12 +1,11 @@
 //! Facts about weights between points.
 
-use crate::{Blend, Delaunay, DelaunayError, Hint, Locator};
+use crate::{Blend, DelaunayError, Hint, Locator, Partition};
 use glam::DVec3;
 
-/// The cells between these points, ready for queries; `None` for points that are refused.
+/// The cells between these points, of the dimension that they have up to rounding, ready for queries; `None` for points that are refused.
 fn locator(points: &[DVec3]) -> Option<Locator> {
-    let delaunay = Delaunay::new(points).ok()?;
-    Locator::new(points, &delaunay.partition()).ok()
+    Locator::new(points, &Partition::up_to_rounding(points).ok()?).ok()
 }
 
 fn mixed(points: &[DVec3], blend: &Blend) -> DVec3 {

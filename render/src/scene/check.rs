@@ -180,8 +180,9 @@ fn finite(is_finite: bool, what: impl FnOnce() -> String) -> Result<(), SceneErr
 }
 
 fn check_light(source: &LightSource) -> Result<(), SceneError> {
-    let LightSource { name, light, ambient, .. } = source;
-    finite(is_finite(light) && ambient.is_finite(), || format!("light `{name}`"))?;
+    let LightSource { name, light, ambient, specular, .. } = source;
+    let colors_are_finite = ambient.is_finite() && specular.is_none_or(Vec3::is_finite);
+    finite(is_finite(light) && colors_are_finite, || format!("light `{name}`"))?;
     let (Light::Polygon { radiance, .. } | Light::Line { radiance, .. }) = light else { return Ok(()) };
     if radiance.min_element() < 0.0 {
         return Err(SceneError::NegativeLight { name: name.clone() });

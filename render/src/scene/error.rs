@@ -67,6 +67,14 @@ pub enum SceneError {
         /// The albedo of one of its colours.
         value: f32,
     },
+    /// A light map that cannot be averaged.
+    #[error("material `{material}`: its light map: {problem}")]
+    LightMap {
+        /// Its name.
+        material: String,
+        /// What is wrong with the texels.
+        problem: String,
+    },
     /// A refraction index is not above 0.
     #[error("material `{material}`: a refraction index of {value} is not above 0")]
     RefractionIndex {

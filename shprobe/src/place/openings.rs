@@ -1,7 +1,7 @@
 //! Places where what is seen changes: doorways, corners, the rims of pillars.
 
 use super::random;
-use crate::delaunay::Delaunay;
+use crate::delaunay::Partition;
 use crate::field::spacing;
 use crate::tree::{Extent, Tree};
 use crate::{DistanceMap, ProbeError, parallel};
@@ -57,7 +57,7 @@ fn scored(positions: &[DVec3], distances: &[DistanceMap]) -> Result<Vec<(f64, f6
     if positions.len() != distances.len() {
         return Err(ProbeError::CountMismatch { probes: positions.len(), given: distances.len() });
     }
-    let margin = spacing(positions, &Delaunay::new(positions)?.partition());
+    let margin = spacing(positions, &Partition::up_to_rounding(positions)?);
     let tree = Tree::new(positions.iter().copied().zip(0..), margin);
     // Whether one sees another, from −1 to 1: half seen is what coarse maps say of positions along a wall, and counts as
     // neither. So does, for those that are said to see each other, what is not certain.

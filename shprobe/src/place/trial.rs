@@ -1,6 +1,6 @@
 //! The error of light interpolated between some of the candidates, over all of them.
 
-use crate::delaunay::{Blend, Delaunay, Hint, Locator, Partition};
+use crate::delaunay::{Blend, Hint, Locator, Partition};
 use crate::field::{BIAS, common_order, spacing};
 use crate::sh::{Lobe, MAX_COUNT, Sh, basis};
 use crate::sight::{Shares, Spot, by_cell, by_sight};
@@ -222,7 +222,7 @@ impl<'a> Bench<'a> {
     /// What finds the probes around a position, for those chosen.
     fn net(&self, chosen: &[u32]) -> Result<Net, ProbeError> {
         let positions: Vec<DVec3> = chosen.iter().map(|&i| self.candidates.positions[i as usize]).collect();
-        let partition = Delaunay::new(&positions)?.partition();
+        let partition = Partition::up_to_rounding(&positions)?;
         let spacing = spacing(&positions, &partition);
         let locator = Locator::new(&positions, &partition)?;
         let tree = Tree::new(positions.iter().copied().zip(0..), spacing);
@@ -236,7 +236,7 @@ impl<'a> Bench<'a> {
     /// The tree of those chosen, numbered as candidates, and their mean spacing.
     pub(super) fn tree(&self, chosen: &[u32]) -> Result<(Tree, f64), ProbeError> {
         let positions: Vec<DVec3> = chosen.iter().map(|&i| self.candidates.positions[i as usize]).collect();
-        let spacing = spacing(&positions, &Delaunay::new(&positions)?.partition());
+        let spacing = spacing(&positions, &Partition::up_to_rounding(&positions)?);
         Ok((Tree::new(positions.into_iter().zip(chosen.iter().copied()), spacing), spacing))
     }
 

@@ -1,17 +1,23 @@
-//! Sections of a result that could not be measured again stay as they were: without the large data, a study would replace figures by the word that it skipped them.
+//! Sections of a result that could not be measured again stay as they were: without the large data, or without a peer, a study would replace
+//! figures by the word that it skipped them.
 
-use super::data::SKIPPED;
+use super::{data, peers};
 
 /// What stands under a section that was kept, before what is known of its making.
-const KEPT: &str = "Kept from an earlier run, since the reference scenes were not there this time";
+const KEPT: &str = "Kept from an earlier run, since not all that it takes was there this time";
 
-/// A report, in which sections that say [`SKIPPED`] are replaced by those of the same heading in the report before, with a note of what these were made by.
+/// Whether some of a text was skipped for want of data or of a peer.
+pub(crate) fn lacks_something(text: &str) -> bool {
+    text.contains(data::SKIPPED) || text.contains(peers::SKIPPED)
+}
+
+/// A report, in which sections that [lack something](lacks_something) are replaced by those of the same heading in the report before, with a note of what these were made by.
 pub(crate) fn with_former(text: &str, former: &str) -> String {
     let header = sections(former).next().unwrap_or_default();
     let replaced = sections(text).map(|section| {
-        let heading = heading(section).filter(|_| section.contains(SKIPPED));
+        let heading = heading(section).filter(|_| lacks_something(section));
         let same = heading.and_then(|h| sections(former).find(|s| self::heading(s) == Some(h)));
-        match same.filter(|s| !s.contains(SKIPPED)) {
+        match same.filter(|s| !lacks_something(s)) {
             Some(kept) if kept.contains(KEPT) => kept.trim_end().to_owned() + "\n\n",
             Some(kept) => {
                 let made = made_by(kept).or_else(|| made_by(header));
@@ -48,6 +54,7 @@ fn made_by(text: &str) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
+    use super::data::SKIPPED;
     use super::*;
 
     const FORMER: &str = "# A study\n\nMade on commit 0123456789 with changes, 2026-11-25, rustc 1.\n\n## Balls\n\n1 s\n\n## Buildings\n\n57 s\n";
@@ -56,6 +63,13 @@ mod tests {
         format!(
             "# A study\n\nMade on commit abc, 2026-11-26, rustc 1.\n\n## Balls\n\n2 s\n\n## Buildings\n\n{SKIPPED}\n"
         )
+    }
+
+    #[test]
+    fn a_peer_that_is_not_there_keeps_its_last_figures() {
+        let lacking = format!("# A study\n\n## Balls\n\n{}\n", peers::skipped("Embree", "PEER"));
+        let text = with_former(&lacking, FORMER);
+        assert!(text.contains("## Balls\n\n1 s\n") && text.contains(KEPT), "{text}");
     }
 
     #[test]

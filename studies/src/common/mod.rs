@@ -2,6 +2,7 @@
 
 pub(crate) mod against_samples;
 pub(crate) mod casters;
+pub(crate) mod charts;
 pub(crate) mod closed_form;
 pub(crate) mod contour;
 pub(crate) mod data;

@@ -8,11 +8,12 @@ pub(crate) fn find(variable: &str, name: &str) -> Option<PathBuf> {
     named.or_else(|| built(name)).filter(|path| path.is_file())
 }
 
-/// Why a peer is not in a table, as a sentence.
+/// What sections say whose peer is not there.
+pub(crate) const SKIPPED: &str = "was skipped: neither did `studies/peers/build` make it";
+
+/// Why a peer is not in a table, as a sentence with [`SKIPPED`].
 pub(crate) fn skipped(what: &str, variable: &str) -> String {
-    format!(
-        "{what} was skipped: neither did `studies/peers/build` make it, nor does `{variable}` name a program."
-    )
+    format!("{what} {SKIPPED}, nor does `{variable}` name a program.")
 }
 
 /// This program is in `target/release`, peers are in `target/peers`.

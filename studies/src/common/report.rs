@@ -1,16 +1,20 @@
 //! Tables, charts and the machine they were made on.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::data::SKIPPED;
-use super::kept::with_former;
+use super::kept::{lacks_something, with_former};
 use super::timing::Timing;
-use plotters::coord::Shift;
-use plotters::prelude::*;
 
 /// What a study tells its caller: whether everything was as it must be.
 pub(crate) type Outcome = Result<bool, Box<dyn std::error::Error + Send + Sync>>;
+
+/// Where trials write: their figures are not results.
+pub(crate) fn trial_folder() -> PathBuf {
+    let folder = std::env::temp_dir().join("pointillist-studies");
+    eprintln!("a trial; its tables go to {}", folder.display());
+    folder
+}
 
 /// One measurement of a study of time against error.
 #[derive(Clone, Debug)]
@@ -120,11 +124,11 @@ pub(crate) fn table(more: &[&str], rows: &[Row]) -> String {
     text
 }
 
-/// Writes a file of results. Sections that lack the large data keep what they said before.
+/// Writes a file of results. Sections that lack the large data or a peer keep what they said before.
 pub(crate) fn write(out_dir: &Path, file: &str, text: &str) -> std::io::Result<()> {
     std::fs::create_dir_all(out_dir)?;
     let path = out_dir.join(file);
-    if !text.contains(SKIPPED) {
+    if !lacks_something(text) {
         return std::fs::write(path, text);
     }
     let former = std::fs::read_to_string(&path).unwrap_or_default();
@@ -136,100 +140,8 @@ pub(crate) fn scenes(rows: &[Row]) -> Vec<&str> {
     distinct(rows.iter().map(|r| r.scene.as_str()))
 }
 
-/// Errors below this are drawn at it: a logarithmic axis has no zero.
-const SMALLEST: f64 = 1e-9;
-
-/// The same for what is not finite.
-const LARGEST: f64 = 1e3;
-
-/// Draws `NAME.svg`: for each scene time against error, both logarithmic.
-pub(crate) fn chart(
-    out_dir: &Path,
-    name: &str,
-    rows: &[Row],
-) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-    chart_of(out_dir, name, "RMSE", rows)
-}
-
-/// The same for errors of another kind, or in another unit: `error` says which.
-pub(crate) fn chart_of(
-    out_dir: &Path,
-    name: &str,
-    error: &str,
-    rows: &[Row],
-) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-    chart_along(out_dir, name, ["seconds", error], rows)
-}
-
-/// The same along another axis than time: `along` says what each row's `time` is, and what its errors.
-pub(crate) fn chart_along(
-    out_dir: &Path,
-    name: &str,
-    along: [&str; 2],
-    rows: &[Row],
-) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-    let scenes = scenes(rows);
-    let series = distinct(rows.iter().map(|r| r.series.as_str()));
-    const COLUMNS: usize = 3;
-    let lines = scenes.len().div_ceil(COLUMNS);
-    let path = out_dir.join(format!("{name}.svg"));
-    let size = (COLUMNS as u32 * 400, lines as u32 * 330 + 30 * series.len().div_ceil(4) as u32 + 10);
-    let root = SVGBackend::new(&path, size).into_drawing_area();
-    root.fill(&WHITE)?;
-    let (legend, panels) = root.split_vertically(30 * series.len().div_ceil(4) as u32 + 10);
-    for (i, s) in series.iter().enumerate() {
-        let at = (20 + (i % 4) as i32 * 290, 20 + (i / 4) as i32 * 30);
-        legend.draw(&Circle::new(at, 5, Palette99::pick(i).filled()))?;
-        legend.draw(&Text::new((*s).to_owned(), (at.0 + 12, at.1 - 7), ("sans-serif", 15)))?;
-    }
-    for (area, scene) in panels.split_evenly((lines, COLUMNS)).iter().zip(scenes) {
-        let of_scene: Vec<&Row> = rows.iter().filter(|r| r.scene == scene).collect();
-        panel(area, scene, along, &series, &of_scene)?;
-    }
-    root.present()?;
-    Ok(())
-}
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-fn panel(
-    area: &Area<'_>,
-    scene: &str,
-    [time, error]: [&str; 2],
-    series: &[&str],
-    rows: &[&Row],
-) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-    let point = |r: &&Row| (r.time.seconds.max(1e-6), r.rmse.clamp(SMALLEST, LARGEST));
-    let range = |values: Vec<f64>| {
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = values.iter().copied().fold(0.0, f64::max);
-        10f64.powf(low.log10().floor())..10f64.powf(high.log10().floor() + 1.0)
-    };
-    let x = range(rows.iter().map(|r| point(r).0).collect());
-    let y = range(rows.iter().map(|r| point(r).1).collect());
-    let mut chart = ChartBuilder::on(area)
-        .caption(scene, ("sans-serif", 16))
-        .margin(10)
-        .x_label_area_size(36)
-        .y_label_area_size(56)
-        .build_cartesian_2d(x.log_scale(), y.log_scale())?;
-    let power = |v: &f64| format!("{v:.0e}");
-    chart
-        .configure_mesh()
-        .x_desc(time)
-        .y_desc(error)
-        .x_label_formatter(&power)
-        .y_label_formatter(&power)
-        .max_light_lines(0)
-        .draw()?;
-    for (i, name) in series.iter().enumerate() {
-        let points: Vec<_> = rows.iter().filter(|r| r.series == *name).map(point).collect();
-        let color = Palette99::pick(i);
-        chart.draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(1)))?;
-        chart.draw_series(PointSeries::<_, _, Circle<_, _>, _>::new(points, 3, color.filled()))?;
-    }
-    Ok(())
-}
+/// Errors below this count as this much: a logarithmic axis has no zero.
+pub(crate) const SMALLEST: f64 = 1e-9;
 
 /// By what factor a series is faster than another at the same error, by log-log interpolation of `other`.
 ///

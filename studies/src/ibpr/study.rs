@@ -5,9 +5,10 @@ use std::path::Path;
 use glam::Vec3;
 use pointillist_ibpr::{Cloud, Frame, FrameCounts, IbprError, Options, Renderer, Scan, View};
 
+use crate::common::charts::chart_of;
 use crate::common::frame_error::{FrameError, Measure};
 use crate::common::layers::Layers;
-use crate::common::report::{Outcome, Row, chart_of, on_one_thread, write, write_csv};
+use crate::common::report::{Outcome, Row, on_one_thread, write, write_csv};
 use crate::common::timing::{Clock, Timing, timed_by};
 use crate::common::true_surface::{Surface, Truth, point_at};
 use crate::ibpr::scans::{Faults, RangeScan, Survey};

@@ -13,8 +13,9 @@ use pointillist_radiosity::{
 use pointillist_render::{Lamps, Lightmap, scene_surfaces, with_lamps};
 use rayon::prelude::*;
 
+use crate::common::charts::chart_along;
 use crate::common::data::{SKIPPED, folder};
-use crate::common::report::{Outcome, Row, chart_along};
+use crate::common::report::{Outcome, Row};
 use crate::common::timing::Timing;
 use crate::radiosity::memory;
 use crate::radiosity::paths::{Error, PATHS, POINTS, Reference, room_around, size_of};

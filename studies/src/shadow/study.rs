@@ -11,12 +11,13 @@ use pointillist_shade::Source;
 use pointillist_shadow::{Emitter, Receivers, Resolution, ShadowLight, ShadowOptions, ShadowScratch, Viewer};
 
 use crate::common::casters;
+use crate::common::charts::chart;
 use crate::common::closed_form;
 use crate::common::draw;
 use crate::common::picture::Picture;
 use crate::common::provenance::provenance;
 use crate::common::ray_reference::{self, Tree, with_shadows};
-use crate::common::report::{Outcome, Row, chart, on_one_thread, table, time_ratio, write, write_csv};
+use crate::common::report::{Outcome, Row, on_one_thread, table, time_ratio, write, write_csv};
 use crate::common::scenes::{SurfaceSample, radiance};
 use crate::common::timing::{Clock, HOW, Timing, timed_part};
 use crate::shadow::shadow_map::ShadowMap;

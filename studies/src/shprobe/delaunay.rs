@@ -8,7 +8,6 @@ use glam::{DVec3, dvec3};
 use pointillist_delaunay::{Delaunay, Hint, Locator, Partition};
 use pointillist_shprobe::{ProbeError, place};
 
-use crate::common::peers;
 use crate::common::report::{Limit, on_one_thread, on_threads, verdict};
 use crate::common::timing::{Clock, least_seconds};
 use crate::shprobe::peer::{Peer, Took};
@@ -179,7 +178,7 @@ pub(crate) fn build_table(quick: bool) -> Result<[String; 2], ProbeError> {
 fn other_crate() -> String {
     let variable = "POINTILLIST_DELAUNAY";
     let Some(peer) = Peer::find(variable, "delaunay") else {
-        return format!("\n{}\n", peers::skipped("The crate `delaunay`", variable));
+        return format!("\nThe crate `delaunay` was not asked: `{variable}` names no program.\n");
     };
     let sets = [("random 432", random(432)), ("grid 12×6×6", grid([12, 6, 6]))];
     let found = sets.map(|(name, points)| match peer.run(&points, &[]) {

@@ -6,10 +6,11 @@ use std::time::Instant;
 
 use pointillist_shprobe::place;
 
+use crate::common::charts::{chart_along, chart_of};
 use crate::common::data;
 use crate::common::peers;
 use crate::common::provenance::provenance;
-use crate::common::report::{Limit, Outcome, Row, chart_along, chart_of, verdict, write, write_csv};
+use crate::common::report::{Limit, Outcome, Row, trial_folder, verdict, write, write_csv};
 use crate::common::timing::Timing;
 use crate::shprobe::bounces;
 use crate::shprobe::delaunay;
@@ -89,12 +90,6 @@ pub(crate) fn run_with(out_dir: &Path, arguments: &[&str]) -> Outcome {
         }),
         _ => Err("shprobe [quick] [--pictures DIR], or shprobe rooms|basic|sponza|sibenik [adaptive] [COUNT…], or shprobe light, or shprobe bounces, or shprobe seams, or shprobe wall [with] [COUNT…] [BALANCE…], or shprobe wall pictures DIR, or shprobe pictures DIR".into()),
     }
-}
-
-fn trial_folder() -> PathBuf {
-    let folder = std::env::temp_dir().join("pointillist-studies");
-    eprintln!("shprobe: a trial; its tables go to {}", folder.display());
-    folder
 }
 
 /// Prints error against number of probes at one site, for those who tune placement.

@@ -23,6 +23,29 @@ impl Verdict {
             }
         }
     }
+
+    /// An error that names what is wrong is what was asked for.
+    pub(crate) fn refused_naming<T, E: std::fmt::Display>(name: &str, result: Result<T, E>) -> Self {
+        let names = result.as_ref().err().is_some_and(|error| error.to_string().contains(name));
+        let mut verdict = Self::refused(result);
+        if verdict.passed && !names {
+            verdict.passed = false;
+            verdict.happened += &format!(" (does not name `{name}`)");
+        }
+        verdict
+    }
+
+    /// Facts that hold for any input of this kind, or the first that does not.
+    pub(crate) fn facts(facts: impl IntoIterator<Item = Result<(), String>>) -> Self {
+        let mut count = 0;
+        for fact in facts {
+            if let Err(message) = fact {
+                return Self { happened: message, passed: false };
+            }
+            count += 1;
+        }
+        Self { happened: format!("{count} facts hold"), passed: count > 0 }
+    }
 }
 
 /// A row of the report.

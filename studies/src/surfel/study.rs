@@ -6,9 +6,10 @@ use std::time::Instant;
 use glam::DVec3;
 use pointillist_surfel::{Cloud, Method, Points, Procedure, SampleOptions, SurfelError};
 
+use crate::common::charts::chart_of;
 use crate::common::data;
 use crate::common::picture_layers::PictureLayers;
-use crate::common::report::{Outcome, chart_of, write, write_csv};
+use crate::common::report::{Outcome, write, write_csv};
 use crate::common::timing::HOW;
 use crate::common::true_surface::Surface;
 use crate::surfel::coloured_cloud::ColouredCloud;
@@ -58,11 +59,9 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     measure(Effort::FULL, out_dir)
 }
 
-/// The same in some minutes, with fewer rays and runs, into the temporary folder.
-pub(crate) fn run_quick() -> Outcome {
-    let out_dir = std::env::temp_dir().join("pointillist-studies");
-    eprintln!("surfel: a trial; its tables go to {}", out_dir.display());
-    measure(Effort::QUICK, &out_dir)
+/// The same in a minute or two, with fewer rays and runs.
+pub(crate) fn run_quick(out_dir: &Path) -> Outcome {
+    measure(Effort::QUICK, out_dir)
 }
 
 fn measure(effort: Effort, out_dir: &Path) -> Outcome {

@@ -50,6 +50,12 @@ pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
         let count = surfaces.translucent;
         report.warn(&format!("{count} triangles let most light through and are left out"));
     }
+    if surfaces.light_mapped > 0 && !scene.lights.is_empty() {
+        let count = surfaces.light_mapped;
+        report.warn(&format!(
+            "{count} triangles have a lightmap: they send out what it holds, by its mean, and pass nothing on of what lights and other surfaces add"
+        ));
+    }
     let bake = Bake { options, report: &report, scene: &scene, surfaces: &surfaces };
     bake.check_importance()?;
     if options.dry_run {

@@ -44,13 +44,67 @@ pub(super) fn draw(
         report.note(&format!("{} is already there; --overwrite draws it again", output.display()));
         return Ok(());
     }
+    // Loading is part of the time.
+    let writing_s = WRITING_S * job.window.pixels() as f64;
+    let left_s = || seconds - writing_s - report.stats.elapsed().as_secs_f64();
+    let (frame, reached) = draw_until(scene, job, &left_s, report)?;
+    if reached.done < reached.all {
+        // It is not the picture that the scene has, and must not be taken for it by the next run.
+        stamp.fingerprint = stamp.fingerprint.rotate_left(1) ^ reached.done as u64;
+    }
+    report.stats.count("pixels", job.window.pixels());
+    if let Some(text) = unseen_background(&frame, &scene.image, format, &options.picture) {
+        report.note(&text);
+    }
+    report.stats.stage("write", || write_picture(output, format, frame, stamp, &options.picture))?;
+    let took = report.stats.elapsed().as_secs_f64();
+    report.note(&format!("{}: {}; {took:.2} s", output.display(), reached.tell(report)));
+    if took > seconds {
+        report.warn(&format!(
+            "--time-budget {seconds}: loading and the coarsest picture alone took longer, {took:.2} s in all"
+        ));
+    }
+    Ok(())
+}
+
+/// How far a picture got.
+struct Reached {
+    /// Tiles that were drawn, of all.
+    done: usize,
+    all: usize,
+    /// By how much the picture is coarser where they are missing.
+    coarser: u32,
+    /// What missing tiles are expected to be wrong by, over all pixels; infinite if nobody knows.
+    believed: f64,
+}
+
+impl Reached {
+    /// In words; what is believed is kept for `--stats`.
+    fn tell(&self, report: &Report<'_>) -> String {
+        let Self { done, all, coarser, believed } = self;
+        let rest = format!("the rest has one of {coarser}×{coarser} pixels");
+        if done == all {
+            return "complete".to_owned();
+        }
+        if believed.is_finite() {
+            report.stats.figure("expected_rmse", *believed);
+            return format!("{done} of {all} tiles are fine, {rest}; an RMSE of {believed:.1e} is expected");
+        }
+        format!("{done} of {all} tiles are fine, too few to tell the error; {rest}")
+    }
+}
+
+/// The picture as fine as there is time for.
+fn draw_until(
+    scene: &Scene,
+    job: &RenderJob,
+    left_s: &impl Fn() -> f64,
+    report: &Report<'_>,
+) -> Result<(Frame, Reached), CliError> {
     let progress = report.progress();
     let watch = Watch { task: "render", progress: &progress, stats: &report.stats };
-    let writing_s = WRITING_S * job.window.pixels() as f64;
-    // Loading is part of the time.
-    let left_s = || seconds - writing_s - report.stats.elapsed().as_secs_f64();
     let prepared = Prepared::new(scene, &watch).map_err(failed)?;
-    let (coarse, drawn_at) = coarse_picture(&prepared, scene, job, &left_s, report)?;
+    let (coarse, coarser) = coarse_picture(&prepared, scene, job, left_s, report)?;
     let mut picture = prepared
         .begin(&DrawOptions::DEFAULT.with_window(job.window).with_layers(job.layers.clone()))
         .map_err(failed)?;
@@ -65,39 +119,10 @@ pub(super) fn draw(
     report.stats.count("tiles_coarse", (all - done) as u64);
     let drawn = picture.pixels_drawn();
     let mut frame = picture.into_frame();
-    let size = [scene.image.width, scene.image.height];
-    let rest = fill(&mut frame, &drawn, &coarse, size);
+    let rest = fill(&mut frame, &drawn, &coarse, [scene.image.width, scene.image.height]);
     // Tiles are drawn from the top down: few of them do not stand for all.
     let believed = if 2 * done < all { f64::INFINITY } else { rest };
-    if done < all {
-        // It is not the picture that the scene has, and must not be taken for it by the next run.
-        stamp.fingerprint = stamp.fingerprint.rotate_left(1) ^ done as u64;
-    }
-    report.stats.count("pixels", job.window.pixels());
-    if let Some(text) = unseen_background(&frame, &scene.image, format, &options.picture) {
-        report.note(&text);
-    }
-    report.stats.stage("write", || write_picture(output, format, frame, stamp, &options.picture))?;
-    let took = report.stats.elapsed().as_secs_f64();
-    let left = match (done == all, believed.is_finite()) {
-        (true, _) => "complete".to_owned(),
-        (false, true) => {
-            report.stats.figure("expected_rmse", believed);
-            format!(
-                "{done} of {all} tiles are fine, the rest has one of {drawn_at}×{drawn_at} pixels; an RMSE of {believed:.1e} is expected"
-            )
-        }
-        (false, false) => format!(
-            "{done} of {all} tiles are fine, too few to tell the error; the rest has one of {drawn_at}×{drawn_at} pixels"
-        ),
-    };
-    report.note(&format!("{}: {left}; {took:.2} s", output.display()));
-    if took > seconds {
-        report.warn(&format!(
-            "--time-budget {seconds}: loading and the coarsest picture alone took longer, {took:.2} s in all"
-        ));
-    }
-    Ok(())
+    Ok((frame, Reached { done, all, coarser, believed }))
 }
 
 /// The finest of the coarser pictures that there is time for, and by how much it is coarser.

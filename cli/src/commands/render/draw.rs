@@ -9,7 +9,7 @@ use super::plan::stamp;
 use super::shots::Shot;
 use crate::commands::Report;
 use crate::error::CliError;
-use crate::image_io::Frame;
+use crate::image_io::{Frame, Stamp};
 use crate::job::interrupt::{self, Keeper};
 use crate::job::{Piece, Progress, RenderJob, Watch};
 use crate::options::RenderOptions;
@@ -47,6 +47,16 @@ struct Take<'s> {
 }
 
 impl Take<'_> {
+    /// The scene lit from beside another camera, if its light comes from there.
+    fn relit(&self, camera: Camera) -> Option<Scene> {
+        (self.is_lit_from_camera && camera != self.scene.camera).then(|| {
+            let mut relit = self.scene.clone();
+            relit.camera = camera;
+            relit.lights = vec![key_light(&relit)];
+            relit
+        })
+    }
+
     /// Prepares the scene, unless it is.
     fn prepare(&mut self, monitor: &dyn Monitor, report: &Report<'_>) -> Result<(), CliError> {
         if self.prepared.is_some() {
@@ -103,25 +113,15 @@ impl Film<'_> {
         progress: &Progress,
     ) -> Result<(), CliError> {
         let Self { options, report, job, .. } = self;
-        let (output, begin) = (&self.shots[index].output, Instant::now());
-        let turned = (take.is_lit_from_camera && camera != take.scene.camera).then(|| {
-            let mut turned = take.scene.clone();
-            turned.camera = camera;
-            turned.lights = vec![key_light(&turned)];
-            turned
-        });
-        let scene = turned.as_ref().unwrap_or(take.scene);
-        let light = turned.as_ref().map_or(take.light, fingerprint::of_light);
+        let begin = Instant::now();
+        let relit = take.relit(camera);
+        let scene = relit.as_ref().unwrap_or(take.scene);
+        let light = relit.as_ref().map_or(take.light, fingerprint::of_light);
         let size = [scene.image.width, scene.image.height];
         let stamp = stamp(scene, fingerprint::of_view(&camera, size, light), job, options);
-        let mut kept = Kept::of(output, &stamp);
-        if self.format == OutputFormat::Exr
-            && !options.picture.overwrite
-            && is_there(output, &stamp, job.window, report)
-        {
-            report.note(&format!("{} is already there; --overwrite draws it again", output.display()));
+        let mut kept = Kept::of(&self.shots[index].output, &stamp);
+        if self.is_there(index, &stamp) {
             kept.remove_unused(report);
-            report.stats.skip("pictures_there", 1);
             return Ok(());
         }
         let watch = Watch { task: "render", progress, stats: &report.stats };
@@ -129,29 +129,55 @@ impl Film<'_> {
         let monitor: &dyn Monitor = if self.is_sequence() { &piece } else { &watch };
         take.prepare(monitor, report)?;
         let shared = take.prepared.as_ref().expect("prepared above");
-        let own = turned.as_ref().map(|turned| shared.with_scene(turned)).transpose().map_err(failed)?;
+        let own = relit.as_ref().map(|relit| shared.with_scene(relit)).transpose().map_err(failed)?;
         let prepared = own.as_ref().unwrap_or(shared);
         let view = camera.view(size).map_err(|error| failed(error.into()))?;
         // From here on there are tiles to keep, until the picture is written.
         let keeper = Keeper::new();
         let frame = self.draw_or_keep(index, prepared, view, &mut kept, monitor)?;
-        report.stats.count("pixels", job.window.pixels());
-        report.stats.count("pictures", 1);
         let unseen = unseen_background(&frame, &scene.image, self.format, &options.picture);
-        report.stats.stage("write", || write_picture(output, self.format, frame, stamp, &options.picture))?;
+        self.write(index, frame, stamp)?;
         kept.remove(report);
         drop(keeper);
-        // The first picture's time is that of the whole command so far: reading the scene is part of it.
-        let seconds = if index == 0 { report.stats.elapsed() } else { begin.elapsed() }.as_secs_f64();
-        let (width, height) = (job.window.width(), job.window.height());
-        report.note(&format!("{}: {width}×{height} pixels in {seconds:.2} s", output.display()));
-        if let Some(text) = unseen.filter(|_| index == 0) {
-            report.note(&text);
-        }
+        self.tell(index, begin, unseen.as_deref());
         if interrupt::is_requested() && index + 1 < self.shots.len() {
             return Err(CliError::Interrupted(self.how_far(index + 1)));
         }
         Ok(())
+    }
+
+    /// Whether a frame is there already, which is told.
+    fn is_there(&self, index: usize, stamp: &Stamp) -> bool {
+        let Self { options, report, job, .. } = self;
+        let output = &self.shots[index].output;
+        // Only EXR say what they show.
+        let may_stay = self.format == OutputFormat::Exr && !options.picture.overwrite;
+        if !may_stay || !is_there(output, stamp, job.window, report) {
+            return false;
+        }
+        report.note(&format!("{} is already there; --overwrite draws it again", output.display()));
+        report.stats.skip("pictures_there", 1);
+        true
+    }
+
+    fn write(&self, index: usize, frame: Frame, stamp: Stamp) -> Result<(), CliError> {
+        let (stats, output) = (&self.report.stats, &self.shots[index].output);
+        stats.count("pixels", self.job.window.pixels());
+        stats.count("pictures", 1);
+        stats.stage("write", || write_picture(output, self.format, frame, stamp, &self.options.picture))
+    }
+
+    /// Tells of a frame that is written; `unseen` is for the first one.
+    fn tell(&self, index: usize, begin: Instant, unseen: Option<&str>) {
+        let Self { report, job, .. } = self;
+        // The first picture's time is that of the whole command so far: reading the scene is part of it.
+        let seconds = if index == 0 { report.stats.elapsed() } else { begin.elapsed() }.as_secs_f64();
+        let (width, height) = (job.window.width(), job.window.height());
+        let output = self.shots[index].output.display();
+        report.note(&format!("{output}: {width}×{height} pixels in {seconds:.2} s"));
+        if let Some(text) = unseen.filter(|_| index == 0) {
+            report.note(text);
+        }
     }
 
     /// Draws what an interrupted run has not, or keeps what is finished if this one is interrupted.

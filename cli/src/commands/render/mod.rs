@@ -110,7 +110,7 @@ fn check_map(options: &RenderOptions) -> Result<(), CliError> {
         return Ok(());
     }
     Err(CliError::Usage(format!(
-        "--env is for models; a scene names its own map: --set image.environment={} --set ambient.environment=true",
-        map.display()
+        "--env is for models; a scene names its own map: --set '{}' --set ambient.environment=true",
+        map.assignment()
     )))
 }

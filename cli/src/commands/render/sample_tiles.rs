@@ -9,9 +9,14 @@ const SHARE: usize = 12;
 const LEAST_TILES: usize = 24;
 const MOST_TILES: usize = 512;
 
+/// How many of so many tiles are looked at.
+pub(super) fn sample_size(all: usize) -> usize {
+    (all / SHARE).clamp(LEAST_TILES, MOST_TILES).min(all)
+}
+
 /// Tiles from all over the picture: steps of the golden section through their list come close to no place twice.
 pub(super) fn spread(all: &[PixelRect]) -> Vec<PixelRect> {
-    let count = (all.len() / SHARE).clamp(LEAST_TILES, MOST_TILES).min(all.len());
+    let count = sample_size(all.len());
     let golden = 0.5 * (5_f64.sqrt() - 1.0);
     let mut chosen = vec![false; all.len()];
     let mut list = Vec::with_capacity(count);

@@ -15,6 +15,7 @@ pub use material::{AlphaMode, GltfMaterial, GltfTexture};
 pub use walk::{GltfCamera, GltfLight};
 
 use super::FileMesh;
+use crate::input;
 use crate::input_error::InputError;
 use crate::json_words::plain;
 use ::gltf::json::Root;
@@ -56,6 +57,7 @@ pub fn read_gltf(
     bytes: &[u8],
     open: &dyn Fn(&str) -> Result<Vec<u8>, String>,
 ) -> Result<FileMesh, InputError> {
+    input::not_empty(name, bytes)?;
     let fault = |message: String| InputError::of_file(name, message);
     check_header(bytes).map_err(fault)?;
     let gltf = parse(bytes).map_err(fault)?;

@@ -22,6 +22,8 @@ pub struct LightDescription {
     pub light: Light,
     /// OpenGL's ambient light of a light.
     pub ambient: Vec3,
+    /// OpenGL's specular light of a light, if it is not as its diffuse light.
+    pub specular: Option<Vec3>,
     /// Whether it casts shadows.
     pub shadow: bool,
     /// Cells of the shadow grid.
@@ -86,15 +88,15 @@ fn read(mut table: Table<'_>, name: String) -> Result<LightDescription, InputErr
         Kind::Polygon => read_polygon(&mut table)?,
         Kind::Line => read_line(&mut table)?,
     };
-    let ambient = if matches!(kind, Kind::Point | Kind::Spot | Kind::Directional) {
-        table.color("ambient")?.unwrap_or(Vec3::ZERO)
+    let (ambient, specular) = if matches!(kind, Kind::Point | Kind::Spot | Kind::Directional) {
+        (table.color("ambient")?.unwrap_or(Vec3::ZERO), table.color("specular")?)
     } else {
-        Vec3::ZERO
+        (Vec3::ZERO, None)
     };
     let shadow = table.boolean("shadow")?.unwrap_or(true);
     let resolution = read_resolution(&mut table)?;
     table.finish()?;
-    Ok(LightDescription { name, light, ambient, shadow, resolution })
+    Ok(LightDescription { name, light, ambient, specular, shadow, resolution })
 }
 
 fn read_spot(table: &mut Table<'_>) -> Result<Light, InputError> {

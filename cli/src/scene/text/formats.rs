@@ -45,10 +45,26 @@ impl Document {
 pub(super) fn parse_toml(name: &str, text: &str, origin: usize) -> Result<Node, InputError> {
     let table = DeTable::parse(text).map_err(|error| {
         let span = error.span().unwrap_or_default();
-        InputError::in_text(name, text, span.start, span.end, format!("not TOML: {}", error.message()))
+        let message = format!("not TOML: {}", error.message());
+        let refused = InputError::in_text(name, text, span.start, span.end, message);
+        match bare_word(text, span.start) {
+            Some(word) => refused.with_help(format!("text stands in quotes: \"{word}\"")),
+            None => refused,
+        }
     })?;
     let span = span_of(table.span(), origin);
     Ok(Node { value: toml_table(table.into_inner(), origin), span })
+}
+
+/// The value of the line of a place, if it is a word or a path without quotes.
+fn bare_word(text: &str, at: usize) -> Option<&str> {
+    let before = text.get(..at)?;
+    let start = before.rfind('\n').map_or(0, |line| line + 1);
+    let line = text[start..].lines().next()?;
+    let (_, value) = line.split_once('=')?;
+    let value = value.split('#').next()?.trim();
+    let may_be_word = value.starts_with(|c: char| c.is_alphabetic() || c == '.' || c == '/' || c == '~');
+    (may_be_word && !value.contains(['"', '\'', ',', '[', '{'])).then_some(value)
 }
 
 fn span_of(range: Range<usize>, origin: usize) -> Span {

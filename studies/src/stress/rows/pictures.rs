@@ -1,15 +1,13 @@
-//! The rows of the stress report.
+//! `dice`, `micropoint` and `shadow`: whole pictures of scenes that are small, thin, far away or coincident.
 
 use glam::{DMat3, DVec3, Vec3, dvec2, dvec3};
-use pointillist_cli::scene::{Format, Overrides, load, parse_str};
 use pointillist_dice::{Accumulator, Grid, accumulate};
-use pointillist_micropoint::{
-    Geometry, MicropointOptions, PlainOpacity, SurfaceOpacity, TexelCorner, TexelSums, TexelWrap,
-};
+use pointillist_micropoint::{MicropointOptions, PlainOpacity};
 use pointillist_render::{Projection, Scene};
 use pointillist_shade::{Falloff, Light};
 use pointillist_shadow::{Emitter, ShadowLight, ShadowOptions};
 
+use super::row;
 use crate::common::casters;
 use crate::common::closed_form;
 use crate::common::data;
@@ -19,29 +17,14 @@ use crate::common::picture::Picture;
 use crate::common::scenes::{self, Sketch, transformed};
 use crate::stress::check::{Check, Verdict};
 
-/// Every row, in the order of the report.
-pub(crate) fn all() -> Vec<Check> {
-    let mut rows = vec![];
-    small_and_thin(&mut rows);
-    far_away(&mut rows);
-    transforms(&mut rows);
-    at_the_eye(&mut rows);
-    coincident(&mut rows);
-    shared_edges(&mut rows);
-    not_finite(&mut rows);
-    out_of_range(&mut rows);
-    not_finite_in_files(&mut rows);
-    lights(&mut rows);
-    rows
-}
-
-fn row(
-    rows: &mut Vec<Check>,
-    input: impl Into<String>,
-    expected: &'static str,
-    run: impl Fn() -> Verdict + 'static,
-) {
-    rows.push(Check { input: input.into(), expected, run: Box::new(run) });
+pub(super) fn add(rows: &mut Vec<Check>) {
+    small_and_thin(rows);
+    far_away(rows);
+    transforms(rows);
+    at_the_eye(rows);
+    coincident(rows);
+    shared_edges(rows);
+    lights(rows);
 }
 
 fn picture(scene: &Scene) -> Picture {
@@ -354,145 +337,6 @@ fn shared_edges(rows: &mut Vec<Check>) {
     });
 }
 
-fn not_finite(rows: &mut Vec<Check>) {
-    for (name, value) in [("NaN", f64::NAN), ("∞", f64::INFINITY)] {
-        row(rows, format!("a position that is {name}"), "a typed error", move || {
-            let corners = [DVec3::ZERO, DVec3::X, dvec3(0.0, value, 0.0)];
-            Verdict::refused(Geometry::new(&corners, &[[0, 1, 2]], &[0], &[SurfaceOpacity::default()]))
-        });
-        row(rows, format!("an eye that is {name}"), "a typed error", move || {
-            let mut scene = scenes::quads(16);
-            scene.camera.eye.x = value;
-            Verdict::refused(draw::with_pipeline(&scene))
-        });
-        row(rows, format!("a field of view that is {name}"), "a typed error", move || {
-            let mut scene = scenes::quads(16);
-            scene.camera.projection = Projection::Perspective { fov_y_rad: value };
-            Verdict::refused(draw::with_pipeline(&scene))
-        });
-        row(rows, format!("a light's position that is {name}"), "a typed error", move || {
-            let mut scene = casters::spheres(16);
-            scene.lights[0].light = Light::Point {
-                position: dvec3(value, 1.0, 1.0),
-                intensity: Vec3::ONE,
-                falloff: Falloff::InverseSquare,
-            };
-            Verdict::refused(draw::with_pipeline(&scene))
-        });
-        row(rows, format!("a light's direction that is {name}"), "a typed error", move || {
-            let mut scene = casters::spheres(16);
-            scene.lights[0].light =
-                Light::Directional { direction: DVec3::splat(value), irradiance: Vec3::ONE };
-            Verdict::refused(draw::with_pipeline(&scene))
-        });
-        row(rows, format!("a texel that is {name}"), "a typed error", move || {
-            let texel = |x, y| [if x + y == 3 { value as f32 } else { 0.5 }];
-            Verdict::refused(TexelSums::<1>::new(4, 4, TexelWrap::Repeat, texel))
-        });
-        row(rows, format!("an opacity that is {name}"), "a typed error", move || {
-            let surface = SurfaceOpacity { opacity: value as f32, ..SurfaceOpacity::default() };
-            let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
-            Verdict::refused(Geometry::new(&corners, &[[0, 1, 2]], &[0], &[surface]))
-        });
-        row(
-            rows,
-            format!("texture coordinates that are {name}, given to the mean"),
-            "a finite mean",
-            move || {
-                let sums = TexelSums::new(4, 4, TexelWrap::Repeat, |x, _| [x as f32]).expect("finite texels");
-                let corner = |x, y, u| TexelCorner { grid: dvec2(x, y), rational: 1.0, texel: dvec2(u, 0.0) };
-                let mean =
-                    sums.mean(&[corner(0.0, 0.0, value), corner(1.0, 0.0, 1.0), corner(0.0, 1.0, 2.0)])[0];
-                Verdict { happened: format!("mean {mean}"), passed: mean.is_finite() }
-            },
-        );
-    }
-}
-
-fn out_of_range(rows: &mut Vec<Check>) {
-    row(rows, "eye = target", "a typed error", || {
-        let mut scene = scenes::quads(16);
-        scene.camera.target = scene.camera.eye;
-        Verdict::refused(draw::with_pipeline(&scene))
-    });
-    row(rows, "a picture of 0 × 16", "a typed error", || {
-        let mut scene = scenes::quads(16);
-        scene.image.width = 0;
-        Verdict::refused(draw::with_pipeline(&scene))
-    });
-    row(rows, "positions of ±1e300", "no panic: a picture or a typed error", || {
-        let mut scene = scenes::quads(16);
-        scene.mesh.positions[0] = dvec3(1e300, -1e300, 1e300);
-        finite_or_refused(&scene)
-    });
-    row(rows, "positions of 1e-310", "no panic: a picture or a typed error", || {
-        finite_or_refused(&transformed(&scenes::quads(16), 1e-310, DMat3::IDENTITY, DVec3::ZERO))
-    });
-}
-
-fn finite_or_refused(scene: &Scene) -> Verdict {
-    match draw::with_pipeline(scene) {
-        Err(error) => Verdict { happened: format!("error: {error}"), passed: true },
-        Ok(p) => {
-            let finite = p.pixels.iter().all(|c| c.is_finite());
-            Verdict {
-                happened: format!("a picture, {}", if finite { "finite" } else { "not finite" }),
-                passed: finite,
-            }
-        }
-    }
-}
-
-fn not_finite_in_files(rows: &mut Vec<Check>) {
-    let texts = [
-        ("camera.eye", "[camera]\neye = [0, nan, 5]\n"),
-        ("camera.target", "[camera]\ntarget = [0, 0, inf]\n"),
-        ("camera.fov", "[camera]\nfov = nan\n"),
-        ("image.background", "[image]\nbackground = [0, nan, 0]\n"),
-        ("ambient.color", "[ambient]\ncolor = [inf, 0, 0]\n"),
-        ("light.position", "[[light]]\ntype = \"point\"\nposition = [nan, 0, 0]\nintensity = [1, 1, 1]\n"),
-        ("light.intensity", "[[light]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = [1, inf, 1]\n"),
-        (
-            "light.direction",
-            "[[light]]\ntype = \"directional\"\ndirection = [0, nan, 0]\nirradiance = [1, 1, 1]\n",
-        ),
-        ("material.diffuse", "[material.a]\ndiffuse = [nan, 0, 0]\n"),
-        ("material.emission", "[material.a]\nemission = [0, 0, inf]\n"),
-        ("material.opacity", "[material.a]\nopacity = nan\n"),
-    ];
-    for (key, text) in texts {
-        row(rows, format!("scene file: {key} not finite"), "an error that names it", move || {
-            Verdict::refused(parse_str("scene.toml", text, Format::Toml, &[]))
-        });
-    }
-    let meshes = [
-        ("a vertex that is nan", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n"),
-        ("a vertex that is inf", "v 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n"),
-        (
-            "a texture coordinate that is nan",
-            "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt nan 0\nvt 0 1\nf 1/1 2/2 3/3\n",
-        ),
-        ("a normal that is inf", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 inf\nf 1//1 2//1 3//1\n"),
-        ("an index out of range", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"),
-    ];
-    for (i, (name, text)) in meshes.into_iter().enumerate() {
-        row(rows, format!("OBJ: {name}"), "an error that names the line", move || {
-            let path = std::env::temp_dir().join(format!("stress-{}-{i}.obj", std::process::id()));
-            let written = std::fs::write(&path, text);
-            let result = load(&path, &Overrides::default());
-            let _ = std::fs::remove_file(&path);
-            match written {
-                Ok(()) => {
-                    let mut verdict = Verdict::refused(result);
-                    verdict.happened = verdict.happened.replace(&path.display().to_string(), "mesh.obj");
-                    verdict
-                }
-                Err(e) => Verdict { happened: format!("skipped: {e}"), passed: true },
-            }
-        });
-    }
-}
-
 fn lights(rows: &mut Vec<Check>) {
     row(rows, "a light without direction", "a typed error", || {
         let geometry = draw::geometry(&scenes::quads(16)).expect("the scene is valid");
@@ -539,4 +383,17 @@ fn lights(rows: &mut Vec<Check>) {
             Verdict::within("largest relative error", lit.largest_error(&bright) / bright_mean, 1e-6)
         },
     );
+}
+
+pub(super) fn finite_or_refused(scene: &Scene) -> Verdict {
+    match draw::with_pipeline(scene) {
+        Err(error) => Verdict { happened: format!("error: {error}"), passed: true },
+        Ok(p) => {
+            let finite = p.pixels.iter().all(|c| c.is_finite());
+            Verdict {
+                happened: format!("a picture, {}", if finite { "finite" } else { "not finite" }),
+                passed: finite,
+            }
+        }
+    }
 }
