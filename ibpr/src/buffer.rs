@@ -1,6 +1,7 @@
 //! The buffer at screen/S: one averaged point per pixel, or one for each of several layers.
 
 use crate::buffer_map::BufferMap;
+use pointillist_view::View;
 
 /// Depths of neighbouring pixels of one surface differ by less than this many units (the paper's 5).
 pub(crate) const STEP: f32 = 5.0;
@@ -23,6 +24,16 @@ pub(crate) struct Corner {
 
 /// Steps per picture pixel in which corners are placed.
 pub(crate) const SUBPIXEL: f32 = 256.0;
+
+/// Farthest steps from the corner of the picture, as far as the largest picture reaches: sums of two of them, and differences of such sums,
+/// fit 32 bits. Buffer pixels may be far larger than pictures.
+const FARTHEST: f32 = (View::LARGEST_SIDE * SUBPIXEL as u32) as f32;
+
+/// A number of steps, whole and not beyond [`FARTHEST`].
+#[inline]
+pub(crate) fn whole_steps(steps: f32) -> i32 {
+    steps.round().clamp(-FARTHEST, FARTHEST) as i32
+}
 
 impl Corner {
     /// A corner that no face uses.

@@ -5,7 +5,7 @@
 //! belong to another surface) the face reaches further, and the outline ([`crate::outline`]) decides how much of that is covered.
 
 use crate::buffer::STEP;
-use crate::buffer::{Buffer, Corner, DepthScale, SUBPIXEL};
+use crate::buffer::{Buffer, Corner, DepthScale, SUBPIXEL, whole_steps};
 use crate::outline::Outline;
 use crate::raster::{Paint, Pixels, Strip, Vertex};
 use std::ops::Range;
@@ -344,7 +344,7 @@ fn beyond(
     let along = (nx * direction.0 - ny * direction.1) / (rules.focal * toward);
     let limit = rules.scale.bent_step(q, 1.0);
     let rise = (along * length_px / rules.pixel).clamp(-limit, limit);
-    let step = |d: f32| (d * length_px * SUBPIXEL) as i32;
+    let step = |d: f32| whole_steps((d * length_px * SUBPIXEL).trunc());
     Vertex {
         x: corner.x + step(direction.0),
         y: corner.y + step(direction.1),

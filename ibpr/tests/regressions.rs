@@ -275,3 +275,18 @@ fn light_comes_from_directions_of_any_length() {
         frames_are_identical(&lit(length), &lit(1.0)).unwrap();
     }
 }
+
+/// Corners of buffer pixels that are far larger than the picture were out of the range of the rasteriser's integers, and their differences wrapped.
+#[test]
+fn buffer_pixels_may_be_far_larger_than_the_picture() {
+    let scan = [OwnedScan::plane(DVec3::ZERO, DVec3::X, DVec3::Z, 3, 3)];
+    let camera = Projection::Orthographic { height: 2.0 };
+    let view = View::look_at(DVec3::Y * 1.8, dvec3(-0.4, 0.0, -0.4), DVec3::Y, camera, 24, 17).unwrap();
+    for size in [1e4, 1e6, 4.4e7, 1e12] {
+        let options = Options::DEFAULT.with_scale(Scale::Fixed(size)).with_outline(0.8);
+        let translucent = options.with_translucency(Some(Translucency::new(0.5)));
+        for options in [options, translucent] {
+            frame_is_sound(&frame(&scan, &view, &options).unwrap()).unwrap();
+        }
+    }
+}

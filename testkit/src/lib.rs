@@ -3,6 +3,9 @@
 
 pub mod numbers;
 pub mod points;
+mod rate;
+
+pub use rate::Rate;
 
 use proptest::test_runner::{Config, FileFailurePersistence, RngSeed};
 

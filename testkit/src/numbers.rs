@@ -16,12 +16,12 @@ pub fn number() -> BoxedStrategy<f64> {
     .boxed()
 }
 
-/// Finite numbers, small, huge and tiny: most functions refuse others at once, and more than that is to be tested.
+/// Numbers that coordinates may be, small, huge and tiny: others are refused at once, and more than that is to be tested.
 pub fn finite() -> BoxedStrategy<f64> {
     prop_oneof![
         6 => -2.0..2.0,
         1 => prop_oneof![
-            Just(0.0), Just(1e80), Just(-1e89), Just(5e-324), Just(1e7), Just(-1e16), Just(1e-160), Just(1e300),
+            Just(0.0), Just(1e80), Just(-1e89), Just(5e-324), Just(1e7), Just(-1e16), Just(1e-160), Just(1e-300),
         ],
     ]
     .boxed()
