@@ -20,6 +20,10 @@ fn agree(bytes: &[u8]) -> Result<(), String> {
         _ => return Err(format!("in runs {}, one by one {}", kind_of(&runs), kind_of(&lines))),
     }
     let read = read_obj("a", bytes);
+    // An empty file is refused before it is looked at.
+    if bytes.is_empty() && read.is_err() {
+        return Ok(());
+    }
     if read.as_ref().map(shown) == lines.as_ref().map(shown) {
         Ok(())
     } else {
