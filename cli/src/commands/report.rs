@@ -125,9 +125,9 @@ impl<'a> Report<'a> {
 ///
 /// Where the system refuses so many (a limit on memory or on processes) there are fewer, and in the end only the one that runs already.
 fn start_threads(count: usize) {
-    let possible = threads_possible(count);
-    // Half of what is possible where there is a limit: threads are not all that a command needs.
-    let threads = if possible == count { count } else { possible / 2 };
+    // Half of what is possible where there is a limit: threads are not all that a command needs, and those of the pool take more than those that
+    // are tried.
+    let threads = (threads_possible(2 * count) / 2).min(count);
     let mut pool = rayon::ThreadPoolBuilder::new().num_threads(threads.max(1));
     if threads == 0 {
         pool = pool.use_current_thread();
