@@ -1,14 +1,11 @@
 //! Points that would lie in a plane or on a line, had their coordinates not been rounded.
 
+use crate::vertices::rounding_of;
 use crate::{Delaunay, DelaunayError, Partition};
 use glam::{DVec3, dvec3};
 
-/// How far rounding takes points from their plane or line, relative to the largest coordinate: half a unit in the last place along each axis,
-/// as much for each of the three points that the plane is laid through, and the same once more for what was computed before.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
-
-/// Sizes whose squares keep their digits.
-const USABLE: std::ops::Range<f64> = 1e-100..1e100;
+/// Roundings whose squares, and those of coordinates, keep their digits.
+const USABLE: std::ops::Range<f64> = 1e-115..1e85;
 
 impl Partition {
     /// The cells of [`Delaunay::new`], but triangles where points lie in a plane as nearly as the rounding of their coordinates, and segments
@@ -46,11 +43,10 @@ impl Partition {
 /// The coordinates of points along their plane, `(x, y, 0)`, or line, `(x, 0, 0)`, if they are as near to one as rounding and span more than
 /// that exactly.
 fn flattened(points: &[DVec3], dimension: usize) -> Option<Vec<DVec3>> {
-    let largest = points.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
-    if dimension < 2 || !USABLE.contains(&largest) {
+    let rounding = rounding_of(points);
+    if dimension < 2 || !USABLE.contains(&rounding) {
         return None;
     }
-    let rounding = ROUNDING * largest;
     // The same of points in any order.
     let in_order =
         |a: &DVec3, b: &DVec3| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z));

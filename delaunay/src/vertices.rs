@@ -5,8 +5,14 @@ use glam::DVec3;
 /// What is lower than this share of its length is flat: how high it is has too few digits left.
 const LEAST_HEIGHT: f64 = 1e-9;
 
-/// How far positions may be from where they are meant to be, relative to the largest coordinate before they were moved.
+/// How far the rounding of coordinates takes points from their plane or line, relative to the largest coordinate: half a unit in the last place
+/// along each axis, as much for each of the three points that the plane is laid through, and the same once more for what was computed before.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// How far these positions may lie from where they are meant to be.
+pub(crate) fn rounding_of(positions: &[DVec3]) -> f64 {
+    ROUNDING * positions.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()))
+}
 
 /// Points of a set, moved and resized to about a unit box about 0.
 #[derive(Clone, Debug, Default)]
@@ -18,9 +24,8 @@ pub(crate) struct Vertices {
 impl Vertices {
     /// Of finite positions.
     pub(crate) fn new(positions: &[DVec3], centre: DVec3, scale: f64) -> Self {
-        let largest = positions.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
         let at = positions.iter().map(|p| (*p - centre) * scale).collect();
-        Self { at, rounding: ROUNDING * largest * scale }
+        Self { at, rounding: rounding_of(positions) * scale }
     }
 
     pub(crate) fn len(&self) -> usize {

@@ -64,7 +64,7 @@ impl Locator {
     /// From a cell that is flat up to rounding, and through all such cells beside it, to a cell from which the way leads elsewhere.
     #[cold]
     fn past_flat_cells(&self, p: DVec3, from: u32) -> Beyond {
-        let (mut flat, mut facets, mut best) = (vec![from], vec![], None);
+        let (mut flat, mut facets, mut beside) = (vec![from], vec![], vec![]);
         let mut i = 0;
         while i < flat.len() && flat.len() <= MOST_FLAT {
             for next in self.cells[flat[i] as usize].beyond() {
@@ -83,17 +83,14 @@ impl Locator {
                 } else if least >= -ROUNDING {
                     return Beyond::End(End::Inside { cell: next, coordinates });
                 } else {
-                    let towards = simplex.neighbours[side];
-                    let comes_back = towards & HULL == 0 && self.cells[towards as usize].is_flat();
-                    if !comes_back && best.is_none_or(|(most, _)| least > most) {
-                        best = Some((least, next));
-                    }
+                    beside.push((least, next, simplex.neighbours[side]));
                 }
             }
             i += 1;
         }
-        match best {
-            Some((_, next)) => Beyond::Cell(next),
+        let leads_on = |&&(_, _, towards): &&(f64, u32, u32)| !flat.contains(&towards);
+        match beside.iter().filter(leads_on).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))) {
+            Some(&(_, next, _)) => Beyond::Cell(next),
             None if flat.len() > MOST_FLAT => Beyond::End(self.search(p)),
             // From all around, `p` lies beyond these cells: it is before the hull that they are part of.
             None => match self.hull.nearest_of(&self.vertices, facets, p) {

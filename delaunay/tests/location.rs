@@ -187,3 +187,28 @@ fn tilted_lines_and_planes_are_weighted_as_they_lie() {
         }
     }
 }
+
+/// A whole turned lattice, at places on its edges, squares and cubes, where flat cells lie beside one another.
+#[test]
+fn places_between_the_points_of_a_turned_lattice_are_found() {
+    let lattice: Vec<DVec3> =
+        (0..216).map(|i| dvec3(f64::from(i % 6), f64::from(i / 6 % 6), f64::from(i / 36))).collect();
+    for angle in [0.1, 0.5, 1.0, 2.3] {
+        let turn = DQuat::from_axis_angle(dvec3(0.48, -0.6, 0.64), angle);
+        let turned: Vec<DVec3> = lattice.iter().map(|&p| turn * p).collect();
+        let locator = Locator::new(&turned, &Partition::up_to_rounding(&turned).unwrap()).unwrap();
+        let mut hint = Hint::START;
+        for p in &lattice {
+            for part in
+                [0.5 * DVec3::X, 0.5 * DVec3::ONE, dvec3(0.5, 0.0, 0.5), dvec3(0.25, 0.75, 0.0), DVec3::ZERO]
+            {
+                let query = turn * (*p + part).min(DVec3::splat(5.0));
+                for blend in [locator.locate(query, &mut hint), locator.locate_anywhere(query)] {
+                    let found: DVec3 =
+                        blend.unwrap().parts().map(|(i, weight)| turned[i as usize] * weight).sum();
+                    assert!(found.distance(query) < 1e-9, "{query} is not {found}, turned by {angle}");
+                }
+            }
+        }
+    }
+}
