@@ -17,7 +17,7 @@ pub(super) struct Section {
 }
 
 /// Names in the order of the page; those that are not here come last, by name.
-const ORDER: [&str; 16] = [
+const ORDER: [&str; 17] = [
     "micropoint",
     "micropoint-foliage",
     "micropoint-checker",
@@ -25,6 +25,7 @@ const ORDER: [&str; 16] = [
     "shadow-area",
     "shade",
     "shprobe",
+    "shprobe-light",
     "together",
     "radiosity",
     "surfel",
