@@ -128,6 +128,11 @@ pub fn cut(trees: &[&Tree], view: &View, options: &CutOptions) -> Cut {
     cut
 }
 
+/// Whether a cube may be in view.
+pub(crate) fn is_seen(view: &View, cube: Cube, margin_px: f64) -> bool {
+    nearest_depth(view, cube, margin_px).is_some()
+}
+
 /// Pixels that a length of 1 takes at a depth.
 fn pixels_per_unit(view: &View, depth: f64) -> f64 {
     match view.projection() {

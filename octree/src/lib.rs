@@ -2,8 +2,9 @@
 //!
 //! Each point is in exactly one node of an octree, and inner nodes hold an evenly spaced sample, so that any part of the tree that has the root is a picture
 //! of the whole, more or less dense. A [`Builder`] makes the tree of points that come in any order, in bounded memory; a [`TreeWriter`] keeps it in a
-//! file, a [`TreeReader`] finds out whether that was altered and reads single nodes; [`cut`] says which nodes a view needs; and a [`NodeCache`] keeps
-//! those that were read for the next view. [`Tree`] takes nodes of any origin: those of a COPC file, for example.
+//! file, a [`TreeReader`] finds out whether that was altered and reads single nodes; [`cut`] says which nodes a view needs; a [`NodeCache`] keeps
+//! those that were read for the next view; and [`regions`] says which node is the deepest for which place, so that what is made of the points there can
+//! be kept as well, with those of its [`Neighbourhood`]. [`Tree`] takes nodes of any origin: those of a COPC file, for example.
 //!
 //! ```
 //! use glam::DVec3;
@@ -52,6 +53,7 @@ mod file;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod key;
+mod region;
 mod sample;
 mod spill;
 mod tree;
@@ -63,4 +65,5 @@ pub use cut::{Cut, CutOptions, cut};
 pub use error::OctreeError;
 pub use file::{MARK as TREE_MARK, TreeHeader, TreeReader, TreeWriter};
 pub use key::NodeKey;
+pub use region::{Neighbourhood, Region, regions};
 pub use tree::{Node, Tree};

@@ -74,6 +74,12 @@ impl Tree {
         self.children[node as usize].into_iter().filter(|&child| child != NONE)
     }
 
+    /// The node in one octant of a node, if there is any.
+    #[must_use]
+    pub fn child(&self, node: u32, octant: usize) -> Option<u32> {
+        self.children[node as usize].get(octant).copied().filter(|&child| child != NONE)
+    }
+
     /// The cube of the whole tree.
     #[must_use]
     pub fn cube(&self) -> Cube {

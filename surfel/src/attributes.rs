@@ -39,23 +39,34 @@ impl Attributes {
         self.opacities.as_ref().map_or(1.0, |all| all[point])
     }
 
-    /// Reorders the values: the one that was at `places[i]` goes to place i.
-    pub(crate) fn reorder(&mut self, places: &[u32]) {
-        fn reordered<T: Copy>(list: &mut Vec<T>, places: &[u32]) {
-            *list = places.iter().map(|&old| list[old as usize]).collect();
+    /// The values at these places, in this order.
+    pub(crate) fn at(&self, places: &[u32]) -> Self {
+        fn taken<T: Copy>(list: &[T], places: &[u32]) -> Vec<T> {
+            places.iter().map(|&place| list[place as usize]).collect()
         }
-        self.cells.iter_mut().for_each(|list| reordered(list, places));
-        self.normals.iter_mut().for_each(|list| reordered(list, places));
-        reordered(&mut self.radii, places);
-        reordered(&mut self.areas, places);
-        self.colors.iter_mut().for_each(|list| reordered(list, places));
-        self.opacities.iter_mut().for_each(|list| reordered(list, places));
+        Self {
+            cells: self.cells.each_ref().map(|list| taken(list, places)),
+            normals: self.normals.each_ref().map(|list| taken(list, places)),
+            radii: taken(&self.radii, places),
+            areas: taken(&self.areas, places),
+            colors: self.colors.as_ref().map(|list| taken(list, places)),
+            opacities: self.opacities.as_ref().map(|list| taken(list, places)),
+        }
     }
 }
 
+/// All points of a cloud, sorted.
+pub(crate) struct Sorted {
+    pub(crate) attributes: Attributes,
+    /// Their Morton codes, ascending.
+    pub(crate) codes: Vec<u64>,
+    /// The caller's number of each.
+    pub(crate) numbers: Vec<u32>,
+}
+
 /// Estimates missing attributes and sorts points by Morton code, then by attributes, so that the order of input does
-/// not matter.
-pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, Vec<u64>) {
+/// not matter. `usual` is the typical spacing in units, where it is known: see [`radius::of_cloud`].
+pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice, usual: Option<f64>) -> Sorted {
     let count = points.positions.len();
     let cells = parallel::map(count, |i| lattice.cell(points.positions[i]));
     let mut keys = parallel::map(count, |i| (morton(cells[i]), i as u32));
@@ -76,7 +87,7 @@ pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, V
         Some(given) => {
             keys.iter().map(|&(_, i)| (f64::from(given[i as usize]) / lattice.side) as f32).collect()
         }
-        None => radius::of_cloud(&places, &normals, two_sided),
+        None => radius::of_cloud(&places, &normals, two_sided, usual),
     };
     let radii: Vec<f32> = radii.into_iter().map(|r| r.clamp(SMALLEST, 1e6)).collect();
     let areas = areas::of_cloud(&places, &normals, &radii, two_sided);
@@ -89,7 +100,8 @@ pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice) -> (Attributes, V
         colors: points.colors.map(|given| keys.iter().map(|&(_, i)| given[i as usize]).collect()),
         opacities: opacities.map(|given| keys.iter().map(|&(_, i)| given[i as usize]).collect()),
     };
-    (attributes, keys.into_iter().map(|key| key.0).collect())
+    let (codes, numbers) = keys.into_iter().unzip();
+    Sorted { attributes, codes, numbers }
 }
 
 /// Order of points of one Morton code: by all attributes. Points that are equal in all of them are interchangeable.

@@ -1,6 +1,6 @@
 //! A cloud, prepared for drawing.
 
-use crate::attributes::{Attributes, in_order};
+use crate::attributes::{Attributes, Sorted, in_order};
 use crate::error::SurfelError;
 use crate::lattice::Lattice;
 use crate::node::{Node, nodes};
@@ -32,15 +32,24 @@ impl Cloud {
     pub fn new(points: &Points<'_>) -> Result<Self, SurfelError> {
         points.check()?;
         let lattice = Lattice::around(points.positions);
-        let (mut attributes, codes) = in_order(points, &lattice);
-        let (cubes, generations) = octree::divide(&codes);
+        let Sorted { attributes, codes, .. } = in_order(points, &lattice, None);
+        Ok(Self::of_sorted(lattice, attributes, &codes, points.normals.is_none()))
+    }
+
+    /// Makes the tree of points that are sorted.
+    pub(crate) fn of_sorted(
+        lattice: Lattice,
+        mut attributes: Attributes,
+        codes: &[u64],
+        two_sided: bool,
+    ) -> Self {
+        let (cubes, generations) = octree::divide(codes);
         let mut links = links::make(&cubes, &generations, &attributes);
         let pairs = pairs::arrange(&cubes, &mut attributes, &mut links);
-        let two_sided = points.normals.is_none();
         let mut nodes = nodes(&cubes, &generations, &links, &attributes, two_sided);
         nodes.iter_mut().zip(pairs).for_each(|(node, pairs)| node.pairs = pairs);
         let links = PackedLinks::new(&links, &nodes, &attributes);
-        Ok(Self { lattice, points: attributes, nodes, links, two_sided })
+        Self { lattice, points: attributes, nodes, links, two_sided }
     }
 
     /// Number of points.
@@ -78,6 +87,15 @@ impl Cloud {
     pub fn spacing(&self) -> f64 {
         let area: f64 = self.points.areas.iter().map(|&a| f64::from(a)).sum();
         (area / self.len() as f64).sqrt() * self.lattice.side
+    }
+
+    /// Bytes that it takes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let of_point = 8 * size_of::<f32>()
+            + if self.has_colors() { size_of::<[f32; 3]>() } else { 0 }
+            + if self.has_opacities() { size_of::<f32>() } else { 0 };
+        self.links.bytes() + size_of::<Node>() * self.nodes.len() + of_point * self.len()
     }
 
     /// Bytes per point besides position, normal, color, radius and opacity: octree, links and areas.

@@ -73,6 +73,20 @@ pub enum SurfelError {
     /// A cloud without points.
     #[error("the cloud has no points")]
     NoPoints,
+    /// The cube of a division is not one: its corner is not finite, or its side not above 0.
+    #[error("the cube at {low:?} with a side of {side} cannot be divided")]
+    BadCube {
+        /// Its lowest corner.
+        low: [f64; 3],
+        /// Its side.
+        side: f64,
+    },
+    /// Clouds that are to be joined were not made within one cube, or only some of them have normals of their own.
+    #[error("part {index} was made in another way than the first; only parts of one cube can be joined")]
+    NotOfOneKind {
+        /// Its number.
+        index: usize,
+    },
     /// The number of an attribute's values is not that of positions.
     #[error("{length} {what} for {count} positions")]
     LengthMismatch {

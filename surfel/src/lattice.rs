@@ -29,7 +29,13 @@ impl Lattice {
         Self { low, side: extent }
     }
 
-    /// The cell that holds `p`.
+    /// The lattice of this cube; nothing if its corner is not finite, or its side not above 0.
+    pub(crate) fn of_cube(low: DVec3, side: f64) -> Option<Self> {
+        let is_sound = low.is_finite() && (low + side).is_finite() && side >= 1e-290;
+        is_sound.then_some(Self { low, side })
+    }
+
+    /// The cell that holds `p`, or the nearest one.
     pub(crate) fn cell(&self, p: DVec3) -> [u32; 3] {
         ((p - self.low) / self.side * CELLS).to_array().map(|c| c.clamp(0.0, CELLS - 1.0) as u32)
     }

@@ -42,6 +42,8 @@
 //!   out of focus, points are as far apart as the blur is wide. Between two levels it draws pairs of neighbours as one
 //!   disc. Discs become ellipses with exact perspective and are lit; in each pixel those of the nearest surface are
 //!   averaged and composited over what is behind. Points may have opacities ([`Points::with_opacities`]).
+//! * [`Cloud::parts`] and [`Cloud::join`]: a cloud that is too large to be held is prepared in parts, each with the
+//!   points around it, and those parts are drawn together that a view needs.
 //! * [`Focus`]: the paper's parameter d (\[3\], §3), or a thin lens, of which d = aperture/focus is the same.
 //! * [`Procedure::Paper`]: what the paper does (\[3\]), for comparison.
 //!
@@ -86,6 +88,7 @@ mod grid;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod items;
+mod joined;
 mod kernel;
 mod lattice;
 mod layer;
@@ -101,6 +104,7 @@ mod packed;
 mod packed_links;
 mod pairs;
 mod paper;
+mod parts;
 mod placed;
 mod point;
 mod points;
@@ -124,6 +128,7 @@ pub use error::SurfelError;
 pub use focus::{Focus, field_of_view_rad};
 pub use frame::{Frame, FrameCounts};
 pub use options::{Options, Procedure};
+pub use parts::{Division, NO_PART};
 pub use point::SurfacePoint;
 pub use pointillist_view::{Light, PixelRect, Projected, Projection, Ray, View, ViewError};
 pub use points::Points;

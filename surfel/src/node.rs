@@ -43,6 +43,11 @@ impl Node {
         self.children.is_empty()
     }
 
+    /// Whether it only holds others together: see [`around`].
+    pub(crate) fn is_bare(&self) -> bool {
+        self.items.is_empty()
+    }
+
     /// What is drawn for it with one disc for every pair.
     pub(crate) fn count_in_pairs(&self) -> usize {
         self.items.len() - self.pairs as usize
@@ -145,7 +150,8 @@ fn cone(normals: impl Iterator<Item = Vec3> + Clone) -> Option<Cone> {
     Some(Cone { axis, half_angle_rad: widest.clamp(-1.0, 1.0).acos() + ROUNDING_RAD })
 }
 
-fn inner(cube: &Cube, children: &[&Node], links: &[Link], first_link: u32) -> Node {
+/// The middle of the box around some nodes, and half its sides.
+fn box_around(children: &[&Node]) -> ([u32; 3], Vec3) {
     // Bounds grow by rounding from level to level; as whole numbers they do not.
     let reach = |node: &Node, axis: usize| (f64::from(node.half[axis]) * 4_294_967_296.0).ceil() as u32;
     let low = [0, 1, 2].map(|axis| {
@@ -154,7 +160,11 @@ fn inner(cube: &Cube, children: &[&Node], links: &[Link], first_link: u32) -> No
     let high = [0, 1, 2].map(|axis| {
         children.iter().map(|c| c.origin[axis].saturating_add(reach(c, axis))).max().unwrap_or(0)
     });
-    let (origin, half) = middle_and_half(low, high);
+    middle_and_half(low, high)
+}
+
+fn inner(cube: &Cube, children: &[&Node], links: &[Link], first_link: u32) -> Node {
+    let (origin, half) = box_around(children);
     let area = links.iter().map(|l| l.area).sum();
     Node {
         origin,
@@ -165,6 +175,21 @@ fn inner(cube: &Cube, children: &[&Node], links: &[Link], first_link: u32) -> No
         items: first_link..first_link + links.len() as u32,
         pairs: 0,
         children: cube.children.start as u32..cube.children.end as u32,
+    }
+}
+
+/// A node around others that has nothing to draw itself: they are drawn in its place at any distance.
+pub(crate) fn around(children: &[&Node], numbers: Range<u32>) -> Node {
+    let (origin, half) = box_around(children);
+    Node {
+        origin,
+        half,
+        cone: cone_around(children, &[]),
+        spacing: f32::INFINITY,
+        widest: children.iter().map(|c| c.widest).fold(0.0, f32::max),
+        items: 0..0,
+        pairs: 0,
+        children: numbers,
     }
 }
 

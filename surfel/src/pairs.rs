@@ -64,7 +64,7 @@ pub(crate) fn arrange(cubes: &[Cube], points: &mut Attributes, links: &mut [Vec<
             old_places[new] = old as u32;
         }
     }
-    points.reorder(&old_places);
+    *points = points.at(&old_places);
     for (list, (order, _)) in links.iter_mut().zip(&arranged).filter(|(list, _)| !list.is_empty()) {
         let moved = |link: Link| Link { point: new_places[link.point as usize], ..link };
         *list = order.iter().map(|&old| moved(list[old])).collect();

@@ -87,17 +87,18 @@ const TRIES: [usize; 3] = [14, 32, 96];
 /// most half the median spacing; a single place gets 1. All radii are normal numbers of `f32`, above 0. Points that
 /// coincide and face the same way have the same radius. The result does not depend on the order of points.
 ///
-/// `two_sided`: the sign of a normal has no meaning.
-pub(crate) fn of_cloud(places: &Places, normals: &[Vec3], two_sided: bool) -> Vec<f32> {
+/// `two_sided`: the sign of a normal has no meaning. `usual` is the median spacing of a larger cloud of which these are
+/// some points, in the cloud's unit: it then counts in the place of theirs, and a single place gets half of it.
+pub(crate) fn of_cloud(places: &Places, normals: &[Vec3], two_sided: bool, usual: Option<f64>) -> Vec<f32> {
     if places.len() < 2 {
-        return vec![1.0; places.point_count()];
+        let radius = usual.map_or(1.0, |usual| rounded_up(0.5 * usual).max(f32::MIN_POSITIVE));
+        return vec![radius; places.point_count()];
     }
     let sides = Sides::new(places, normals, two_sided);
     let discs = parallel::map(sides.len(), |side| disc(places, &sides, side));
     let mut spacings = vec![0.0; places.len()];
     discs.iter().zip(&sides.places).for_each(|(d, &place)| spacings[place as usize] = d.spacing);
-    let mut sorted = spacings.clone();
-    let median = *sorted.select_nth_unstable_by(places.len() / 2, f64::total_cmp).1;
+    let median = usual.map_or_else(|| median(&spacings), |usual| usual * places.scale());
     let radius = |disc: &Disc| {
         let around = disc.nearest.iter().map(|&place| spacings[place as usize]).fold(0.0, f64::max);
         let own = disc.radius.unwrap_or((0.5 * disc.to_nearest).min(0.5 * median));
@@ -106,6 +107,11 @@ pub(crate) fn of_cloud(places: &Places, normals: &[Vec3], two_sided: bool) -> Ve
         rounded_up(units.min(f64::from(f32::MAX))).max(f32::MIN_POSITIVE)
     };
     sides.of_points.iter().map(|&side| radius(&discs[side as usize])).collect()
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    *sorted.select_nth_unstable_by(values.len() / 2, f64::total_cmp).1
 }
 
 /// The limits that neighbours set to the disc of a point of a cloud, in units of the places.

@@ -66,7 +66,7 @@ pub(crate) fn select(
             counts.nodes_facing_away += 1;
             continue;
         }
-        if !node.is_leaf() && node.spacing > spacing {
+        if !node.is_leaf() && (node.is_bare() || node.spacing > spacing) {
             stack.extend(node.children.clone());
             continue;
         }

@@ -7,7 +7,7 @@ use crate::image_io::{PixelRect, Stamp};
 use crate::options::{SurfelOptions, layer_list};
 use crate::points::{Colouring, Drawn, Legend, PointLayer, PointSet, Trees, are_drawn_by_nodes, window_of};
 use crate::scene::Camera;
-use pointillist_octree::Cut;
+use pointillist_octree::{Cut, Region};
 use pointillist_surfel as surfel;
 use pointillist_view::View;
 
@@ -38,7 +38,7 @@ enum Source {
 
 /// The points of some nodes, ready to be drawn.
 struct Ready {
-    nodes: Vec<(usize, u32)>,
+    regions: Vec<Region>,
     cloud: surfel::Cloud,
     legend: Option<Legend>,
 }
@@ -73,9 +73,7 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     };
     let framed = match &mut source {
         Source::Whole { cloud, .. } => cloud.positions().collect(),
-        Source::Trees { trees, .. } => {
-            trees.load(&trees.roots(), &mut || ())?.positions().collect::<Vec<_>>()
-        }
+        Source::Trees { trees, .. } => trees.sample()?.0.positions().collect::<Vec<_>>(),
     };
     let cameras = given
         .iter()
@@ -89,6 +87,8 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
         report.stats.count("bytes_read", trees.bytes_read);
         report.stats.count("nodes_read", trees.nodes_read);
         report.stats.skip("nodes_kept", trees.nodes_kept);
+        report.stats.count("parts_made", trees.parts_made);
+        report.stats.skip("parts_kept", trees.parts_kept);
     }
     report.finish()
 }
@@ -98,8 +98,8 @@ impl Pictures<'_> {
         let (options, report) = (self.options, self.report);
         if are_drawn_by_nodes(&options.clouds, options.octree) {
             let progress = report.progress();
-            let open =
-                || Trees::open(&options.clouds, options.reading(), &progress, &|line| report.note(line));
+            let tell = |line: &str| report.note(line);
+            let open = || Trees::open(&options.clouds, options.reading(), self.colouring, &progress, &tell);
             let trees = Box::new(report.stats.stage("load", open)?);
             return Ok(Source::Trees { trees, ready: None });
         }
@@ -179,35 +179,39 @@ impl Pictures<'_> {
         target: &Target<'_>,
         stamp: Stamp,
     ) -> Result<(), CliError> {
-        let mut nodes = cut.nodes.clone();
-        // The order is that of the widest gaps, which another view of the same nodes may have elsewhere.
-        nodes.sort_unstable();
+        let regions = trees.regions(cut, view, MARGIN_PX);
         let made = match ready.take() {
-            Some(ready) if ready.nodes == nodes => {
+            Some(ready) if ready.regions == regions => {
                 self.report.stats.skip("clouds_made_ready", 1);
                 ready
             }
             other => {
-                // Before the next is read: both together may be too much.
+                // Before the next is made: both together may be too much.
                 drop(other);
-                Box::new(self.make_ready(trees, cut, nodes)?)
+                Box::new(self.make_ready(trees, regions)?)
             }
         };
         let Ready { cloud, legend, .. } = &**ready.insert(made);
         self.draw_cloud(cloud, legend.clone(), view, target, stamp)
     }
 
-    fn make_ready(&self, trees: &mut Trees, cut: &Cut, nodes: Vec<(usize, u32)>) -> Result<Ready, CliError> {
-        let progress = self.report.progress();
-        progress.begin("read", cut.nodes.len() as u64);
-        let mut set = self.report.stats.stage("load", || trees.load(cut, &mut || progress.advance(1)))?;
+    fn make_ready(&self, trees: &mut Trees, regions: Vec<Region>) -> Result<Ready, CliError> {
+        let report = self.report;
+        let progress = report.progress();
+        let estimate_normals = self.options.discs.estimate_normals;
+        let made = report.stats.stage("prepare", || {
+            let mut has_begun = false;
+            trees.ready(&regions, estimate_normals, &mut |octants, of| {
+                if !std::mem::replace(&mut has_begun, true) {
+                    progress.begin("prepare", of);
+                }
+                progress.advance(octants);
+            })
+        })?;
         progress.finish();
-        if set.count() == 0 {
-            let message = "no point is in view; without --eye, --target and --views all are";
-            return Err(CliError::Usage(message.to_owned()));
-        }
-        let (cloud, legend) = self.prepare(&mut set)?;
-        Ok(Ready { nodes, cloud, legend })
+        let message = "no point is in view; without --eye, --target and --views all are";
+        let (cloud, legend) = made.ok_or_else(|| CliError::Usage(message.to_owned()))?;
+        Ok(Ready { regions, cloud, legend })
     }
 
     fn draw_cloud(

@@ -8,7 +8,7 @@ use crate::input_error::InputError;
 use crate::memory::Meter;
 use glam::{DVec3, Vec3};
 use pointillist_render::fingerprint::ByteHash;
-use pointillist_surfel::{Cloud, Points, SurfelError};
+use pointillist_surfel::{Cloud, Division, Points, SurfelError};
 use std::path::{Path, PathBuf};
 
 /// The points of all files, with the attributes that all of them have.
@@ -24,6 +24,8 @@ pub struct PointSet {
     values: Vec<f32>,
     /// The files, and the number of the first point of each.
     files: Vec<(PathBuf, usize)>,
+    /// The number of the first of them among all that are drawn.
+    first_number: usize,
     /// What may be wrong, with the name of the file.
     pub warnings: Vec<String>,
     /// What its points take.
@@ -38,6 +40,14 @@ const POINT_BYTES: u64 = 230;
 fn append<T: Clone>(all: &mut Option<Vec<T>>, part: Option<&[T]>) {
     match (all.as_mut(), part) {
         (Some(all), Some(part)) => all.extend_from_slice(part),
+        _ => *all = None,
+    }
+}
+
+/// The same of chosen values.
+fn append_chosen<T: Copy>(all: &mut Option<Vec<T>>, part: Option<&Vec<T>>, chosen: &[u32]) {
+    match (all.as_mut(), part) {
+        (Some(all), Some(part)) => all.extend(chosen.iter().map(|&i| part[i as usize])),
         _ => *all = None,
     }
 }
@@ -60,6 +70,11 @@ impl PointSet {
     /// No points yet.
     pub(super) fn empty() -> Self {
         Self { normals: Some(vec![]), colours: Some(vec![]), radii: Some(vec![]), ..Self::default() }
+    }
+
+    /// No points yet of a file with this number among all that are drawn.
+    pub(super) fn of_file(path: &Path, number: usize) -> Self {
+        Self { files: vec![(path.to_owned(), 0)], first_number: number, ..Self::empty() }
     }
 
     /// Says that the points to come are of this file.
@@ -92,6 +107,46 @@ impl PointSet {
             all.extend_from_slice(opacities.unwrap_or_default());
             all.resize(self.positions.len(), 1.0);
         }
+    }
+
+    /// Adds points of another set that have been coloured, by their numbers.
+    pub(super) fn add_chosen(&mut self, from: &Self, chosen: &[u32]) {
+        let before = self.positions.len();
+        self.positions.extend(chosen.iter().map(|&i| from.positions[i as usize]));
+        append_chosen(&mut self.normals, from.normals.as_ref(), chosen);
+        append_chosen(&mut self.colours, from.colours.as_ref(), chosen);
+        append_chosen(&mut self.radii, from.radii.as_ref(), chosen);
+        if from.opacities.is_some() || self.opacities.is_some() {
+            let all = self.opacities.get_or_insert_default();
+            all.resize(before, 1.0);
+            all.extend(from.opacities.iter().flat_map(|own| chosen.iter().map(|&i| own[i as usize])));
+            all.resize(self.positions.len(), 1.0);
+        }
+    }
+
+    /// Adds points with what was measured, of a file with this number.
+    pub(super) fn add_measured(&mut self, from: &Self) {
+        self.files.extend(from.files.iter().map(|(path, _)| (path.clone(), self.positions.len())));
+        self.add_all(from);
+        self.values.extend_from_slice(&from.values);
+    }
+
+    /// Adds all points of another set that have been coloured.
+    pub(super) fn add_all(&mut self, from: &Self) {
+        let all: Vec<u32> = (0..from.positions.len() as u32).collect();
+        self.add_chosen(from, &all);
+    }
+
+    /// Bytes that its points take.
+    pub(super) fn bytes(&self) -> u64 {
+        let rows = |has: bool, bytes: usize| if has { bytes } else { 0 };
+        let each = size_of::<DVec3>()
+            + rows(self.normals.is_some(), size_of::<Vec3>())
+            + rows(self.colours.is_some(), size_of::<[f32; 3]>())
+            + rows(self.radii.is_some(), size_of::<f32>())
+            + rows(self.opacities.is_some(), size_of::<f32>())
+            + rows(!self.values.is_empty(), size_of::<f32>());
+        (self.positions.len() * each) as u64
     }
 
     fn read(&mut self, path: &Path, options: &PointOptions) -> Result<(), InputError> {
@@ -132,11 +187,12 @@ impl PointSet {
         let names: Vec<String> = self.files.iter().map(|(path, _)| input::name_of(path)).collect();
         let firsts = self.files.iter().map(|(_, first)| *first);
         let ends = firsts.clone().skip(1).chain([self.positions.len()]);
-        let parts: Vec<Part<'_>> = (firsts.zip(ends).zip(&names))
-            .map(|((first, end), name)| Part {
+        let parts: Vec<Part<'_>> = (firsts.zip(ends).zip(&names).enumerate())
+            .map(|(number, ((first, end), name))| Part {
                 positions: &self.positions[first..end],
                 values: self.values.get(first..end).unwrap_or_default(),
                 name,
+                number: self.first_number + number,
             })
             .collect();
         let (colours, legend) = colouring.colours(&parts)?;
@@ -151,6 +207,20 @@ impl PointSet {
     ///
     /// [`InputError`] for an attribute that cannot be used.
     pub fn cloud(&self, estimate_normals: bool) -> Result<Cloud, InputError> {
+        Cloud::new(&self.points(estimate_normals)).map_err(|error| self.blame(&error))
+    }
+
+    /// Makes parts of the points ready to be drawn together with those of other sets: see [`Cloud::parts`].
+    pub(super) fn parts(
+        &self,
+        estimate_normals: bool,
+        numbers: &[u8],
+        division: &Division,
+    ) -> Result<Vec<Option<Cloud>>, InputError> {
+        Cloud::parts(&self.points(estimate_normals), numbers, division).map_err(|error| self.blame(&error))
+    }
+
+    fn points(&self, estimate_normals: bool) -> Points<'_> {
         let mut points = Points::new(&self.positions);
         if let Some(normals) = self.normals.as_deref().filter(|_| !estimate_normals) {
             points = points.with_normals(normals);
@@ -164,7 +234,7 @@ impl PointSet {
         if let Some(opacities) = &self.opacities {
             points = points.with_opacities(opacities);
         }
-        Cloud::new(&points).map_err(|error| self.blame(&error))
+        points
     }
 
     /// Names the file and the point within it.

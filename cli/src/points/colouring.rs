@@ -54,6 +54,8 @@ pub struct Part<'a> {
     pub values: &'a [f32],
     /// Name of the scan or file.
     pub name: &'a str,
+    /// Its number among all, from 0.
+    pub number: usize,
 }
 
 /// What a colour means.
@@ -71,7 +73,38 @@ pub enum Key {
     /// From the first value to the last.
     Scale([f64; 2], MapTable),
     /// One by one.
-    Entries(Vec<(String, [f32; 3])>),
+    Entries(Vec<Entry>),
+}
+
+/// A value with a colour of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// The value, by which entries are sorted.
+    pub number: f32,
+    /// What it is called.
+    pub name: String,
+    /// Its colour, linear.
+    pub colour: [f32; 3],
+}
+
+impl Legend {
+    /// What colours mean of which these say it in part.
+    #[must_use]
+    pub fn merged<'a>(legends: impl IntoIterator<Item = &'a Self>) -> Option<Self> {
+        let mut legends = legends.into_iter();
+        let mut all = legends.next()?.clone();
+        if let Key::Entries(entries) = &mut all.key {
+            for legend in legends {
+                let Key::Entries(more) = &legend.key else { continue };
+                for entry in more {
+                    if let Err(at) = entries.binary_search_by(|e| e.number.total_cmp(&entry.number)) {
+                        entries.insert(at, entry.clone());
+                    }
+                }
+            }
+        }
+        Some(all)
+    }
 }
 
 /// Share of the points beyond each end of the map, so that a few outliers do not take up most of it.
@@ -103,6 +136,15 @@ impl ColorBy {
 }
 
 impl Colouring {
+    /// The same with the range of a scale that was found, for points that are coloured apart from others.
+    #[must_use]
+    pub fn as_in(self, legend: Option<&Legend>) -> Self {
+        match legend.map(|legend| &legend.key) {
+            Some(Key::Scale(range, _)) => Self { range: Some(*range), ..self },
+            _ => self,
+        }
+    }
+
     /// The linear colours of all parts, and what they mean; nothing if points keep their own.
     #[must_use]
     pub fn colours(&self, parts: &[Part<'_>]) -> Option<(Vec<Vec<[f32; 3]>>, Legend)> {
@@ -177,16 +219,22 @@ fn by_number(
         }
         colours.push(of_part);
     }
-    let named =
-        |(value, colour): (f32, _)| (if value.is_nan() { "none".to_owned() } else { name(value) }, colour);
+    let named = |(number, colour): (f32, _)| Entry {
+        number,
+        name: if number.is_nan() { "none".to_owned() } else { name(number) },
+        colour,
+    };
     let key = Key::Entries(known.into_iter().map(named).collect());
     (colours, Legend { title: title.to_owned(), key })
 }
 
 fn by_scan(parts: &[Part<'_>]) -> (Vec<Vec<[f32; 3]>>, Legend) {
-    let colour = |number: usize| number_colour(number as f32);
-    let colours = parts.iter().enumerate().map(|(i, part)| vec![colour(i); len(part)]).collect();
-    let entries = parts.iter().enumerate().map(|(i, part)| (part.name.to_owned(), colour(i))).collect();
+    let entry = |part: &Part<'_>| {
+        let number = part.number as f32;
+        Entry { number, name: part.name.to_owned(), colour: number_colour(number) }
+    };
+    let entries: Vec<Entry> = parts.iter().map(entry).collect();
+    let colours = parts.iter().zip(&entries).map(|(part, entry)| vec![entry.colour; len(part)]).collect();
     (colours, Legend { title: "scan".to_owned(), key: Key::Entries(entries) })
 }
 
@@ -204,7 +252,7 @@ mod tests {
 
     fn colours(by: ColorBy, values: &[f32], range: Option<[f64; 2]>) -> (Vec<[f32; 3]>, Legend) {
         let positions: Vec<DVec3> = (0..values.len()).map(|i| DVec3::new(0.0, 0.0, 1e6 + i as f64)).collect();
-        let part = Part { positions: &positions, values, name: "a.las" };
+        let part = Part { positions: &positions, values, name: "a.las", number: 0 };
         let colouring = Colouring { by, range, map: ColorMap::Gray };
         let (mut colours, legend) = colouring.colours(&[part]).unwrap();
         (colours.pop().unwrap(), legend)
@@ -240,8 +288,26 @@ mod tests {
         let (found, legend) = colours(ColorBy::Class, &[6.0, 2.0, 6.0, f32::NAN, 77.0, -0.0, 0.0], None);
         assert_eq!(found[0], found[2]);
         let Key::Entries(entries) = legend.key else { panic!("{legend:?}") };
-        let names: Vec<&str> = entries.iter().map(|(name, _)| name.as_str()).collect();
+        let names: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
         assert_eq!(names, ["0 never classified", "2 ground", "6 building", "77", "none"]);
+    }
+
+    #[test]
+    fn legends_of_parts_are_that_of_the_whole() {
+        let all = [6.0, 2.0, f32::NAN, 77.0, 0.0, 6.0, 2.0];
+        let whole = colours(ColorBy::Class, &all, None).1;
+        let parts = all.chunks(2).map(|part| colours(ColorBy::Class, part, None).1).collect::<Vec<_>>();
+        let merged = Legend::merged(&parts).unwrap();
+        let names = |legend: &Legend| match &legend.key {
+            Key::Entries(entries) => entries.iter().map(|entry| entry.name.clone()).collect::<Vec<_>>(),
+            Key::Scale(..) => vec![],
+        };
+        assert!(names(&whole).len() == 5 && names(&merged) == names(&whole), "{merged:?}");
+        assert!(Legend::merged([]).is_none());
+        let scale = colours(ColorBy::Elevation, &all, None).1;
+        let colouring = Colouring { by: ColorBy::Elevation, range: None, map: ColorMap::Gray };
+        assert_eq!(colouring.as_in(Some(&scale)).range, Some([1e6, 1e6 + 6.0]));
+        assert_eq!(colouring.as_in(None).range, None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Draws what the colours of a picture mean into its lower left corner.
 
-use super::colouring::{Key, Legend};
+use super::colouring::{Entry, Key, Legend};
 use crate::image_io::Frame;
 use embedded_graphics::Drawable as _;
 use embedded_graphics::mono_font::ascii::{FONT_6X10, FONT_9X15, FONT_10X20};
@@ -101,11 +101,11 @@ impl Layout {
     }
 
     /// A colour and a text a line; what does not fit is counted.
-    fn entries(&mut self, entries: &[(String, [f32; 3])], [pad, top, line]: [u32; 3], bottom: u32) -> u32 {
+    fn entries(&mut self, entries: &[Entry], [pad, top, line]: [u32; 3], bottom: u32) -> u32 {
         let room = (bottom.saturating_sub(top) / line).max(1) as usize;
         let shown = if entries.len() > room { room - 1 } else { entries.len() };
         let mut at = top;
-        for (name, colour) in &entries[..shown] {
+        for Entry { name, colour, .. } in &entries[..shown] {
             self.fills.push(([pad, at, line - line / 5, line - line / 5], *colour));
             self.texts.push((2 * pad + line, at, short(name)));
             at += line;
@@ -219,7 +219,8 @@ mod tests {
 
     #[test]
     fn entries_that_do_not_fit_are_counted() {
-        let entries: Vec<(String, [f32; 3])> = (0..100).map(|i| (format!("{i}"), [0.5; 3])).collect();
+        let entry = |i: u8| Entry { number: i.into(), name: format!("{i}"), colour: [0.5; 3] };
+        let entries: Vec<Entry> = (0..100).map(entry).collect();
         let legend = Legend { title: "scan".to_owned(), key: Key::Entries(entries) };
         let layout = Layout::of(&legend, &FONT_6X10, 150);
         assert!(layout.size[1] <= 150, "{:?}", layout.size);

@@ -10,7 +10,7 @@ mod selection;
 mod tree;
 
 pub use cloud::PointSet;
-pub use colouring::{ColorBy, Colouring, Key, Legend, Part};
+pub use colouring::{ColorBy, Colouring, Entry, Key, Legend, Part};
 pub use layers::{Drawn, PointLayer, window_of};
 pub use legend::draw_legend;
 pub use palette::{ColorMap, MapTable, class_name};

@@ -61,6 +61,13 @@ impl Selection {
             .with_help("`pointillist info FILE` prints the bounds of a cloud and its classes"))
     }
 
+    /// Whether points between two corners may be taken.
+    #[must_use]
+    pub fn may_take_of(&self, low: DVec3, high: DVec3) -> bool {
+        let meets = |one: &WorldBox| one.low.cmple(high).all() && one.high.cmpge(low).all();
+        self.boxes.is_empty() || self.boxes.iter().any(meets)
+    }
+
     fn takes_place(&self, point: DVec3) -> bool {
         let is_in = |boxes: &[WorldBox]| boxes.iter().any(|one| one.contains(point));
         (self.boxes.is_empty() || is_in(&self.boxes)) && !is_in(&self.dropped_boxes)

@@ -113,8 +113,13 @@ impl ScanSet {
 
     /// Gives the points the colours that are asked for; returns what they mean.
     pub fn colour(&mut self, colouring: &Colouring) -> Option<Legend> {
-        let parts: Vec<Part<'_>> = (self.scans.iter())
-            .map(|LoadedScan { positions, values, name, .. }| Part { positions, values, name })
+        let parts: Vec<Part<'_>> = (self.scans.iter().enumerate())
+            .map(|(number, LoadedScan { positions, values, name, .. })| Part {
+                positions,
+                values,
+                name,
+                number,
+            })
             .collect();
         let (colours, legend) = colouring.colours(&parts)?;
         for (scan, colours) in self.scans.iter_mut().zip(colours) {

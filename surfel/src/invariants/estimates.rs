@@ -21,7 +21,7 @@ pub struct Estimates {
 pub fn estimates(positions: &[DVec3]) -> Estimates {
     let places = Places::new(positions);
     let normals = normals::estimate(&places);
-    let radii = radius::of_cloud(&places, &normals, true);
+    let radii = radius::of_cloud(&places, &normals, true, None);
     let areas = areas::of_cloud(&places, &normals, &radii, true);
     Estimates { normals, radii, areas }
 }
@@ -68,7 +68,7 @@ pub fn areas_are_sound(positions: &[DVec3], normals: &[Vec3], radii: &[f32]) -> 
         check(area.is_normal() && area > 0.0, || format!("area {area:e}"))?;
     }
     for two_sided in [false, true] {
-        for radius in radius::of_cloud(&places, normals, two_sided) {
+        for radius in radius::of_cloud(&places, normals, two_sided, None) {
             check(radius.is_normal() && radius > 0.0, || format!("radius {radius:e}"))?;
         }
     }

@@ -18,6 +18,7 @@ mod estimates;
 mod frames;
 mod octree;
 mod owned_points;
+mod parts;
 mod sampling;
 mod spheres;
 
@@ -26,6 +27,7 @@ pub use estimates::*;
 pub use frames::*;
 pub use octree::*;
 pub use owned_points::{OwnedPoints, cloud};
+pub use parts::*;
 pub use sampling::*;
 pub use spheres::*;
 

@@ -2,16 +2,19 @@
 
 mod make;
 mod nodes;
+mod parts;
 mod record;
 
 use super::PointSet;
+use super::colouring::{Colouring, Legend};
 use super::reading::{PointOptions, Taker};
 use crate::input;
 use crate::input_error::InputError;
 use crate::job::Progress;
 use crate::memory;
 use nodes::{Making, NodeFile};
-use pointillist_octree::{Cut, CutOptions, NodeCache, Tree, cut};
+use parts::Part;
+use pointillist_octree::{Cut, CutOptions, NodeCache, Region, Tree, cut, regions};
 use pointillist_view::View;
 use std::fs::File;
 use std::hash::Hasher as _;
@@ -20,12 +23,22 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use twox_hash::XxHash3_64;
 
-/// Bytes of a point that is drawn: see `PointSet`; and what is kept of it besides.
-const DRAWN_BYTES: u64 = 560;
+/// Bytes of a point of a cloud that is read into memory as a whole: see `PointSet`; and what is kept of it besides.
+const WHOLE_BYTES: u64 = 560;
 
-/// Shares of the memory: for points that are drawn, and for nodes that are kept for the next view.
-const DRAWN_SHARE: f64 = 0.65;
-const KEPT_SHARE: f64 = 0.15;
+/// Bytes of a point that is drawn by nodes: in its part, and again where parts are joined.
+const DRAWN_BYTES: u64 = 160;
+
+/// Shares of the memory: for points that are drawn; for parts that are ready, so that all of a view can stay for the next; and for nodes that were read.
+const DRAWN_SHARE: f64 = 0.5;
+const PARTS_SHARE: f64 = 0.35;
+const NODES_SHARE: f64 = 0.1;
+
+/// Points that are looked at for the range of a scale, if there are so many.
+const SAMPLE: usize = 10_000;
+
+/// Nodes that are read for that at most.
+const SAMPLE_NODES: usize = 200;
 
 /// Points of a picture that is there at once.
 const COARSE_POINTS: u64 = 150_000;
@@ -34,15 +47,28 @@ const COARSE_POINTS: u64 = 150_000;
 #[derive(Debug)]
 pub struct Trees {
     clouds: Vec<NodeFile>,
-    cache: NodeCache<Vec<u8>>,
+    cache: NodeCache<NodePoints>,
+    parts: NodeCache<Part>,
     most_points: u64,
     options: PointOptions,
+    colouring: Colouring,
     /// Bytes read from files so far, of nodes.
     pub bytes_read: u64,
     /// Nodes that were read, and that were kept from earlier views.
     pub nodes_read: u64,
     /// See [`Self::nodes_read`].
     pub nodes_kept: u64,
+    /// Octants of nodes whose points were made ready to be drawn, and those that had been for earlier views.
+    pub parts_made: u64,
+    /// See [`Self::parts_made`].
+    pub parts_kept: u64,
+}
+
+/// The points of a node that are selected, in their colours.
+#[derive(Debug)]
+struct NodePoints {
+    set: PointSet,
+    legend: Option<Legend>,
 }
 
 /// Whether clouds are drawn by nodes: it is asked for, the points of one do not fit into memory, or all of them have nodes, so that no octree has to be
@@ -63,7 +89,7 @@ fn is_large(path: &Path) -> bool {
     }
     let length = file.seek(SeekFrom::End(0)).unwrap_or(0);
     let available = memory::available_bytes().unwrap_or(u64::MAX);
-    expected_points(&head, length).saturating_mul(DRAWN_BYTES) > available
+    expected_points(&head, length).saturating_mul(WHOLE_BYTES) > available
 }
 
 /// Points of a file: those that a LAS announces, or what would fit into as many bytes.
@@ -89,6 +115,7 @@ impl Trees {
     pub fn open(
         paths: &[PathBuf],
         options: PointOptions,
+        colouring: Colouring,
         progress: &Progress,
         tell: &dyn Fn(&str),
     ) -> Result<Self, InputError> {
@@ -96,15 +123,26 @@ impl Trees {
         let share = |share: f64| (memory as f64 * share) as u64;
         let making = Making { options: &options, memory, progress, tell };
         let clouds = paths.iter().map(|path| NodeFile::open(path, &making));
-        Ok(Self {
+        let mut trees = Self {
             clouds: clouds.collect::<Result<_, _>>()?,
-            cache: NodeCache::new(share(KEPT_SHARE)),
+            cache: NodeCache::new(share(NODES_SHARE)),
+            parts: NodeCache::new(share(PARTS_SHARE)),
             most_points: share(DRAWN_SHARE) / DRAWN_BYTES,
             options,
+            colouring,
             bytes_read: 0,
             nodes_read: 0,
             nodes_kept: 0,
-        })
+            parts_made: 0,
+            parts_kept: 0,
+        };
+        if colouring.by.has_range() && colouring.range.is_none() {
+            let legend = trees.sample()?.1;
+            // What was coloured has the range of its node.
+            trees.cache = NodeCache::new(share(NODES_SHARE));
+            trees.colouring = colouring.as_in(legend.as_ref());
+        }
+        Ok(trees)
     }
 
     /// Points of all clouds.
@@ -116,6 +154,11 @@ impl Trees {
     pub fn cut(&self, view: &View, spacing_px: f64, margin_px: f64) -> Cut {
         let options = CutOptions::default().with_spacing_px(spacing_px).with_margin_px(margin_px);
         cut(&self.shapes(), view, &options.with_most_points(self.most_points))
+    }
+
+    /// What nodes of a cut are drawn for.
+    pub fn regions(&self, cut: &Cut, view: &View, margin_px: f64) -> Vec<Region> {
+        regions(&self.shapes(), view, &CutOptions::default().with_margin_px(margin_px), cut)
     }
 
     /// The beginning of a cut: a picture that is there at once. Nothing if the cut is not much larger.
@@ -135,58 +178,85 @@ impl Trees {
         Some(coarse)
     }
 
-    /// The coarsest nodes with points: for a camera that has everything in view.
-    pub fn roots(&self) -> Cut {
-        let mut roots = Cut::default();
-        for (number, tree) in self.shapes().into_iter().enumerate() {
-            let mut level: Vec<u32> = tree.root().into_iter().collect();
-            // COPC may have no points in the root.
-            while !level.is_empty() && level.iter().all(|&node| tree.nodes()[node as usize].count == 0) {
-                level = level.iter().flat_map(|&node| tree.children(node)).collect();
+    /// Some of the selected points from all over: for a camera that has everything in view, and for the range of a scale.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::load`].
+    pub fn sample(&mut self) -> Result<(PointSet, Option<Legend>), InputError> {
+        let mut level: Vec<(usize, u32)> = self
+            .shapes()
+            .iter()
+            .enumerate()
+            .filter_map(|(number, tree)| Some((number, tree.root()?)))
+            .collect();
+        let mut set = PointSet::empty();
+        let mut read = 0;
+        while !level.is_empty() && set.count() < SAMPLE && read < SAMPLE_NODES {
+            level.truncate(SAMPLE_NODES - read);
+            read += level.len();
+            for &(tree, node) in &level {
+                set.add_measured(&self.measured(tree, node)?);
             }
-            roots.nodes.extend(level.into_iter().map(|node| (number, node)));
+            level = level.iter().flat_map(|&id| self.children(id)).collect();
         }
-        roots
+        let legend = set.colour(&self.colouring);
+        Ok((set, legend))
+    }
+
+    /// The nodes in a node that may have selected points.
+    fn children(&self, (number, node): (usize, u32)) -> Vec<(usize, u32)> {
+        let tree = self.clouds[number].tree();
+        let is_wanted = |child: &u32| {
+            let cube = tree.cube().of(tree.nodes()[*child as usize].key);
+            self.options.selection.may_take_of(cube.low, cube.low + cube.side)
+        };
+        tree.children(node).filter(is_wanted).map(|child| (number, child)).collect()
     }
 
     fn shapes(&self) -> Vec<&Tree> {
         self.clouds.iter().map(|cloud| cloud.tree()).collect()
     }
 
-    /// The points of a cut; `done` is told after each node.
+    /// The points of a cut, and what their colours mean; `done` is told after each node.
     ///
     /// # Errors
     ///
     /// [`InputError`] for a node that is damaged, or points without what is asked for.
-    pub fn load(&mut self, cut: &Cut, done: &mut dyn FnMut()) -> Result<PointSet, InputError> {
+    pub fn load(
+        &mut self,
+        cut: &Cut,
+        done: &mut dyn FnMut(),
+    ) -> Result<(PointSet, Option<Legend>), InputError> {
         let mut nodes = cut.nodes.clone();
         // By file and place in it; the picture does not depend on the order.
         nodes.sort_unstable();
         let mut set = PointSet::empty();
-        let mut last = None;
+        let mut legend = None;
         for (tree, node) in nodes {
-            let records = self.node(tree, node)?;
-            let cloud = &self.clouds[tree];
-            if last.replace(tree) != Some(tree) {
-                set.begin(&cloud.path);
-            }
-            let mut taker = Taker::new(&self.options, &cloud.name);
-            cloud.blocks(&records, &mut |block| {
-                taker.take(block, &mut |block, values| {
-                    set.add(&block, values);
-                    Ok(())
-                })
-            })?;
+            let points = self.node(tree, node)?;
+            set.add_all(&points.set);
+            legend = Legend::merged(legend.iter().chain(&points.legend));
             done();
         }
-        Ok(set)
+        Ok((set, legend))
     }
 
-    fn node(&mut self, tree: usize, node: u32) -> Result<Arc<Vec<u8>>, InputError> {
-        if let Some(records) = self.cache.get((tree, node)) {
+    /// The points of a node, from the file or from those that are kept.
+    fn node(&mut self, tree: usize, node: u32) -> Result<Arc<NodePoints>, InputError> {
+        if let Some(points) = self.cache.get((tree, node)) {
             self.nodes_kept += 1;
-            return Ok(records);
+            return Ok(points);
         }
+        let mut set = self.measured(tree, node)?;
+        let legend = set.colour(&self.colouring);
+        let points = Arc::new(NodePoints { set, legend });
+        self.cache.insert((tree, node), Arc::clone(&points), points.set.bytes());
+        Ok(points)
+    }
+
+    /// The selected points of a node with what was measured, from the file.
+    fn measured(&mut self, tree: usize, node: u32) -> Result<PointSet, InputError> {
         let cloud = &mut self.clouds[tree];
         let (count, most) = (cloud.tree().nodes()[node as usize].count, self.most_points);
         if count > most {
@@ -196,9 +266,16 @@ impl Trees {
         let (records, bytes) = cloud.read(node)?;
         self.bytes_read += bytes;
         self.nodes_read += 1;
-        let records = Arc::new(records);
-        self.cache.insert((tree, node), Arc::clone(&records), records.len() as u64);
-        Ok(records)
+        let cloud = &self.clouds[tree];
+        let mut taker = Taker::new(&self.options, &cloud.name);
+        let mut set = PointSet::of_file(&cloud.path, tree);
+        cloud.blocks(&records, &mut |block| {
+            taker.take(block, &mut |block, values| {
+                set.add(&block, values);
+                Ok(())
+            })
+        })?;
+        Ok(set)
     }
 
     /// Hash of what the clouds are, and how they are read.
@@ -207,7 +284,7 @@ impl Trees {
         for cloud in &self.clouds {
             hash.write(&cloud.fingerprint.to_le_bytes());
         }
-        hash.write(format!("{:?} {}", self.options, self.most_points).as_bytes());
+        hash.write(format!("{:?} {:?} {}", self.options, self.colouring, self.most_points).as_bytes());
         hash.finish()
     }
 }

@@ -104,6 +104,15 @@ impl NodeFile {
         }
     }
 
+    /// Whether its points have normals.
+    pub(super) fn has_normals(&self) -> bool {
+        match &self.kind {
+            Kind::Own { fields, .. } => fields.has_normals(),
+            #[cfg(feature = "las")]
+            Kind::Copc { .. } => false,
+        }
+    }
+
     /// The records of a node, and how many bytes of the file they were.
     pub(super) fn read(&mut self, node: u32) -> Result<(Vec<u8>, u64), InputError> {
         match &mut self.kind {

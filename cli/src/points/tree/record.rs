@@ -54,6 +54,10 @@ impl Fields {
         SIZES.iter().filter(|(flag, _)| self.has(*flag)).map(|(_, size)| size).sum()
     }
 
+    pub(super) fn has_normals(self) -> bool {
+        self.has(NORMALS)
+    }
+
     fn has(self, flag: u32) -> bool {
         self.0 & flag != 0
     }

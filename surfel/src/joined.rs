@@ -1,0 +1,135 @@
+//! Parts of a cloud that are drawn together.
+
+use crate::attributes::Attributes;
+use crate::cloud::Cloud;
+use crate::error::SurfelError;
+use crate::node::{self, Node};
+use crate::packed;
+use crate::packed_links::PackedLinks;
+use crate::points::Points;
+use std::ops::Range;
+
+impl Cloud {
+    /// Puts parts together that [`Cloud::parts`] made within one cube. Costs a copy of them.
+    ///
+    /// Colors are there if all parts have some; parts without opacities are opaque.
+    ///
+    /// # Errors
+    /// [`SurfelError::NoPoints`] without parts, [`SurfelError::NotOfOneKind`], [`SurfelError::TooManyPoints`].
+    pub fn join(parts: &[&Self]) -> Result<Self, SurfelError> {
+        let first = parts.first().ok_or(SurfelError::NoPoints)?;
+        let is_other = |part: &&Self| part.lattice != first.lattice || part.two_sided != first.two_sided;
+        if let Some(index) = parts.iter().position(is_other) {
+            return Err(SurfelError::NotOfOneKind { index });
+        }
+        let count: usize = parts.iter().map(|part| part.len()).sum();
+        if count > Points::MOST {
+            return Err(SurfelError::TooManyPoints { count: count as f64, limit: Points::MOST });
+        }
+        let of_points: Vec<&Attributes> = parts.iter().map(|part| &part.points).collect();
+        let of_links: Vec<&PackedLinks> = parts.iter().map(|part| &part.links).collect();
+        Ok(Self {
+            lattice: first.lattice,
+            points: Attributes::joined(&of_points),
+            nodes: nodes(parts),
+            links: PackedLinks::joined(&of_links, &of_points),
+            two_sided: first.two_sided,
+        })
+    }
+}
+
+/// One list of all.
+fn concat<'a, S: 'a, T: Copy + 'a>(parts: &[&'a S], list: impl Fn(&'a S) -> &'a [T]) -> Vec<T> {
+    let mut all = Vec::with_capacity(parts.iter().map(|part| list(part).len()).sum());
+    parts.iter().for_each(|part| all.extend_from_slice(list(part)));
+    all
+}
+
+/// One list, if all have one.
+fn concat_all<'a, S, T: Copy + 'a>(
+    parts: &[&'a S],
+    list: impl Fn(&'a S) -> Option<&'a Vec<T>>,
+) -> Option<Vec<T>> {
+    let lists: Vec<&Vec<T>> = parts.iter().map(|part| list(part)).collect::<Option<_>>()?;
+    Some(concat(&lists, |list| list))
+}
+
+/// One list, if any has one; the others have this value, so many times.
+fn concat_any<'a, S, T: Copy + 'a>(
+    parts: &[&'a S],
+    list: impl Fn(&'a S) -> Option<&'a Vec<T>>,
+    (value, len): (T, impl Fn(&'a S) -> usize),
+) -> Option<Vec<T>> {
+    parts.iter().find_map(|part| list(part))?;
+    let mut all = Vec::with_capacity(parts.iter().map(|part| len(part)).sum());
+    for part in parts {
+        match list(part) {
+            Some(list) => all.extend_from_slice(list),
+            None => all.resize(all.len() + len(part), value),
+        }
+    }
+    Some(all)
+}
+
+impl Attributes {
+    fn joined(parts: &[&Self]) -> Self {
+        Self {
+            cells: [0, 1, 2].map(|axis| concat(parts, |part| &part.cells[axis])),
+            normals: [0, 1, 2].map(|axis| concat(parts, |part| &part.normals[axis])),
+            radii: concat(parts, |part| &part.radii),
+            areas: concat(parts, |part| &part.areas),
+            colors: concat_all(parts, |part| part.colors.as_ref()),
+            opacities: concat_any(
+                parts,
+                |part| part.opacities.as_ref(),
+                (1.0, |part: &Self| part.radii.len()),
+            ),
+        }
+    }
+}
+
+impl PackedLinks {
+    fn joined(parts: &[&Self], of_points: &[&Attributes]) -> Self {
+        let mut points = concat(parts, |part| &part.points);
+        let (mut link, mut first) = (0, 0);
+        for (part, of_part) in parts.iter().zip(of_points) {
+            let own = &mut points[link..link + part.points.len()];
+            own.iter_mut().for_each(|point| *point += first);
+            link += part.points.len();
+            first += of_part.radii.len() as u32;
+        }
+        let opaque = (packed::pack_share(1.0), |part: &Self| part.points.len());
+        Self {
+            points,
+            places: [0, 1, 2].map(|axis| concat(parts, |part| &part.places[axis])),
+            areas: concat(parts, |part| &part.areas),
+            normals: concat(parts, |part| &part.normals),
+            colors: concat_all(parts, |part| part.colors.as_ref()),
+            opacities: concat_any(parts, |part| part.opacities.as_ref(), opaque),
+        }
+    }
+}
+
+/// The nodes of all parts: one around the roots, the roots, and then those of each part.
+fn nodes(parts: &[&Cloud]) -> Vec<Node> {
+    let roots: Vec<&Node> = parts.iter().map(|part| &part.nodes[0]).collect();
+    let mut all = Vec::with_capacity(1 + parts.iter().map(|part| part.nodes.len()).sum::<usize>());
+    all.push(node::around(&roots, 1..1 + roots.len() as u32));
+    all.extend(roots.into_iter().cloned());
+    // What is added to numbers: a part's nodes without its root come after those of the parts before.
+    let (mut below, mut points, mut links) = (1 + parts.len() as u32, 0, 0);
+    for (number, part) in parts.iter().enumerate() {
+        let moved = |node: &Node| {
+            let by = |range: &Range<u32>, start: u32| range.start + start..range.end + start;
+            let children = if node.is_leaf() { 0..0 } else { by(&node.children, below - 1) };
+            let items = by(&node.items, if node.is_leaf() { points } else { links });
+            Node { items, children, ..node.clone() }
+        };
+        all[1 + number] = moved(&part.nodes[0]);
+        all.extend(part.nodes[1..].iter().map(moved));
+        below += part.nodes.len() as u32 - 1;
+        points += part.len() as u32;
+        links += part.links.points.len() as u32;
+    }
+    all
+}
