@@ -13,6 +13,14 @@ pub enum Scale {
     ///
     /// At factor 1 a buffer pixel holds about one point of the surface that is seen.
     Auto(f32),
+    /// As [`Scale::Auto`], for points whose distance in the picture is known: those of a level of detail that was chosen for the view, which are
+    /// about as far apart near the eye as far away.
+    Spaced {
+        /// As for [`Scale::Auto`].
+        factor: f32,
+        /// Distance of neighbouring points in pixels.
+        spacing_px: f32,
+    },
     /// Fixed, at least 1.
     Fixed(f32),
 }
@@ -314,6 +322,10 @@ impl Options {
         let positive = |v: f32| v > 0.0 && v.is_finite();
         match self.scale {
             Scale::Auto(f) => check("scale factor", f, positive(f), "it must be above 0")?,
+            Scale::Spaced { factor, spacing_px } => {
+                check("scale factor", factor, positive(factor), "it must be above 0")?;
+                check("spacing in pixels", spacing_px, positive(spacing_px), "it must be above 0")?;
+            }
             Scale::Fixed(s) => check("scale", s, s >= 1.0 && s.is_finite(), "it must be at least 1")?,
         }
         check("gamma", self.gamma, positive(self.gamma), "it must be above 0")?;

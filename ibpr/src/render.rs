@@ -126,10 +126,15 @@ impl Renderer {
 
     /// Picture pixels per buffer pixel.
     fn scale(&mut self, cloud: &Cloud, view: &View, options: &Options) -> f64 {
+        let seen_through = if options.translucency.is_some() { SEEN_THROUGH } else { 1.0 };
+        let for_spacing = |factor: f32, spacing_px: f64| {
+            let widest = f64::from(view.width().max(view.height()));
+            (f64::from(factor) * seen_through * spacing_px).clamp(1.0, widest)
+        };
         let factor = match options.scale {
             Scale::Fixed(s) => return f64::from(s),
-            Scale::Auto(factor) if options.translucency.is_some() => f64::from(factor) * SEEN_THROUGH,
-            Scale::Auto(factor) => f64::from(factor),
+            Scale::Spaced { factor, spacing_px } => return for_spacing(factor, spacing_px.into()),
+            Scale::Auto(factor) => factor,
         };
         // The median depth of the points in view, so that few points close to the eye do not coarsen the buffer. Points
         // that face away are included, or culling would change the picture.
@@ -143,7 +148,7 @@ impl Renderer {
         let Some((depth, _)) = median else { return 1.0 };
         let spacing_px =
             cloud.density_spacing() * pixels_per_unit(view, depth.max(reference_depth(cloud, view) * 0.01));
-        (factor * spacing_px).clamp(1.0, f64::from(view.width().max(view.height())))
+        for_spacing(factor, spacing_px)
     }
 
     fn draw_faces(

@@ -92,7 +92,11 @@ fn passes() -> impl Strategy<Value = Passes> {
 }
 
 fn scale() -> impl Strategy<Value = Scale> {
-    prop_oneof![(0.3..4.0f32).prop_map(Scale::Auto), (1.0..9.0f32).prop_map(Scale::Fixed)]
+    prop_oneof![
+        (0.3..4.0f32).prop_map(Scale::Auto),
+        (1.0..9.0f32).prop_map(Scale::Fixed),
+        (0.5..4.0f32, 0.1..3.0f32).prop_map(|(factor, spacing_px)| Scale::Spaced { factor, spacing_px })
+    ]
 }
 
 fn weighting() -> impl Strategy<Value = Weighting> {

@@ -114,6 +114,8 @@ fn options_are_checked_by_name() {
     type Change = fn(&mut Options);
     let changes: [(&str, Change); 15] = [
         ("scale factor", |o| o.scale = Scale::Auto(0.0)),
+        ("scale factor", |o| o.scale = Scale::Spaced { factor: -1.0, spacing_px: 2.0 }),
+        ("spacing in pixels", |o| o.scale = Scale::Spaced { factor: 2.0, spacing_px: f32::NAN }),
         ("scale", |o| o.scale = Scale::Fixed(0.99)),
         ("scale", |o| o.scale = Scale::Fixed(f32::NAN)),
         ("gamma", |o| o.gamma = -1.0),

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
+mod clouds;
 mod common;
 mod dice;
 mod expected;
@@ -43,7 +44,7 @@ impl Study {
     }
 }
 
-const STUDIES: [Study; 15] = [
+const STUDIES: [Study; 16] = [
     Study::new("dice", "areas of a triangle in the cells of a grid", run_dice).with_quick(run_dice),
     Study::new(
         "micropoint",
@@ -65,6 +66,12 @@ const STUDIES: [Study; 15] = [
         surfel::run,
     )
     .with_quick(surfel::run_quick),
+    Study::new(
+        "clouds",
+        "clouds of up to 3e8 points from disk: a view's cost against the cloud's",
+        clouds::run,
+    )
+    .with_quick(clouds::run_quick),
     Study::new(
         "shprobe",
         "light probes: coefficients, tetrahedra, placement, against direct integration",
@@ -117,7 +124,7 @@ fn usage() -> String {
     for Study { name, what, .. } in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`.\n"
+    text + "  all         all of these\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`; `clouds POINTS` ends with that size.\n"
 }
 
 fn main() -> ExitCode {
@@ -138,6 +145,10 @@ fn main() -> ExitCode {
             let row = stage.parse().ok().zip(size.parse().ok());
             let ended = row.is_some_and(|(stage, size)| growth::run_row(stage, size));
             return if ended { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+        }
+        ["clouds", "build", points, octree] => return code(clouds::build(points, Path::new(octree))),
+        ["clouds", largest] if largest.parse::<f64>().is_ok() => {
+            return code(clouds::run_up_to(&out_dir, largest));
         }
         ["quote"] => return code(quote::run(&out_dir, false)),
         ["quote", "--check"] => return code(quote::run(&out_dir, true)),

@@ -78,6 +78,8 @@ struct Plane<S: Simd> {
     gradient: [Vector<S>; 2],
     /// Bent depth within which others belong to the same surface.
     thickness: Vector<S>,
+    /// How far any of the disc is from its centre, as pixels at the centre's depth.
+    reach_px: Vector<S>,
 }
 
 impl<S: Simd> Plane<S> {
@@ -99,7 +101,8 @@ impl<S: Simd> Plane<S> {
         let whole_radius = (disc_radius * disc_radius + (p * p + q * q + r * r) * 4.0).sqrt();
         // The pixel's part of the ellipse does not extend the disc's plane, and the plane is not followed too close to
         // the eye.
-        let reach = camera.plane_reach(whole_radius * shape.deviation, blur_radius) * (scale * (1.0 / focal));
+        let reach_px = camera.plane_reach(whole_radius * shape.deviation, blur_radius) * scale;
+        let reach = reach_px * (1.0 / focal);
         let longest = (reach * reach).at_most(NEAREST_PLANE2) * (1.0 / shape.reach2);
         let long = along([kx, ky], [disc[0] + blur, disc[1], disc[2] + blur]).min(longest);
         let shrink = (long / along([kx, ky], v).at_least(f32::MIN_POSITIVE)).at_most(1.0).sqrt();
@@ -112,6 +115,7 @@ impl<S: Simd> Plane<S> {
             k: [kx * curved, ky * curved],
             gradient: [-(kx * bend), -(ky * bend)],
             thickness: thickness * camera.bending(inverse),
+            reach_px,
         }
     }
 }
@@ -172,6 +176,7 @@ pub(crate) fn project<S: Simd>(
     let [left, right, top, bottom] = ends([x, y], v, k, kernel.reach2, map.size);
     let is_kept = simd.and_m32s(depth.exceeds(camera.near), (-facing).exceeds(0.0));
     let is_kept = simd.and_m32s(is_kept, simd.and_m32s(right.is_above(left), bottom.is_above(top)));
+    let is_kept = simd.and_m32s(is_kept, map.may_see(simd, [x, y], plane.reach_px));
     let reference = camera.reference as f32;
     let bent = if camera.is_perspective { depth * (inverse * reference) } else { depth };
     let sharpness = if shape.is_paper { (covariance.radius * scale).at_most(1e6) } else { kernel.edge };

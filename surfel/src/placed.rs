@@ -19,6 +19,32 @@ pub(crate) struct Map {
     pub(crate) size: [f32; 2],
     two_sided: bool,
     margin: f32,
+    /// The edges of the picture, from the tile's first pixel.
+    edges: [Edges; 2],
+}
+
+/// Two opposite edges of the picture.
+#[derive(Clone, Copy)]
+struct Edges {
+    first: f32,
+    last: f32,
+    /// Distance of a point from the plane through the eye and an edge, as pixels across at the point's depth over pixels along the plane's normal.
+    roots: [f32; 2],
+}
+
+/// Pixels that are added to what is seen of a disc.
+const PAD_PX: f32 = 4.0;
+
+impl Edges {
+    fn new(camera: &Camera, size: u32, centre: f64, tile: usize) -> Self {
+        let root = |edge: f64| {
+            let slope = if camera.is_perspective { (edge - centre) / f64::from(camera.focal) } else { 0.0 };
+            slope.hypot(1.0) as f32
+        };
+        let size = f64::from(size);
+        let (first, last) = (-(tile as f64) as f32 - PAD_PX, (size - tile as f64) as f32 + PAD_PX);
+        Self { first, last, roots: [root(0.0), root(size)] }
+    }
 }
 
 impl Map {
@@ -43,7 +69,25 @@ impl Map {
         }
         let size = [tile.width as f32, tile.height as f32];
         let first = [tile.x as f32, tile.y as f32];
-        Self { rows, first, centre: [cx as f32, cy as f32], size, two_sided, margin }
+        let edges = [
+            Edges::new(camera, camera.view.width(), camera.centre[0], tile.x),
+            Edges::new(camera, camera.view.height(), camera.centre[1], tile.y),
+        ];
+        Self { rows, first, centre: [cx as f32, cy as f32], size, two_sided, margin, edges }
+    }
+
+    /// Which discs have anything in view, by the balls around them.
+    ///
+    /// The ellipse of a disc next to the plane through the eye is no bound: as a map of the surroundings of its centre, it may reach
+    /// all over the picture from a disc that lies far beside it.
+    #[inline(always)]
+    pub(crate) fn may_see<S: Simd>(&self, simd: S, place: [Vector<S>; 2], reach_px: Vector<S>) -> S::m32s {
+        let [x, y] = [0, 1].map(|axis| {
+            let Edges { first, last, roots } = self.edges[axis];
+            let after = (place[axis] + reach_px * roots[0]).exceeds(first);
+            simd.and_m32s(after, (reach_px * roots[1] - place[axis]).exceeds(-last))
+        });
+        simd.and_m32s(x, y)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Bugs that were fixed, each with the smallest input that showed it.
 
-use glam::{DAffine3, DMat3, DVec3, Vec3, dvec3};
+use glam::{DAffine3, DMat3, DVec3, Vec3, dvec2, dvec3};
 use pointillist_surfel::invariants::{
     OwnedPoints, cloud, culling_changes_nothing, frame, frame_is_sound, frames_are_identical, look_at,
     use_before_does_not_matter,
@@ -138,4 +138,35 @@ fn hidden_nodes_are_added_up_in_their_order() {
     let mut options = Options::default();
     options.focus = Focus::Depth { depth: 0.3, focus: 4.0 };
     culling_changes_nothing(&points, &view, &options).unwrap();
+}
+
+/// Points far beside the eye, at next to no depth, had ellipses all over the picture.
+#[test]
+fn ground_below_the_eye_is_seen_where_it_is() {
+    let ground = OwnedPoints {
+        normals: None,
+        radii: None,
+        ..OwnedPoints::plane(DVec3::ZERO, 0.5 * DVec3::X, 0.5 * DVec3::Y, 200, 200)
+    };
+    let (eye, target) = (dvec3(0.1, -0.2, 6.0), dvec3(20.1, 1.3, 0.0));
+    let camera = Projection::Perspective { fov_y_rad: 0.9 };
+    let view = View::look_at(eye, target, DVec3::Z, camera, 300, 200).unwrap();
+    let drawn = frame(&ground, &view, &Options::default()).unwrap();
+    let mut seen = 0;
+    for (index, (depth, color)) in drawn.depth().iter().zip(drawn.color()).enumerate() {
+        let pixel = dvec2((index % 300) as f64 + 0.5, (index / 300) as f64 + 0.5);
+        let ray = view.ray(pixel);
+        let way = ray.direction.z;
+        let place = ray.origin - ray.direction * (ray.origin.z / way);
+        let is_ahead = way < 0.0;
+        if is_ahead && place.abs().max_element() < 45.0 {
+            let truth = (place - eye).dot(view.forward());
+            let off = (f64::from(*depth) / truth - 1.0).abs();
+            assert!(off < 0.02 && color[3] > 0.95, "{pixel}: {depth}, not {truth}; {color:?}");
+            seen += 1;
+        } else if !is_ahead || place.abs().max_element() > 60.0 {
+            assert_eq!(color[3], 0.0, "{pixel}: nothing is there");
+        }
+    }
+    assert!(seen > 20_000, "{seen}");
 }

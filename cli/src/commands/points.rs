@@ -17,6 +17,7 @@ use crate::scene::{Camera, FRAME_MARGIN as MARGIN, Projection, frame_around};
 use cpu_time::ProcessTime;
 use glam::DVec3;
 use pointillist_ibpr as ibpr;
+use pointillist_octree::Cut;
 use pointillist_surfel as surfel;
 use std::hash::Hasher as _;
 use std::path::{Path, PathBuf};
@@ -172,6 +173,14 @@ pub(super) fn output_paths(path: &Path, views: Option<usize>) -> Result<Vec<Path
     }
     let numbers = 1..=u32::try_from(views).unwrap_or(u32::MAX);
     numbers.map(|number| name_pattern::fill(path, "frame", number).map_err(CliError::Usage)).collect()
+}
+
+/// The warning that a picture is coarser than it should be.
+pub(super) fn limited(cut: &Cut) -> String {
+    let (gap, points) = (cut.spacing_px, cut.points);
+    format!(
+        "points are up to {gap:.1} pixels apart: the memory is enough for {points} of them; --memory gives more"
+    )
 }
 
 /// Draws a frame as often as `--repeat` asks, and notes how long each took.

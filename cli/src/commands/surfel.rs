@@ -73,7 +73,7 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
     };
     let framed = match &mut source {
         Source::Whole { cloud, .. } => cloud.positions().collect(),
-        Source::Trees { trees, .. } => trees.sample()?.0.positions().collect::<Vec<_>>(),
+        Source::Trees { trees, .. } => trees.outline()?.positions().collect::<Vec<_>>(),
     };
     let cameras = given
         .iter()
@@ -122,20 +122,26 @@ impl Pictures<'_> {
         let size = points::size(&options.camera);
         let paint = (self.colouring.by, options.look.legend, options.picture.float, options.picture.bg);
         let drawn = format!("{:?}", (self.frame_options, camera, size, &self.layers, paint));
-        let fingerprint = match source {
-            Source::Whole { fingerprint, .. } => *fingerprint,
-            Source::Trees { trees, .. } => trees.fingerprint(),
-        };
-        let stamp = points::stamp(fingerprint, &drawn, &options.camera, self.region);
-        if target.is_done(&stamp, self.window, report) {
-            return Ok(());
-        }
+        let stamp = |fingerprint| points::stamp(fingerprint, &drawn, &options.camera, self.region);
         let view = camera.view(size).map_err(|error| CliError::Usage(error.to_string()))?;
         match source {
-            Source::Whole { cloud, legend, .. } => {
+            Source::Whole { cloud, legend, fingerprint } => {
+                let stamp = stamp(*fingerprint);
+                if target.is_done(&stamp, self.window, report) {
+                    return Ok(());
+                }
                 self.draw_cloud(cloud, legend.clone(), &view, target, stamp)
             }
-            Source::Trees { trees, ready } => self.draw_trees(trees, ready, &view, target, stamp),
+            Source::Trees { trees, ready } => {
+                // Twice as close as the level that is drawn, as points of a node are not on a lattice.
+                let spacing_px = 0.7 * f64::from(self.frame_options.level).max(0.5);
+                let cut = trees.cut(&view, spacing_px, MARGIN_PX);
+                let stamp = stamp(trees.fingerprint(&cut));
+                if target.is_done(&stamp, self.window, report) {
+                    return Ok(());
+                }
+                self.draw_trees(trees, ready, (&cut, &view), target, stamp)
+            }
         }
     }
 
@@ -144,15 +150,12 @@ impl Pictures<'_> {
         &self,
         trees: &mut Trees,
         ready: &mut Option<Box<Ready>>,
-        view: &View,
+        (cut, view): (&Cut, &View),
         target: &Target<'_>,
         stamp: Stamp,
     ) -> Result<(), CliError> {
         let report = self.report;
-        // Twice as close as the level that is drawn, as points of a node are not on a lattice.
-        let spacing_px = 0.7 * f64::from(self.frame_options.level).max(0.5);
-        let cut = trees.cut(view, spacing_px, MARGIN_PX);
-        let first = trees.coarse(&cut).filter(|_| self.options.views.is_none());
+        let first = trees.coarse(cut).filter(|_| self.options.views.is_none());
         if let Some(coarse) = first {
             self.draw_cut(trees, ready, &coarse, view, target, Stamp { unfinished: true, ..stamp.clone() })?;
             report.note(&format!(
@@ -162,12 +165,9 @@ impl Pictures<'_> {
             ));
         }
         if cut.is_limited {
-            let gap = cut.spacing_px;
-            report.warn(&format!(
-                "points are up to {gap:.1} pixels apart: the memory is enough for {} of them; --memory gives more", cut.points
-            ));
+            report.warn(&points::limited(cut));
         }
-        self.draw_cut(trees, ready, &cut, view, target, stamp)
+        self.draw_cut(trees, ready, cut, view, target, stamp)
     }
 
     fn draw_cut(

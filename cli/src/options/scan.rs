@@ -11,7 +11,7 @@ use std::str::FromStr;
 /// `scan`.
 #[derive(Debug, clap::Args)]
 pub struct ScanOptions {
-    /// Scans (.ply, .ply.gz, .xyz, .las, .laz, with a feature .e57), lists of scans (.conf) and meshes (.obj, .ply with faces)
+    /// Scans (.ply, .ply.gz, .xyz, .las, .laz, .octree, with a feature .e57), lists of scans (.conf) and meshes (.obj, .ply with faces)
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// The picture: .png or .exr (default: the first FILE's name with .png)
@@ -29,6 +29,9 @@ pub struct ScanOptions {
     /// The view.
     #[command(flatten)]
     pub camera: CameraOptions,
+    /// Draw from an octree beside each FILE (FILE.octree, made once) even if it fits into memory; clouds that do not fit are drawn so anyway, and COPC by its own
+    #[arg(long)]
+    pub octree: bool,
     /// Further layers in the EXR: `all`, or a list of N, P, count
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub layers: Vec<PointLayerRequest>,

@@ -7,6 +7,7 @@ use crate::input;
 use crate::input_error::InputError;
 use crate::memory::Meter;
 use glam::{DVec3, Vec3};
+use pointillist_ibpr as ibpr;
 use pointillist_render::fingerprint::ByteHash;
 use pointillist_surfel::{Cloud, Division, Points, SurfelError};
 use std::path::{Path, PathBuf};
@@ -208,6 +209,26 @@ impl PointSet {
     /// [`InputError`] for an attribute that cannot be used.
     pub fn cloud(&self, estimate_normals: bool) -> Result<Cloud, InputError> {
         Cloud::new(&self.points(estimate_normals)).map_err(|error| self.blame(&error))
+    }
+
+    /// The points as `scan` draws them, `spacing` apart.
+    pub fn as_scan(&self, spacing: Option<f64>) -> ibpr::Scan<'_> {
+        let mut scan = ibpr::Scan::new(&self.positions);
+        if let Some(colours) = &self.colours {
+            scan = scan.with_colors(colours);
+        }
+        if let Some(opacities) = &self.opacities {
+            scan = scan.with_opacities(opacities);
+        }
+        if let Some(spacing) = spacing {
+            scan = scan.with_spacing(spacing);
+        }
+        scan
+    }
+
+    /// Whether any point is not opaque.
+    pub fn has_translucent(&self) -> bool {
+        self.opacities.iter().flatten().any(|&opacity| opacity < 1.0)
     }
 
     /// Makes parts of the points ready to be drawn together with those of other sets: see [`Cloud::parts`].

@@ -16,4 +16,4 @@ pub use legend::draw_legend;
 pub use palette::{ColorMap, MapTable, class_name};
 pub use reading::{PointOptions, PointSink, read_points};
 pub use selection::{Selection, Selector, WorldBox};
-pub use tree::{Trees, are_drawn_by_nodes};
+pub use tree::{Density, Trees, are_drawn_by_nodes, has_faces, has_nodes, write_octree};

@@ -53,27 +53,46 @@ fn pixels(folder: &Folder, name: &str) -> Vec<u8> {
     image::open(folder.path(name)).unwrap().into_rgba8().into_raw()
 }
 
-#[test]
-fn the_picture_is_that_of_the_same_points_in_memory_and_near_that_of_an_octree_of_ours() {
+/// The mean difference of two pictures, in steps of 8 bits.
+fn apart(one: &[u8], other: &[u8]) -> f64 {
+    let sum: u64 = one.iter().zip(other).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    sum as f64 / one.len() as f64
+}
+
+/// Draws the wave from memory, by the nodes of COPC, and from an octree of ours.
+fn nearly_the_same(command: &str, look: &[&str], most: f64) {
     let folder = folder();
+    let draw = |cloud: &str, more: &[&str]| {
+        let line = [command, cloud, "-o", "a.png", "--overwrite"];
+        folder.command(&[&line[..], &VIEW, look, more].concat()).assert().success();
+        pixels(&folder, "a.png")
+    };
+    let memory = draw("wave.las", &[]);
+    assert!(memory.chunks_exact(4).filter(|pixel| pixel[3] == 255).count() > 3000);
+    let nodes = draw("wave.copc.laz", &[]);
+    assert!(draw("flat.copc.laz", &["--octree"]) == nodes, "pages or not: {command} {look:?}");
+    let far = apart(&nodes, &memory);
+    assert!(far < most, "COPC, {command} {look:?}: {far}");
+    // Colours of an octree are rounded, and positions to 2⁻³² of its side.
+    let far = apart(&draw("wave.las", &["--octree"]), &memory);
+    assert!(far < most, "octree, {command} {look:?}: {far}");
+    assert!(folder.names().iter().all(|name| !name.ends_with("laz.octree")), "{:?}", folder.names());
+}
+
+#[test]
+fn discs_by_nodes_are_nearly_those_of_the_points_in_memory() {
+    // Radii at the rim of the wave differ, with their limits.
     for look in [&[][..], &["--color-by", "class"], &["--classes", "2"], &["--color-by", "elevation"]] {
-        let draw = |cloud: &str, more: &[&str]| {
-            let line = ["surfel", cloud, "-o", "a.png", "--overwrite"];
-            folder.command(&[&line[..], &VIEW, look, more].concat()).assert().success();
-            pixels(&folder, "a.png")
-        };
-        let memory = draw("wave.las", &[]);
-        assert!(memory.chunks_exact(4).filter(|pixel| pixel[3] == 255).count() > 3000);
-        assert!(draw("wave.copc.laz", &[]) == memory, "by nodes, with pages: {look:?}");
-        assert!(draw("flat.copc.laz", &["--octree"]) == memory, "by nodes, one page: {look:?}");
-        let tree = draw("wave.las", &["--octree"]);
-        // Colours of an octree are rounded, and positions to 2⁻³² of its side, with which radii that are estimated at a rim jump: noise of 3e-10 on points
-        // in memory changes half a percent of the pixels.
-        let far: u64 = tree.iter().zip(&memory).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
-        assert!(far < memory.len() as u64 / 2, "{look:?}: {far} of {}", memory.len());
-        std::fs::remove_file(folder.path("wave.las.octree")).unwrap();
+        nearly_the_same("surfel", look, 0.5);
     }
-    assert!(folder.names().iter().all(|name| !name.ends_with(".octree")), "{:?}", folder.names());
+}
+
+#[test]
+fn scans_by_nodes_are_nearly_those_of_the_points_in_memory() {
+    // The size of the buffer's pixels is measured in parts, and not over all.
+    for look in [&[][..], &["--color-by", "class"], &["--box", "0,0,-1,1,2,1"]] {
+        nearly_the_same("scan", look, 1.5);
+    }
 }
 
 #[test]
@@ -90,6 +109,15 @@ fn a_view_reads_the_nodes_that_it_needs_and_views_of_the_same_nodes_share_them()
     assert!(0 < bytes && bytes < whole / 2, "{bytes} of {whole}");
     assert_eq!(stats["skipped"]["clouds_made_ready"], 4, "{stats}");
     assert_eq!(pixels(&folder, "f1.png"), pixels(&folder, "f5.png"));
+
+    // `scan` reads no more than that.
+    let view = ["--eye", "0.3,0.3,1", "--target", "0.3,0.3,0", "--fov", "20", "--size", "160x120"];
+    let scan = ["scan", "wave.copc.laz", "-o", "scan.png", "--stats", "scan.json", "--memory", "1G"];
+    folder.command(&[&scan[..], &view].concat()).assert().success();
+    let stats: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path("scan.json")).unwrap()).unwrap();
+    let bytes = stats["counts"]["bytes_read"].as_u64().unwrap();
+    assert!(0 < bytes && bytes < whole / 2, "{bytes} of {whole}");
 
     // A mixture is read into memory as long as it fits, so that nothing is written beside the others.
     let both = ["surfel", "wave.copc.laz", "wave.las", "-o", "both.png", "--size", "40x30"];

@@ -147,6 +147,65 @@ fn flights_that_cannot_be_flown_are_refused() {
     unnamed.stderr(contains("{frame:04}"));
 }
 
+#[test]
+fn what_was_drawn_before_does_not_show() {
+    let folder = folder();
+    // Over the corner, the middle, and the corner again: parts that are kept, and others between them.
+    let corner = "0.4 0.4 0.5  0.4 0.5 0  0 1 0\n";
+    folder.write("there.txt", corner);
+    folder.write("back.txt", format!("1.2 1.2 4  1.2 1.2 0  0 1 0\n1.9 1.9 1  1.2 1.2 0  0 0 1\n{corner}"));
+    let line = ["surfel", "wave.xyz", "--octree", "--size", "120x90", "--views"];
+    folder.command(&[&line[..], &["there.txt", "-o", "there{frame}.png"]].concat()).assert().success();
+    folder.command(&[&line[..], &["back.txt", "-o", "back{frame}.png"]].concat()).assert().success();
+    let picture = |name: &str| fs::read(folder.path(name)).unwrap();
+    assert_eq!(picture("there1.png"), picture("back3.png"));
+}
+
+#[test]
+fn a_scale_is_the_same_in_all_views_of_a_flight() {
+    let folder = folder();
+    // Near and far, low and high: a pixel in the middle of each shows the same place.
+    folder.write("views.txt", "1.2 1.2 4  1.2 1.2 0  0 1 0\n1.2 1.2 0.6  1.2 1.2 0  0 1 0\n");
+    let line = ["surfel", "wave.xyz", "--octree", "--color-by", "elevation", "--ambient", "1"];
+    let more = ["--views", "views.txt", "-o", "v{frame}.png", "--size", "81x61"];
+    folder.command(&[&line[..], &more].concat()).assert().success();
+    let middle = |name: &str| image::open(folder.path(name)).unwrap().into_rgba8().get_pixel(40, 30).0;
+    let (far, near) = (middle("v1.png"), middle("v2.png"));
+    assert!(far.iter().zip(near).all(|(a, b)| a.abs_diff(b) < 6), "{far:?} {near:?}");
+}
+
+#[test]
+fn scan_draws_an_octree_and_names_what_it_cannot() {
+    let folder = folder();
+    let view = ["--eye", "1.2,1.2,4", "--target", "1.2,1.2,0", "--fov", "40", "--size", "160x120"];
+    let scan =
+        |cloud: &str, more: &[&str]| folder.command(&[&["scan", cloud][..], more, &view].concat()).assert();
+    scan("wave.xyz", &["-o", "made.png", "--octree"]).success().stderr(contains("is made, once"));
+    let own = ["-o", "own.exr", "--layers", "all", "--stats", "s.json", "--threads", "1"];
+    scan("wave.xyz.octree", &own).success().stderr(contains("is made").not());
+    scan("wave.xyz.octree", &own).success().stderr(contains("is already there"));
+    scan("wave.xyz.octree", &["-o", "own.png", "--alpha", "0.5", "--edl", "--scale", "3"]).success();
+    let picture = image::open(folder.path("made.png")).unwrap().into_rgba8();
+    assert!(picture.pixels().filter(|pixel| pixel.0[3] == 255).count() > 5000);
+    let stats: serde_json::Value = serde_json::from_slice(&fs::read(folder.path("s.json")).unwrap()).unwrap();
+    assert!(stats["counts"]["nodes_read"].as_u64().unwrap() > 0, "{stats}");
+
+    folder.write("list.conf", "bmesh wave.xyz 0 0 0 0 0 0 1\n");
+    folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write(
+        "mesh.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+         element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+    );
+    for (other, what) in [("list.conf", "a list of scans"), ("mesh.obj", "a mesh"), ("mesh.ply", "a mesh")] {
+        let refused = scan("wave.xyz.octree", &["-o", "both.png", other]).code(3);
+        refused.stderr(contains(other).and(contains(what)).and(contains("pointillist sample")));
+    }
+    scan("mesh.ply", &["-o", "vertices.png", "--octree", "--vertices", "--scale", "9"]).success();
+    let nothing = scan("wave.xyz.octree", &["-o", "empty.png", "--box", "90,90,90,91,91,91"]);
+    nothing.failure();
+}
+
 #[cfg(unix)]
 #[test]
 fn a_folder_that_may_not_be_written_is_named_and_nothing_is_left() {

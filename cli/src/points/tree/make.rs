@@ -1,12 +1,13 @@
 //! Makes the octree beside a cloud's file, once.
 
 use super::record::Fields;
-use crate::cloud_io::{CloudOptions, read_cloud};
+use crate::cloud_io::{CloudBlock, CloudOptions, Scalar, read_cloud};
 use crate::image_io::write_atomically;
 use crate::input;
 use crate::input_error::InputError;
-use crate::job::Progress;
-use pointillist_octree::{Builder, Cube, OctreeError, TreeHeader, TreeReader, TreeWriter};
+use crate::job::{Progress, ProgressMode};
+use glam::DVec3;
+use pointillist_octree::{Builder, Cube, OctreeError, POSITION_BYTES, TreeHeader, TreeReader, TreeWriter};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -58,86 +59,141 @@ pub(super) fn make(
     memory: u64,
     progress: &Progress,
 ) -> Result<PathBuf, InputError> {
-    let name = input::name_of(cloud);
     let options = CloudOptions::default().with_drop_invalid(drop_invalid).with_scalars(true);
-    let mut seen = 0;
     // Its length is not known yet.
-    let summary = read_cloud::<InputError>(cloud, &options, &mut |block| {
-        seen += block.positions.len() as u64;
-        Ok(())
-    })?;
-    let fields = Fields::of(&summary);
-    let of_tree = |error: OctreeError| refusal(cloud, &error);
-    let cube = Cube::around(summary.bounds[0], summary.bounds[1]).map_err(of_tree)?;
-    let path = path_of(cloud);
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let spill = tempfile::tempfile_in(folder).map_err(|error| cannot_write(&path, seen, fields, &error))?;
-    let mut builder = Builder::new(cube, fields.bytes(), memory, spill);
+    let summary = read_cloud::<InputError>(cloud, &options, &mut |_| Ok(()))?;
+    let what = Contents {
+        bounds: summary.bounds,
+        points: summary.points,
+        fields: Fields::of(&summary),
+        fingerprint,
+        name: input::name_of(cloud),
+    };
     progress.begin("octree", 3 * summary.points);
     progress.advance(summary.points);
+    let path = path_of(cloud);
+    write(&path, &what, memory, progress, &mut |sink| read_cloud(cloud, &options, sink).map(|_| ()))?;
+    Ok(path)
+}
+
+/// Hands out all points of a cloud in blocks.
+type Source<'a> =
+    &'a mut dyn FnMut(&mut dyn FnMut(CloudBlock<'_>) -> Result<(), InputError>) -> Result<(), InputError>;
+
+/// What an octree is made of.
+struct Contents {
+    bounds: [DVec3; 2],
+    points: u64,
+    fields: Fields,
+    fingerprint: u64,
+    /// How messages call the cloud.
+    name: String,
+}
+
+/// Writes the octree of points without a file, such as those of a simulation: positions within `bounds`, and `scalars` of each. `source` hands out
+/// all `points` of them in blocks of any size.
+///
+/// # Errors
+///
+/// [`InputError`] if the octree cannot be written, or a point is out of bounds; that of `source`.
+pub fn write_octree(
+    path: &Path,
+    bounds: [DVec3; 2],
+    points: u64,
+    scalars: &[Scalar],
+    memory: u64,
+    source: Source<'_>,
+) -> Result<(), InputError> {
+    let fields = Fields::of_scalars(scalars);
+    let name = input::name_of(path);
+    let what = Contents { bounds, points, fields, fingerprint: points, name };
+    write(path, &what, memory, &Progress::new(ProgressMode::Off), source)
+}
+
+fn write(
+    path: &Path,
+    what: &Contents,
+    memory: u64,
+    progress: &Progress,
+    source: Source<'_>,
+) -> Result<(), InputError> {
+    let Contents { bounds: [low, high], fields, .. } = *what;
+    let cube = Cube::around(low, high).map_err(|error| what.refused(&error))?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let spill = tempfile::tempfile_in(folder).map_err(|error| what.cannot_write(path, &error))?;
+    let mut builder = Builder::new(cube, fields.bytes(), memory, spill);
     let mut payload = vec![];
     let mut failure = None;
-    let read = read_cloud::<InputError>(cloud, &options, &mut |block| {
+    let read = source(&mut |block| {
         for (i, position) in block.positions.iter().enumerate() {
             fields.encode(&block, i, &mut payload);
             if let Err(error) = builder.push(*position, &payload) {
                 failure = Some(error);
-                return Err(InputError::of_file(&name, "its octree cannot be written"));
+                return Err(InputError::of_file(&what.name, "its octree cannot be written"));
             }
         }
         progress.advance(block.positions.len() as u64);
         Ok(())
     });
-    if let Some(error) = failure {
-        return Err(of_build(cloud, &path, seen, fields, error));
+    match failure {
+        Some(OctreeError::Io(error)) => return Err(what.cannot_write(path, &error)),
+        Some(other) => return Err(what.refused(&other)),
+        None => read?,
     }
-    read?;
-    let header = TreeHeader { fingerprint, cube, payload: fields.bytes() as u32, layout: fields.layout() };
-    let mut refused = None;
-    let mut before = 0;
-    let written = write_atomically(&path, |output| {
-        let mut writer = TreeWriter::new(output, &header)?;
-        let built = builder.finish(&mut |key, records| writer.node(key, records), &mut |placed| {
-            progress.advance(placed - before);
-            before = placed;
-        });
-        match built {
-            Err(OctreeError::Io(error)) => return Err(error),
-            Err(other) => {
-                refused = Some(other);
-                return Err(io::Error::other("refused"));
+    what.write_tree(path, cube, builder, progress)
+}
+
+impl Contents {
+    /// The second half: from the temporary file to the tree.
+    fn write_tree(
+        &self,
+        path: &Path,
+        cube: Cube,
+        builder: Builder<File>,
+        progress: &Progress,
+    ) -> Result<(), InputError> {
+        let Self { fields, fingerprint, .. } = *self;
+        let header =
+            TreeHeader { fingerprint, cube, payload: fields.bytes() as u32, layout: fields.layout() };
+        let mut refused = None;
+        let mut before = 0;
+        let written = write_atomically(path, |output| {
+            let mut writer = TreeWriter::new(output, &header)?;
+            let built = builder.finish(&mut |key, records| writer.node(key, records), &mut |placed| {
+                progress.advance(placed - before);
+                before = placed;
+            });
+            match built {
+                Err(OctreeError::Io(error)) => return Err(error),
+                Err(other) => {
+                    refused = Some(other);
+                    return Err(io::Error::other("refused"));
+                }
+                Ok(()) => {}
             }
-            Ok(()) => {}
+            // What is not on the disk when the power fails is not the file's name.
+            writer.finish()?.get_ref().sync_all()
+        });
+        progress.finish();
+        match (refused, written) {
+            (Some(error), _) => Err(self.refused(&error)),
+            (None, Err(error)) => Err(self.cannot_write(path, &error)),
+            (None, Ok(())) => Ok(()),
         }
-        // What is not on the disk when the power fails is not the file's name.
-        writer.finish()?.get_ref().sync_all()
-    });
-    progress.finish();
-    match (refused, written) {
-        (Some(error), _) => Err(refusal(cloud, &error)),
-        (None, Err(error)) => Err(cannot_write(&path, seen, fields, &error)),
-        (None, Ok(())) => Ok(path),
     }
-}
 
-fn of_build(cloud: &Path, path: &Path, points: u64, fields: Fields, error: OctreeError) -> InputError {
-    match error {
-        OctreeError::Io(error) => cannot_write(path, points, fields, &error),
-        other => refusal(cloud, &other),
+    fn refused(&self, error: &OctreeError) -> InputError {
+        InputError::of_file(&self.name, format!("no octree can be made of it: {error}")).with_help(
+            "remove points that are there many times, or give it more --memory so that it is drawn without",
+        )
     }
-}
 
-fn refusal(cloud: &Path, error: &OctreeError) -> InputError {
-    InputError::of_file(input::name_of(cloud), format!("no octree can be made of it: {error}")).with_help(
-        "remove points that are there many times, or give it more --memory so that it is drawn without",
-    )
-}
-
-fn cannot_write(path: &Path, points: u64, fields: Fields, error: &io::Error) -> InputError {
-    // The temporary file and the tree.
-    let needed = 2 * u128::from(points) * (12 + fields.bytes()) as u128;
-    let needed = crate::memory::human(needed);
-    InputError::of_file(path.display().to_string(), format!("the octree cannot be written: {error}")).with_help(format!(
-        "making it takes {needed} in this folder, half of which stay; make room, or link the cloud into a folder with room (`ln -s`)"
-    ))
+    fn cannot_write(&self, path: &Path, error: &io::Error) -> InputError {
+        // The temporary file and the tree.
+        let needed = 2 * u128::from(self.points) * (POSITION_BYTES + self.fields.bytes()) as u128;
+        let needed = crate::memory::human(needed);
+        InputError::of_file(path.display().to_string(), format!("the octree cannot be written: {error}")).with_help(format!(
+            "making it takes {needed} in this folder, half of which stay; make room, or link the cloud into a folder with room (`ln -s`)"
+        ))
+    }
 }

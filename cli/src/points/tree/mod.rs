@@ -12,10 +12,13 @@ use crate::input;
 use crate::input_error::InputError;
 use crate::job::Progress;
 use crate::memory;
+use glam::{DVec3, Vec3};
+pub use make::write_octree;
 use nodes::{Making, NodeFile};
 use parts::Part;
-use pointillist_octree::{Cut, CutOptions, NodeCache, Region, Tree, cut, regions};
-use pointillist_view::View;
+use pointillist_ibpr as ibpr;
+use pointillist_octree::{Cut, CutOptions, Neighbourhood, NodeCache, Region, Tree, cut, regions};
+use pointillist_view::{Projection, View};
 use std::fs::File;
 use std::hash::Hasher as _;
 use std::io::{Read, Seek, SeekFrom};
@@ -42,6 +45,22 @@ const SAMPLE_NODES: usize = 200;
 
 /// Points of a picture that is there at once.
 const COARSE_POINTS: u64 = 150_000;
+
+/// Nodes in which the distance of points is measured, and points of an octant that say something about it.
+const MEASURED_NODES: usize = 100;
+const MEASURED_POINTS: usize = 100;
+
+/// Share of the points that may be closer together than the finest that count.
+const FINEST_SHARE: f64 = 0.1;
+
+/// How far apart the points of a cut are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Density {
+    /// Where they are close together, world units.
+    pub spacing: f64,
+    /// In the picture, pixels: the median over all points.
+    pub spacing_px: f64,
+}
 
 /// The clouds of a picture, as trees.
 #[derive(Debug)]
@@ -78,6 +97,16 @@ pub fn are_drawn_by_nodes(paths: &[PathBuf], wanted: bool) -> bool {
     let all_have = files.len() == paths.len() && paths.iter().all(|path| nodes::has_nodes(path));
     // An octree of ours has no other reader.
     all_have || files.iter().any(|path| wanted || nodes::is_tree(path) || is_large(path))
+}
+
+/// Whether a file has nodes of its own, so that nothing has to be made beside it.
+pub fn has_nodes(path: &Path) -> bool {
+    nodes::has_nodes(path)
+}
+
+/// Whether a file is a mesh that a reader of clouds takes for its vertices.
+pub fn has_faces(path: &Path) -> bool {
+    nodes::has_faces(path)
 }
 
 /// Whether the points of a file do not fit into memory.
@@ -137,9 +166,7 @@ impl Trees {
             parts_kept: 0,
         };
         if colouring.by.has_range() && colouring.range.is_none() {
-            let legend = trees.sample()?.1;
-            // What was coloured has the range of its node.
-            trees.cache = NodeCache::new(share(NODES_SHARE));
+            let legend = trees.legend()?;
             trees.colouring = colouring.as_in(legend.as_ref());
         }
         Ok(trees)
@@ -178,30 +205,46 @@ impl Trees {
         Some(coarse)
     }
 
-    /// Some of the selected points from all over: for a camera that has everything in view, and for the range of a scale.
+    /// The coarsest selected points: for a camera that has everything in view.
     ///
     /// # Errors
     ///
     /// As [`Self::load`].
-    pub fn sample(&mut self) -> Result<(PointSet, Option<Legend>), InputError> {
-        let mut level: Vec<(usize, u32)> = self
-            .shapes()
-            .iter()
-            .enumerate()
-            .filter_map(|(number, tree)| Some((number, tree.root()?)))
-            .collect();
+    pub fn outline(&mut self) -> Result<PointSet, InputError> {
+        self.sample(1, |trees, tree, node, set| {
+            set.add_all(&trees.node(tree, node)?.set);
+            Ok(())
+        })
+    }
+
+    /// What colours mean in points from all over: for the range of a scale, which is then that of all views.
+    fn legend(&mut self) -> Result<Option<Legend>, InputError> {
+        let mut set = self.sample(SAMPLE, |trees, tree, node, set| {
+            set.add_measured(&trees.measured(tree, node)?);
+            Ok(())
+        })?;
+        Ok(set.colour(&self.colouring))
+    }
+
+    /// Selected points, level by level from the roots until there are at least so many.
+    fn sample(
+        &mut self,
+        least: usize,
+        add: impl Fn(&mut Self, usize, u32, &mut PointSet) -> Result<(), InputError>,
+    ) -> Result<PointSet, InputError> {
+        let roots = self.shapes().into_iter().enumerate().map(|(number, tree)| Some((number, tree.root()?)));
+        let mut level: Vec<(usize, u32)> = roots.flatten().collect();
         let mut set = PointSet::empty();
         let mut read = 0;
-        while !level.is_empty() && set.count() < SAMPLE && read < SAMPLE_NODES {
+        while !level.is_empty() && set.count() < least && read < SAMPLE_NODES {
             level.truncate(SAMPLE_NODES - read);
             read += level.len();
             for &(tree, node) in &level {
-                set.add_measured(&self.measured(tree, node)?);
+                add(self, tree, node, &mut set)?;
             }
             level = level.iter().flat_map(|&id| self.children(id)).collect();
         }
-        let legend = set.colour(&self.colouring);
-        Ok((set, legend))
+        Ok(set)
     }
 
     /// The nodes in a node that may have selected points.
@@ -218,7 +261,7 @@ impl Trees {
         self.clouds.iter().map(|cloud| cloud.tree()).collect()
     }
 
-    /// The points of a cut, and what their colours mean; `done` is told after each node.
+    /// The points of a cut, cloud by cloud, and what their colours mean; `done` is told after each node.
     ///
     /// # Errors
     ///
@@ -227,19 +270,83 @@ impl Trees {
         &mut self,
         cut: &Cut,
         done: &mut dyn FnMut(),
-    ) -> Result<(PointSet, Option<Legend>), InputError> {
+    ) -> Result<(Vec<PointSet>, Option<Legend>), InputError> {
         let mut nodes = cut.nodes.clone();
         // By file and place in it; the picture does not depend on the order.
         nodes.sort_unstable();
-        let mut set = PointSet::empty();
+        let mut sets: Vec<PointSet> = vec![];
         let mut legend = None;
-        for (tree, node) in nodes {
-            let points = self.node(tree, node)?;
-            set.add_all(&points.set);
-            legend = Legend::merged(legend.iter().chain(&points.legend));
-            done();
+        for of_tree in nodes.chunk_by(|a, b| a.0 == b.0) {
+            let mut set = PointSet::empty();
+            for &(tree, node) in of_tree {
+                let points = self.node(tree, node)?;
+                set.add_all(&points.set);
+                legend = Legend::merged(legend.iter().chain(&points.legend));
+                done();
+            }
+            sets.push(set);
         }
-        Ok((set, legend))
+        sets.retain(|set| set.count() > 0);
+        Ok((sets, legend))
+    }
+
+    /// How far apart points are where a cut is the finest, world units, and in pixels where half of the points are closer: measured, in some of the
+    /// octants that are drawn. Nothing if there are too few points.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::load`].
+    pub fn density(&mut self, regions: &[Region], view: &View) -> Result<Option<Density>, InputError> {
+        let mut measured = vec![];
+        for region in regions.iter().step_by(regions.len().div_ceil(MEASURED_NODES).max(1)) {
+            for octant in (0..8).filter(|octant| region.octants >> octant & 1 == 1) {
+                measured.extend(self.density_of(region, octant, view)?);
+            }
+        }
+        let count: usize = measured.iter().map(|(_, _, points)| points).sum();
+        let at_share =
+            |key: fn(&(f64, f64, usize)) -> f64, share: f64, measured: &mut Vec<(f64, f64, usize)>| {
+                measured.sort_unstable_by(|a, b| key(a).total_cmp(&key(b)));
+                let mut seen = 0;
+                let found = measured.iter().find(|(_, _, points)| {
+                    seen += points;
+                    seen as f64 > share * count as f64
+                });
+                found.map(key)
+            };
+        let spacing = at_share(|m| m.0, FINEST_SHARE, &mut measured);
+        let spacing_px = at_share(|m| m.1, 0.5, &mut measured);
+        Ok(spacing.zip(spacing_px).map(|(spacing, spacing_px)| Density { spacing, spacing_px }))
+    }
+
+    /// Distance of points in an octant, the same in pixels, and the number of points.
+    fn density_of(
+        &mut self,
+        region: &Region,
+        octant: usize,
+        view: &View,
+    ) -> Result<Option<(f64, f64, usize)>, InputError> {
+        let tree = self.clouds[region.tree].tree();
+        let near = Neighbourhood::of(tree, region.node, octant, 0.0);
+        let mut positions = vec![];
+        for node in near.nodes(tree) {
+            let points = self.node(region.tree, node)?;
+            positions.extend(points.set.positions().filter(|p| near.holds(*p).is_some()));
+        }
+        if positions.len() < MEASURED_POINTS {
+            return Ok(None);
+        }
+        let cloud = ibpr::Cloud::new(&[ibpr::Scan::new(&positions)], Vec3::ONE);
+        let middle = positions.iter().sum::<DVec3>() / positions.len() as f64;
+        let at = view.project(middle);
+        Ok(cloud.ok().zip(at).map(|(cloud, at)| {
+            let spacing = cloud.density_spacing();
+            let per_unit = match view.projection() {
+                Projection::Perspective { .. } => view.focal_px() / at.depth,
+                Projection::Orthographic { .. } => view.focal_px(),
+            };
+            (spacing, spacing * per_unit, positions.len())
+        }))
     }
 
     /// The points of a node, from the file or from those that are kept.
@@ -278,13 +385,17 @@ impl Trees {
         Ok(set)
     }
 
-    /// Hash of what the clouds are, and how they are read.
-    pub fn fingerprint(&self) -> u64 {
+    /// Hash of what the clouds are, how they are read, and which of their nodes are drawn: how many can be depends on the memory.
+    pub fn fingerprint(&self, cut: &Cut) -> u64 {
         let mut hash = XxHash3_64::default();
         for cloud in &self.clouds {
             hash.write(&cloud.fingerprint.to_le_bytes());
         }
-        hash.write(format!("{:?} {:?} {}", self.options, self.colouring, self.most_points).as_bytes());
+        hash.write(format!("{:?} {:?}", self.options, self.colouring).as_bytes());
+        for &(tree, node) in &cut.nodes {
+            hash.write(&tree.to_le_bytes());
+            hash.write(&node.to_le_bytes());
+        }
         hash.finish()
     }
 }

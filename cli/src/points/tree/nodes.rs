@@ -175,6 +175,23 @@ fn head_of(path: &Path, bytes: usize) -> Vec<u8> {
     head
 }
 
+/// Whether a file is a PLY, packed or not, that announces faces.
+pub(super) fn has_faces(path: &Path) -> bool {
+    /// Bytes of a header that are looked at.
+    const HEADER_BYTES: usize = 1 << 16;
+    let mut head = head_of(path, HEADER_BYTES);
+    if head.starts_with(&[0x1f, 0x8b]) {
+        let mut unpacked = vec![];
+        // What is cut off in the middle of the packed bytes is no longer the header.
+        let _ = flate2::read::GzDecoder::new(&head[..]).take(HEADER_BYTES as u64).read_to_end(&mut unpacked);
+        head = unpacked;
+    }
+    let text = String::from_utf8_lossy(&head);
+    let header = text.lines().map(str::trim).take_while(|line| *line != "end_header");
+    let faces = |line: &str| line.strip_prefix("element face")?.trim().parse::<u64>().ok();
+    head.starts_with(b"ply") && header.filter_map(faces).any(|count| count > 0)
+}
+
 /// Whether a file is an octree of ours.
 pub(super) fn is_tree(path: &Path) -> bool {
     head_of(path, TREE_MARK.len()) == TREE_MARK

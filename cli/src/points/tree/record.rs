@@ -41,6 +41,11 @@ impl Fields {
         Self(flags.into_iter().chain(scalars).filter(|(has, _)| *has).fold(0, |all, (_, flag)| all | flag))
     }
 
+    /// Of points with these values and nothing else.
+    pub(super) fn of_scalars(scalars: &[Scalar]) -> Self {
+        Self(scalars.iter().fold(0, |all, &scalar| all | SCALARS << scalar as u32))
+    }
+
     pub(super) fn from_layout(layout: u32, payload: u32) -> Option<Self> {
         let fields = Self(layout);
         (layout < SCALARS << 3 && fields.bytes() == payload as usize).then_some(fields)
