@@ -32,7 +32,7 @@ impl Cloud {
     /// Prepares parts of a cloud: `parts[i]` is the number of the part of point `i`, or [`NO_PART`] for a point that lies around them. The
     /// result has a cloud, or nothing for a part without points, for each number up to the largest.
     ///
-    /// Points should be there up to eight spacings around each part: then what is estimated hardly differs from what the
+    /// Points should be there up to six spacings around each part: then what is estimated hardly differs from what the
     /// whole cloud would have. Each part is the same for every order of the points. Positions are kept to 2⁻³² of the
     /// division's side; what is outside of its cube is moved to its faces.
     ///
