@@ -112,7 +112,7 @@ fn a_picture_too_large_to_be_kept_is_refused() {
 #[test]
 fn options_are_checked_by_name() {
     type Change = fn(&mut Options);
-    let changes: [(&str, Change); 15] = [
+    let changes: [(&str, Change); 17] = [
         ("scale factor", |o| o.scale = Scale::Auto(0.0)),
         ("scale factor", |o| o.scale = Scale::Spaced { factor: -1.0, spacing_px: 2.0 }),
         ("spacing in pixels", |o| o.scale = Scale::Spaced { factor: 2.0, spacing_px: f32::NAN }),

@@ -112,24 +112,24 @@ impl PackedLinks {
 
 /// The nodes of all parts: one around the roots, the roots, and then those of each part.
 fn nodes(parts: &[&Cloud]) -> Vec<Node> {
-    let roots: Vec<&Node> = parts.iter().map(|part| &part.nodes[0]).collect();
-    let mut all = Vec::with_capacity(1 + parts.iter().map(|part| part.nodes.len()).sum::<usize>());
-    all.push(node::around(&roots, 1..1 + roots.len() as u32));
-    all.extend(roots.into_iter().cloned());
-    // What is added to numbers: a part's nodes without its root come after those of the parts before.
-    let (mut below, mut points, mut links) = (1 + parts.len() as u32, 0, 0);
-    for (number, part) in parts.iter().enumerate() {
+    let (mut roots, mut others) = (vec![], vec![]);
+    let first_other = 1 + parts.len();
+    let (mut points, mut links) = (0, 0);
+    for part in parts {
+        // A part's second node comes here.
+        let below = (first_other + others.len()) as u32;
         let moved = |node: &Node| {
             let by = |range: &Range<u32>, start: u32| range.start + start..range.end + start;
             let children = if node.is_leaf() { 0..0 } else { by(&node.children, below - 1) };
             let items = by(&node.items, if node.is_leaf() { points } else { links });
             Node { items, children, ..node.clone() }
         };
-        all[1 + number] = moved(&part.nodes[0]);
-        all.extend(part.nodes[1..].iter().map(moved));
-        below += part.nodes.len() as u32 - 1;
+        let mut own = part.nodes.iter().map(moved);
+        roots.extend(own.next());
+        others.extend(own);
         points += part.len() as u32;
         links += part.links.points.len() as u32;
     }
-    all
+    let around = node::around(&roots.iter().collect::<Vec<_>>(), 1..first_other as u32);
+    [vec![around], roots, others].concat()
 }

@@ -183,7 +183,7 @@ fn scan_draws_an_octree_and_names_what_it_cannot() {
     scan("wave.xyz", &["-o", "made.png", "--octree"]).success().stderr(contains("is made, once"));
     let own = ["-o", "own.exr", "--layers", "all", "--stats", "s.json", "--threads", "1"];
     scan("wave.xyz.octree", &own).success().stderr(contains("is made").not());
-    scan("wave.xyz.octree", &own).success().stderr(contains("is already there"));
+    scan("wave.xyz.octree", &own[..4]).success().stderr(contains("is already there"));
     scan("wave.xyz.octree", &["-o", "own.png", "--alpha", "0.5", "--edl", "--scale", "3"]).success();
     let picture = image::open(folder.path("made.png")).unwrap().into_rgba8();
     assert!(picture.pixels().filter(|pixel| pixel.0[3] == 255).count() > 5000);

@@ -77,15 +77,16 @@ fn draw_cut(
 ) -> Result<(), CliError> {
     let Picture { options, report, .. } = *picture;
     let progress = report.progress();
-    progress.begin("read", cut.nodes.len() as u64);
-    let (sets, legend) = report.stats.stage("load", || trees.load(cut, &mut || progress.advance(1)))?;
+    let regions = trees.regions(cut, view, MARGIN_PX);
+    let nodes = trees.nodes_of(&regions);
+    progress.begin("read", nodes.len() as u64);
+    let (sets, legend) = report.stats.stage("load", || trees.load(&nodes, &mut || progress.advance(1)))?;
     progress.finish();
     if sets.is_empty() {
         let message = "no point is in view; without --eye and --target all are";
         return Err(CliError::Usage(message.to_owned()));
     }
     let mut frame_options = options.frame_options(sets.iter().any(PointSet::has_translucent));
-    let regions = trees.regions(cut, view, MARGIN_PX);
     let density = report.stats.stage("prepare", || trees.density(&regions, view))?;
     // Points are about as far apart in the picture near the eye as far away, so that no one distance in the world says how large its pixels should be.
     if let (Some(Density { spacing_px, .. }), ibpr::Scale::Auto(factor)) = (density, frame_options.scale) {

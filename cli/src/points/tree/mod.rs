@@ -261,19 +261,31 @@ impl Trees {
         self.clouds.iter().map(|cloud| cloud.tree()).collect()
     }
 
-    /// The points of a cut, cloud by cloud, and what their colours mean; `done` is told after each node.
+    /// The nodes with the points of regions, by cloud and place in it.
+    pub fn nodes_of(&self, regions: &[Region]) -> Vec<(usize, u32)> {
+        let of_region = |region: &Region| {
+            let Region { tree, node, octants } = *region;
+            let shape = self.clouds[tree].tree();
+            let of_octant = move |octant| Neighbourhood::of(shape, node, octant, 0.0).nodes(shape);
+            let all = (0..8).filter(move |octant| octants >> octant & 1 == 1).flat_map(of_octant);
+            all.map(move |node| (tree, node))
+        };
+        let mut nodes: Vec<(usize, u32)> = regions.iter().flat_map(of_region).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// The points of nodes in this order, cloud by cloud, and what their colours mean; `done` is told after each node.
     ///
     /// # Errors
     ///
     /// [`InputError`] for a node that is damaged, or points without what is asked for.
     pub fn load(
         &mut self,
-        cut: &Cut,
+        nodes: &[(usize, u32)],
         done: &mut dyn FnMut(),
     ) -> Result<(Vec<PointSet>, Option<Legend>), InputError> {
-        let mut nodes = cut.nodes.clone();
-        // By file and place in it; the picture does not depend on the order.
-        nodes.sort_unstable();
         let mut sets: Vec<PointSet> = vec![];
         let mut legend = None;
         for of_tree in nodes.chunk_by(|a, b| a.0 == b.0) {
