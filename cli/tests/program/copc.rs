@@ -106,7 +106,8 @@ fn a_view_reads_the_nodes_that_it_needs_and_views_of_the_same_nodes_share_them()
         serde_json::from_slice(&std::fs::read(folder.path("s.json")).unwrap()).unwrap();
     let whole = std::fs::metadata(folder.path("wave.copc.laz")).unwrap().len();
     let bytes = stats["counts"]["bytes_read"].as_u64().unwrap();
-    assert!(0 < bytes && bytes < whole / 2, "{bytes} of {whole}");
+    // With the nodes around, as points of this file are 32 to the side of a node.
+    assert!(0 < bytes && bytes < whole * 2 / 3, "{bytes} of {whole}");
     assert_eq!(stats["skipped"]["clouds_made_ready"], 4, "{stats}");
     assert_eq!(pixels(&folder, "f1.png"), pixels(&folder, "f5.png"));
 
