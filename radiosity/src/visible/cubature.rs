@@ -39,6 +39,8 @@ const INWARD: f64 = 1e-3;
 /// Error estimate of the Gauss rule for a discontinuous hidden share, as a share of the difference between its largest and smallest sample.
 /// A step anywhere between two of three Gauss points is integrated with an error of at most 2/9 of its height; this is about half of that.
 const SPREAD: f64 = 1.0 / 8.0;
+/// Where this relative error or less is asked for, cells are cut along lines before they are sampled: hardly any would be good enough whole.
+const CUT_AT_ONCE: f64 = 2e-3;
 /// For a smooth function the Gauss rule misses what is beyond degree 5. If coefficients of Legendre polynomials fall by a factor `r` from degree to degree,
 /// samples differ by about `2r`, their second differences make `r²`, and the error is about `r⁶`, so that the estimate of [`SPREAD`] may be
 /// multiplied by the fourth power of the ratio of the two, times [`BEND`]. The third power is on the safe side; in a Cornell box the second makes no error smaller and takes a
@@ -179,6 +181,9 @@ impl Cubature<'_> {
         let mut settled = (0.0, open.error);
         let all: Vec<u32> = (0..self.occluders.len() as u32).collect();
         for quad in self.roots() {
+            if self.goal.relative <= CUT_AT_ONCE && self.cut((&quad, &all, 0), &mut heap, &mut settled) {
+                continue;
+            }
             let mut cell = self.cell(quad, &all, 0, Lines::Unknown);
             if cell.settled || self.goal.least_depth > 0 {
                 self.divide(&cell, &mut heap, &mut settled);
@@ -237,7 +242,7 @@ impl Cubature<'_> {
             return;
         }
         if cell.lines == Lines::Unknown {
-            if self.cut(cell, heap, settled) {
+            if self.cut((&cell.quad, &cell.occluders, cell.depth), heap, settled) {
                 return;
             }
             if cell.depth >= self.goal.least_depth && cell.rough < 1.0 {
@@ -275,10 +280,14 @@ impl Cubature<'_> {
     }
 
     /// Replaces a cell by parts along lines of [`Events`]; false if none meets it.
-    fn cut(&mut self, cell: &Cell, heap: &mut BinaryHeap<Cell>, settled: &mut (f64, f64)) -> bool {
+    fn cut(
+        &mut self,
+        (&[a, b, c, d], list, depth): (&[DVec3; 4], &[u32], u8),
+        heap: &mut BinaryHeap<Cell>,
+        settled: &mut (f64, f64),
+    ) -> bool {
         let (receiver, source, occluders) = (self.receiver, self.source, self.occluders);
         let events = self.events.get_or_insert_with(|| Events::new(receiver, source, occluders));
-        let [a, b, c, d] = cell.quad;
         let ring = if c == d { vec![a, b, c] } else { vec![a, b, c, d] };
         let parts = events.cut(&ring);
         if parts.len() == 1 {
@@ -286,7 +295,7 @@ impl Cubature<'_> {
         }
         for part in parts.into_iter().filter_map(Polygon::unchecked) {
             for quad in part.quads() {
-                let mut child = self.cell(quad, &cell.occluders, cell.depth + 1, Lines::Between);
+                let mut child = self.cell(quad, list, depth + 1, Lines::Between);
                 if child.settled {
                     settled.0 += child.hidden;
                     settled.1 += child.error;

@@ -16,10 +16,10 @@ use pointillist_dice::{clip_ring, share_before_crossing};
 use super::parts::Frame;
 use crate::polygon::{Polygon, edges};
 
-/// A line is cut along only if both sides of the part are at least this wide, as a share of its size. Lamps that hang a thousandth of the room below a
+/// A line is cut along only if both sides of the part are at least this wide, as a share of its width across the line. Lamps that hang a thousandth of the room below a
 /// ceiling have half shadows of some thousandths of a patch; 0.04 leaves four times the error in a Cornell box and saves a tenth of the time.
 const NARROWEST: f64 = 0.003;
-/// A line is cut along only if its segment within the part is at least this long, as a share of the part's size.
+/// A line is cut along only if its segment within the part is at least this long, as a share of the whole line's there.
 const SHORTEST: f64 = 0.05;
 /// Most parts of one cell.
 const MOST_PARTS: usize = 16;
@@ -71,7 +71,7 @@ impl Events {
 
     /// Adds the sides of the lattice of one occluder.
     fn shadows(&mut self, plane: &Plane<'_>, occluders: &[&Polygon], number: usize) {
-        let (occluder, size) = (occluders[number], plane.receiver.radius());
+        let occluder = occluders[number];
         let (ends, corners) = (plane.source.vertices(), occluder.vertices());
         let row = |&s: &DVec3| corners.iter().map(|&v| plane.shadow(s, v)).collect();
         let lattice: Vec<Vec<Shadow>> = ends.iter().map(row).collect();
@@ -82,31 +82,31 @@ impl Events {
             let others = sharing(occluders, number, edge);
             for (row, &s) in lattice.iter().zip(ends) {
                 if others.is_empty() || is_outline(s, occluder, edge, &others) {
-                    self.push(&row[j], &row[k], size);
+                    self.push(&row[j], &row[k]);
                 }
             }
             // Each edge of the source, past a corner of the occluder.
             if occluders[..number].iter().all(|o| !o.vertices().contains(&corners[j])) {
                 for i in 0..ends.len() {
-                    self.push(&lattice[i][j], &lattice[(i + 1) % ends.len()][j], size);
+                    self.push(&lattice[i][j], &lattice[(i + 1) % ends.len()][j]);
                 }
             }
         }
     }
 
     /// Adds what lies on the receiver of the way from one to the other.
-    fn push(&mut self, a: &Shadow, b: &Shadow, size: f64) {
+    fn push(&mut self, a: &Shadow, b: &Shadow) {
         let limits = a.limits.iter().zip(&b.limits).map(|(&from, &to)| [from, to]);
         if let Some((low, high)) = not_negative(limits) {
             let at = |t: f64| a.x.lerp(b.x, t) / (a.w + (b.w - a.w) * t);
-            self.segment(at(low), at(high), size);
+            self.segment(at(low), at(high));
         }
     }
 
-    fn segment(&mut self, a: DVec2, b: DVec2, size: f64) {
+    fn segment(&mut self, a: DVec2, b: DVec2) {
         let way = b - a;
         let length = way.length();
-        if length > NARROWEST * size {
+        if length > 0.0 && length.is_finite() {
             self.lines.push(Line { ends: [a, b], normal: way.perp() / length });
         }
     }
@@ -126,7 +126,7 @@ impl Events {
             }
         }
         if let [a, b] = met[..] {
-            self.segment(a, b, plane.receiver.radius());
+            self.segment(a, b);
         }
     }
 
@@ -149,14 +149,20 @@ impl Events {
     }
 }
 
-/// The line that says most about a part: long, and far from its border.
+/// The line that says most about a part: long, and far from its border. Both count in proportion to the part, which may be a sliver.
 fn best<'l>(lines: &'l [Line], ring: &[DVec2]) -> Option<&'l Line> {
-    let size = ring.iter().map(|p| (*p - ring[0]).length()).fold(0.0, f64::max);
     let rated = lines.iter().filter_map(|line| {
-        let (length, width) = (line.length(), line.narrower(ring));
-        (length > SHORTEST * size && width > NARROWEST * size).then_some((length * width, line))
+        let (low, high) = extent(ring, |p| line.value(p));
+        let (length, width) = (line.length(), high.min(-low));
+        let is_worth = width > NARROWEST * (high - low) && length > SHORTEST * line.chord(ring);
+        is_worth.then_some((length * width, line))
     });
     rated.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, line)| line)
+}
+
+/// Smallest and largest value at corners.
+fn extent(ring: &[DVec2], value: impl Fn(DVec2) -> f64) -> (f64, f64) {
+    ring.iter().map(|&p| value(p)).fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)))
 }
 
 /// Sides of a ring.
@@ -195,11 +201,18 @@ impl Line {
         self.normal.dot(p - self.ends[0])
     }
 
-    /// Width of the narrower part that it cuts off.
-    fn narrower(&self, ring: &[DVec2]) -> f64 {
-        let (low, high) =
-            ring.iter().map(|&p| self.value(p)).fold((0.0_f64, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
-        high.min(-low)
+    /// How far it would reach through a ring if it had no ends.
+    fn chord(&self, ring: &[DVec2]) -> f64 {
+        let along = |p: DVec2| self.normal.perp_dot(p);
+        let (mut low, mut high) = (f64::MAX, f64::MIN);
+        for (a, b) in sides(ring) {
+            let (from, to) = (self.value(a), self.value(b));
+            if (from < 0.0) != (to < 0.0) {
+                let at = along(a.lerp(b, share_before_crossing(from, to)));
+                (low, high) = (low.min(at), high.max(at));
+            }
+        }
+        (high - low).max(0.0)
     }
 
     /// The part of a ring on one of its sides.
