@@ -60,6 +60,26 @@ fn light_through_a_gap_of_a_thousandth_is_found() {
     }
 }
 
+/// An occluder that stands on a sliver hides a fortieth of it, between samples and near no corner. It counted as hiding nothing, with a bound of rounding.
+#[test]
+fn what_is_hidden_from_a_sliver_is_found() {
+    let polygon = |ring: [[f64; 3]; 3]| {
+        pointillist_radiosity::Polygon::new(&ring.map(DVec3::from_array)).expect("a triangle")
+    };
+    let sliver =
+        polygon([[-0.24694, 0.25, -0.981577], [-0.49694, 0.25, -0.981577], [-0.49694, 0.25, -0.981587]]);
+    let source = quad(dvec3(0.0, -1.0, 0.0), DVec3::Y * -0.25, DVec3::X * -0.25);
+    let occluder = polygon([
+        [0.167239, -1.0, -0.850558],
+        [0.457532, -0.014315, -1.005588],
+        [-0.458138, 0.485685, -1.005588],
+    ]);
+    let of = |occluders: &[_]| form_factor(&sliver, &source, occluders, &FactorOptions::DEFAULT).value;
+    // By four million lines between random points 2.7 % is hidden.
+    let hidden = 1.0 - of(&[occluder]) / of(&[]);
+    assert!((hidden - 0.0271).abs() < 0.001, "{hidden}");
+}
+
 /// What a patch sends ahead was added to its radiosity, which then was half as high again.
 #[test]
 fn overshooting_does_not_brighten() {

@@ -24,7 +24,7 @@ pub fn is_a_share(from: &Polygon, to: &Polygon, occluders: &[Polygon]) -> Result
 }
 
 /// Two halves of an occluder hide together what the whole hides, and of that each its share, within twice the bounds, 2e-3 of what there is without them and 1e-5: bounds come from
-/// samples, and where an occluder pierces the receiver one result in some hundred is off by several times its bound.
+/// samples, and where an occluder pierces the receiver one result in a thousand is off by several times its bound.
 pub fn halves_hide_what_the_whole_hides(
     from: &Polygon,
     to: &Polygon,
