@@ -51,6 +51,11 @@ impl Extent {
         Self { low: low.as_vec2() - slack, high: high.as_vec2() + slack }
     }
 
+    /// The lower and the upper corner.
+    pub(crate) fn corners(&self) -> (DVec2, DVec2) {
+        (self.low.as_dvec2(), self.high.as_dvec2())
+    }
+
     /// Whether two parts may have a common interior.
     #[inline]
     pub(crate) fn overlap(&self, other: &Self) -> bool {

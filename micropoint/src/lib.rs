@@ -44,6 +44,7 @@ mod dicer;
 mod divide;
 mod error;
 mod face;
+mod fine;
 mod front;
 mod geometry;
 mod interval;

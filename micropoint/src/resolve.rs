@@ -2,7 +2,9 @@
 
 use crate::dicer::{DiceJob, Dicer, mean_opacity};
 use crate::divide::Squares;
+use crate::fine::FineGrid;
 use crate::front::{Front, Layer, in_front};
+use crate::lens::Lens;
 use crate::neighbours::{self, Neighbours};
 use glam::DVec2;
 use pointillist_dice::hide::{Blocker, Occluders, Region, Regions};
@@ -136,6 +138,11 @@ fn resolve_square(
     scratch.others.start(dicer, order);
     let mut sight = Sight::Hidden;
     for (i, &p) in order.iter().enumerate() {
+        if scratch.others.hidden_by_full_squares(dicer, job.lens, p, i) {
+            sight = Sight::Hidden;
+            compared = true;
+            continue;
+        }
         sight = match i.checked_sub(1).map(|before| order[before]) {
             Some(before) if dicer.is_copy(before, p) => {
                 behind_a_copy(sight, dicer, before, &mut scratch.cut.regions)
@@ -151,6 +158,7 @@ fn resolve_square(
             Sight::Whole => Visible::whole(dicer, p),
             _ => scratch.cut.in_pieces(&Parts { dicer, job, corner }, p),
         };
+        scratch.others.fill(dicer, p, i, &visible);
         let visible = visible.fit_into(area - seen);
         if visible.weight <= 0.0 {
             continue;
@@ -213,26 +221,76 @@ struct Cut {
 struct Others {
     /// The ranks so far of which something is seen, rising: what is behind others hides nothing that those do not.
     standing: Vec<u32>,
-    /// By rank, whether it is among them; used in cells of many parts.
+    /// By rank, whether it is among them, for [`Search::Pencil`].
     stands: Vec<bool>,
+    search: Search,
     neighbours: Neighbours,
+    fine: FineGrid,
+}
+
+/// How the parts that may hide a part are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Search {
+    /// All are looked at.
+    #[default]
+    All,
+    /// In [`FineGrid`]: many small parts.
+    Fine,
+    /// In [`Neighbours`]: many long parts.
+    Pencil,
 }
 
 impl Others {
     fn start(&mut self, dicer: &Dicer, order: &[u32]) {
         self.standing.clear();
         self.stands.clear();
-        if order.len() >= neighbours::WORTH_IT {
+        self.search = Search::All;
+        if order.len() < neighbours::WORTH_IT {
+            return;
+        }
+        if self.fine.build(order.iter().map(|&p| dicer.part(p).bounds.corners())) {
+            self.search = Search::Fine;
+        } else {
+            self.search = Search::Pencil;
             self.stands.resize(order.len(), false);
             let overlap = |a: u32, b: u32| dicer.overlap(order[a as usize], order[b as usize]);
             self.neighbours.build(order.iter().map(|&p| dicer.outline(dicer.part(p))), overlap);
         }
     }
 
+    /// Whether a part lies behind squares of the cell that are full.
+    fn hidden_by_full_squares(&self, dicer: &Dicer, lens: &Lens, p: u32, rank: usize) -> bool {
+        if self.search != Search::Fine {
+            return false;
+        }
+        let part = dicer.part(p);
+        let slope = dicer.faces[part.face as usize].plane.slope;
+        self.fine.hides(rank, part.nearness.most + lens.tie(part.nearness.most, slope))
+    }
+
+    /// Fills the squares of the cell with what is seen of an opaque part.
+    fn fill(&mut self, dicer: &Dicer, p: u32, rank: usize, visible: &Visible<'_>) {
+        let part = dicer.part(p);
+        if self.search != Search::Fine || part.opacity < 1.0 {
+            return;
+        }
+        let nearness = part.nearness.least;
+        match visible.pieces {
+            None => self.fine.fill(rank, dicer.outline(part), part.area, nearness),
+            Some(regions) => {
+                // A region that is dimmed may also be hidden in part, where it was not worth a cut.
+                for region in regions.iter().filter(|region| region.transmittance == 1.0) {
+                    self.fine.fill(rank, region.polygon.vertices(), region.polygon.area(), nearness);
+                }
+            }
+        }
+    }
+
     fn stand(&mut self, rank: usize) {
-        self.standing.push(rank as u32);
-        if let Some(stands) = self.stands.get_mut(rank) {
-            *stands = true;
+        match self.search {
+            Search::All => self.standing.push(rank as u32),
+            Search::Fine => self.fine.add_seen(rank as u32),
+            Search::Pencil => self.stands[rank] = true,
         }
     }
 }
@@ -285,14 +343,19 @@ impl ResolveScratch {
         // The parts are sorted by their nearest point.
         let near = i + 1 + order[i + 1..].partition_point(|&p| dicer.part(p).nearness.most >= behind);
         let overlaps = |&rank: &u32| dicer.overlap(order[i], order[rank as usize]);
-        if others.stands.is_empty() {
-            let ranks = others.standing.iter().copied().chain(i as u32 + 1..near as u32);
-            return cut.hide(parts, order[i], ranks.filter(overlaps).map(|rank| order[rank as usize]));
-        }
-        let Others { stands, neighbours, .. } = others;
-        let counts = |rank: usize| if rank < i { stands[rank] } else { rank > i && rank < near };
-        let found = neighbours.of(i, counts, overlaps).iter();
-        cut.hide(parts, order[i], found.map(|&rank| order[rank as usize]))
+        let Others { standing, stands, neighbours, fine, search } = others;
+        let found = match search {
+            Search::All => {
+                let ranks = standing.iter().copied().chain(i as u32 + 1..near as u32);
+                return cut.hide(parts, order[i], ranks.filter(overlaps).map(|rank| order[rank as usize]));
+            }
+            Search::Fine => fine.near(i as u32, near as u32, overlaps),
+            Search::Pencil => {
+                let counts = |rank: usize| if rank < i { stands[rank] } else { rank > i && rank < near };
+                neighbours.of(i, counts, overlaps)
+            }
+        };
+        cut.hide(parts, order[i], found.iter().map(|&rank| order[rank as usize]))
     }
 }
 

@@ -135,6 +135,21 @@ fn crowd() -> BoxedStrategy<Soup> {
         .boxed()
 }
 
+/// A few balls of hundreds of triangles in a few pixels, through one another or behind one another.
+fn small_balls(opacity: impl Strategy<Value = f32> + 'static) -> BoxedStrategy<Soup> {
+    let ball = (generic_point(), 0.3..2.0f64, 6..14u32, 8..24u32, opacity);
+    prop::collection::vec(ball, 2..7)
+        .prop_map(|balls| {
+            let mut soup = Soup::default();
+            for (centre, radius, rows, columns, opacity) in balls {
+                let surface = soup.surface(opacity);
+                soup.sphere(centre, radius, rows, columns, surface);
+            }
+            soup
+        })
+        .boxed()
+}
+
 fn options() -> impl Strategy<Value = MicropointOptions> {
     (prop_oneof![Just(1u32), Just(2), Just(4)], any::<bool>(), any::<bool>()).prop_map(
         |(cells, paper, cull)| {
@@ -182,6 +197,25 @@ proptest! {
         let camera = Projection::Orthographic { height };
         let view = View::look_at(dvec3(1.0, 0.5, 5.0), DVec3::ZERO, DVec3::Y, camera, 3, 2).unwrap();
         holds!(invariants::pixels_are_means_of_finer_ones(&s, view, 8, 1e-9));
+    }
+
+    #[test]
+    fn cells_of_small_meshes_show_what_finer_cells_show(s in small_balls(Just(1.0)), height in 2.0..8.0f64) {
+        let camera = Projection::Orthographic { height };
+        let view = View::look_at(dvec3(1.0, 0.5, 5.0), DVec3::ZERO, DVec3::Y, camera, 3, 2).unwrap();
+        holds!(invariants::pixels_are_means_of_finer_ones(&s, view, 8, 1e-9));
+    }
+
+    #[test]
+    fn cells_of_small_meshes_are_shared_out_in_any_order(
+        s in small_balls(prop_oneof![3 => Just(1.0f32), 1 => 0.1..0.9f32]),
+        height in 2.0..8.0f64,
+        seed: u64,
+    ) {
+        let camera = Projection::Orthographic { height };
+        let view = View::look_at(dvec3(1.0, 0.5, 5.0), DVec3::ZERO, DVec3::Y, camera, 3, 2).unwrap();
+        holds!(invariants::weights_are_shares(&s, view, EXACT));
+        holds!(invariants::triangle_order_does_not_matter(&s, view, EXACT, seed));
     }
 
     #[test]

@@ -22,9 +22,6 @@ pub trait Channel:
     /// Number of channels.
     const CHANNELS: usize;
 
-    /// A value from one number per channel.
-    fn from_channels(value: impl FnMut(usize) -> f64) -> Self;
-
     /// The number of a channel; that of the last one if there are fewer.
     fn channel(self, index: usize) -> f64;
 
@@ -43,10 +40,6 @@ mod private {
 impl Channel for f64 {
     const CHANNELS: usize = 1;
 
-    fn from_channels(mut value: impl FnMut(usize) -> f64) -> Self {
-        value(0)
-    }
-
     fn channel(self, _: usize) -> f64 {
         self
     }
@@ -54,10 +47,6 @@ impl Channel for f64 {
 
 impl Channel for DVec3 {
     const CHANNELS: usize = 3;
-
-    fn from_channels(mut value: impl FnMut(usize) -> f64) -> Self {
-        Self::new(value(0), value(1), value(2))
-    }
 
     fn channel(self, index: usize) -> f64 {
         self[index.min(2)]

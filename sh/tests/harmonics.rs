@@ -141,6 +141,7 @@ proptest! {
         let map = CubeMap::from_texels(size, &texels).unwrap();
         for weights in facts::WEIGHTS {
             let projector = CubeProjector::new(size, order, weights).unwrap();
+            assert_eq!((projector.order(), projector.weights()), (order, weights));
             let fast = projector.project(&map).unwrap();
             let plain = plain_projection(&map, order, weights);
             prop_assert!(facts::difference(&plain, &fast) < 1e-12, "{:?}", facts::difference(&plain, &fast));
@@ -337,6 +338,14 @@ fn lobes_keep_the_mean_and_get_narrow() {
 }
 
 #[test]
+fn the_power_of_a_band_is_that_of_its_coefficients() {
+    let sh = Sh::new((0..9).map(|i| DVec3::new(f64::from(i), -1.0, 0.0)).collect()).unwrap();
+    assert_eq!(sh.band_power(0), dvec3(0.0, 1.0, 0.0));
+    assert_eq!(sh.band_power(1), dvec3(1.0 + 4.0 + 9.0, 3.0, 0.0));
+    assert_eq!(sh.band_power(2), dvec3(16.0 + 25.0 + 36.0 + 49.0 + 64.0, 5.0, 0.0));
+}
+
+#[test]
 fn dominant_light_finds_a_lamp() {
     let lamp = DominantLight { direction: dvec3(0.48, 0.6, -0.64), irradiance: dvec3(3.0, 2.0, 1.0) };
     let sky = Sh::constant(DVec3::splat(0.2), 4).unwrap();
@@ -355,6 +364,25 @@ fn dominant_light_finds_a_lamp() {
     // A sky has none, and needs none.
     assert_eq!(sky.split(2).unwrap().light, None);
     assert!(sky.dominant_light().is_none());
+}
+
+/// High bands that look like a lamp, and none of its light below them: as much of it is taken out as leaves no direction dark.
+#[test]
+fn a_split_takes_no_more_than_there_is() {
+    let lamp = DominantLight { direction: dvec3(0.48, 0.6, -0.64), irradiance: dvec3(3.0, 3.0, 3.0) };
+    let mut coefficients = lamp.to_sh(4).unwrap().coefficients().to_vec();
+    coefficients[..9].fill(DVec3::ZERO);
+    coefficients[0] = DVec3::ONE;
+    let sky = Sh::new(coefficients).unwrap();
+    let split = sky.split(2).unwrap();
+    let light = split.light.expect("some of it");
+    assert!(light.irradiance.x > 0.1 && light.irradiance.x < 3.0, "{light:?}");
+    // What is left is not deringed: both together are all that there was.
+    let sum = split.rest.plus(&light.to_sh(2).unwrap()).unwrap();
+    assert!(facts::difference(&sum, &sky.with_order(2).unwrap()) < 1e-12);
+    // And it is dark somewhere: more could not be taken, up to the steps of the search.
+    let least = split.rest.channel(0).convolved(&Lobe::COSINE).minimum().1;
+    assert!((0.0..1e-5).contains(&least), "{least:e}");
 }
 
 /// A single lamp: order 2 is negative opposite to it.
@@ -418,6 +446,9 @@ fn photographs_become_radiance() {
     let curve: Vec<f32> = (0..=1000).map(|i| (i as f32 / 1000.0).sqrt()).collect();
     let measured = Response::from_curve(&curve).unwrap();
     assert!((0..=255).all(|v| (measured.radiance(v, 0.0) - (f32::from(v) / 255.0).powi(2)).abs() < 3e-4));
+    // One that begins above black, as of a camera with a veil: brightness from 0.2 to 0.6 is radiance from 0 to 1.
+    let veiled = Response::from_curve(&[0.2, 0.4, 0.6]).unwrap();
+    assert!((0..=255).all(|v| (veiled.radiance(v, 0.0) - f32::from(v) / 255.0).abs() < 1e-6));
     let levels: Vec<f32> = (0..256).map(|i| i as f32 * 3.0).collect();
     assert_eq!(Response::from_levels(&levels).unwrap().radiance(7, -1.0), 10.5);
 
@@ -458,6 +489,8 @@ fn bad_input_has_its_own_error() {
     assert_eq!(Rotation::new(2, DMat3::from_diagonal(dvec3(1.0, 1.0, -1.0))).unwrap_err(), E::NotARotation);
     assert!(matches!(Lobe::phong(-1.0), Err(E::LobeShape { .. })) && Lobe::ggx(f64::NAN).is_err());
     assert!(Response::gamma(0.0).is_err() && Response::from_levels(&[0.0, 1.0]).is_err());
+    assert_eq!(Response::from_curve(&[]).unwrap_err(), E::ResponseCurve { index: 0 });
+    assert_eq!(Response::from_curve(&[0.5]).unwrap_err(), E::ResponseCurve { index: 1 });
     assert_eq!(Response::from_curve(&[0.0, 0.5, 0.5]).unwrap_err(), E::ResponseCurve { index: 2 });
     assert!(Response::linear().linearise(&[], f32::NAN).is_err());
 }

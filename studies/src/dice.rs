@@ -1,4 +1,4 @@
-//! `dice`: run time against error of four ways to find the areas of a triangle in the cells of a grid.
+//! `dice`: run time against error of seven ways to find the areas of a triangle in the cells of a grid.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -11,7 +11,10 @@ use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 use plotters::prelude::*;
 use pointillist_dice::invariants::cell_area_by_clipping;
-use pointillist_dice::{Accumulator, Grid, accumulate, split};
+use pointillist_dice::{Accumulator, CellWindow, Cut, Grid, accumulate, cut, split};
+
+use crate::common::provenance::provenance;
+use crate::common::timing::{Clock, HOW, Timing, timed_by};
 
 type Cells = BTreeMap<(i32, i32), f64>;
 
@@ -24,9 +27,10 @@ struct Method {
 /// Tells every cell that a triangle may meet and the area found there.
 type FindAreas = fn(&[DVec2; 3], &mut Accumulator, &mut dyn FnMut(IVec2, f64));
 
-const METHODS: [Method; 6] = [
+const METHODS: [Method; 7] = [
     Method { name: "accumulate", areas: by_accumulate },
     Method { name: "split", areas: by_split },
+    Method { name: "cut", areas: by_cut },
     Method { name: "Sutherland–Hodgman", areas: by_clipping },
     Method { name: "4×4 points", areas: by_points::<4> },
     Method { name: "16×16 points", areas: by_points::<16> },
@@ -44,6 +48,15 @@ fn by_accumulate(t: &[DVec2; 3], scratch: &mut Accumulator, visit: &mut dyn FnMu
 
 fn by_split(t: &[DVec2; 3], _: &mut Accumulator, visit: &mut dyn FnMut(IVec2, f64)) {
     split(t, &Grid::UNIT, |p| visit(p.cell, p.area)).expect("the triangles are small and finite");
+}
+
+fn by_cut(t: &[DVec2; 3], _: &mut Accumulator, visit: &mut dyn FnMut(IVec2, f64)) {
+    let (low, high) = bounds(t);
+    let window = CellWindow { x0: low.x, y0: low.y, x1: high.x, y1: high.y };
+    cut(t, window, |part| match part {
+        Cut::Span { row, first, end } => (first..end).for_each(|x| visit(IVec2::new(x, row), 1.0)),
+        Cut::Piece { cell, polygon } => visit(cell, polygon.area()),
+    });
 }
 
 fn by_clipping(t: &[DVec2; 3], _: &mut Accumulator, visit: &mut dyn FnMut(IVec2, f64)) {
@@ -64,9 +77,13 @@ fn by_points<const N: usize>(t: &[DVec2; 3], _: &mut Accumulator, visit: &mut dy
     }
 }
 
+/// The first cell of a triangle's bounds, and the one past their last.
+fn bounds(t: &[DVec2; 3]) -> (IVec2, IVec2) {
+    (t[0].min(t[1]).min(t[2]).floor().as_ivec2(), t[0].max(t[1]).max(t[2]).ceil().as_ivec2())
+}
+
 fn cells_of(t: &[DVec2; 3]) -> impl Iterator<Item = IVec2> {
-    let low = t[0].min(t[1]).min(t[2]).floor().as_ivec2();
-    let high = t[0].max(t[1]).max(t[2]).ceil().as_ivec2();
+    let (low, high) = bounds(t);
     (low.y..high.y).flat_map(move |y| (low.x..high.x).map(move |x| IVec2::new(x, y)))
 }
 
@@ -75,7 +92,8 @@ struct Row {
     method: &'static str,
     size: f64,
     offset: f64,
-    nanoseconds: f64,
+    /// Of one triangle.
+    nanoseconds: Timing,
     /// Largest error of a cell, in cells.
     error: f64,
 }
@@ -127,21 +145,33 @@ fn worst_error(method: &Method, t: &[DVec2; 3], stride: usize) -> f64 {
     compared.into_iter().map(error).fold(0.0, f64::max)
 }
 
-/// Mean time of a triangle, the best of three rounds.
-fn time(method: &Method, triangles: &[[DVec2; 3]]) -> f64 {
+/// About how long the triangles of one timing take together, in nanoseconds.
+const LONG_ENOUGH: f64 = 2e7;
+
+/// Time of a triangle.
+fn time(method: &Method, triangles: &[[DVec2; 3]]) -> Timing {
     let mut scratch = Accumulator::new();
-    let mut round = || {
-        let (start, mut count, mut sum) = (Instant::now(), 0, 0.0);
-        while count == 0 || start.elapsed().as_millis() < 20 {
-            for t in triangles {
-                (method.areas)(black_box(t), &mut scratch, &mut |_, area| sum += area);
-            }
-            count += triangles.len();
+    let mut all = |rounds: usize| {
+        let mut sum = 0.0;
+        for t in (0..rounds).flat_map(|_| triangles) {
+            (method.areas)(black_box(t), &mut scratch, &mut |_, area| sum += area);
         }
         black_box(sum);
-        start.elapsed().as_secs_f64() * 1e9 / count as f64
     };
-    round().min(round()).min(round())
+    // Processor time has steps of its own: as many rounds as make them small.
+    let clock = Instant::now();
+    let mut rounds = 1;
+    loop {
+        let before = clock.elapsed();
+        all(rounds);
+        let taken = (clock.elapsed() - before).as_nanos() as f64;
+        if taken >= LONG_ENOUGH {
+            break;
+        }
+        rounds = (rounds as f64 * (1.2 * LONG_ENOUGH / taken.max(1.0)).clamp(2.0, 100.0)).ceil() as usize;
+    }
+    let (timing, ()) = timed_by(Clock::Processor, || all(rounds));
+    Timing { seconds: 1e9 * timing.seconds / (rounds * triangles.len()) as f64, ..timing }
 }
 
 type Exact = BigRational;
@@ -179,24 +209,28 @@ fn exact_area(t: &[DVec2; 3], cell: IVec2) -> Exact {
 fn csv(rows: &[Row]) -> String {
     let mut text = "method,size_cells,offset_cells,nanoseconds,worst_error_cells\n".to_owned();
     for r in rows {
-        let _ = writeln!(text, "{},{},{},{:.0},{:e}", r.method, r.size, r.offset, r.nanoseconds, r.error);
+        let _ =
+            writeln!(text, "{},{},{},{:.0},{:e}", r.method, r.size, r.offset, r.nanoseconds.seconds, r.error);
     }
     text
 }
 
 fn markdown(rows: &[Row]) -> String {
-    let mut text = "# Areas of a triangle in the cells of a grid: time against error\n\n\
-        `cargo run --release -p studies -- dice` made this. Errors are the largest of any cell, in cells, against exact \
-        rational arithmetic.\n\n| triangle | offset | method | time | worst error |\n| ---: | ---: | --- | ---: | ---: |\n"
-        .to_owned();
+    let mut text = format!(
+        "# Areas of a triangle in the cells of a grid: time against error\n\n\
+        `cargo run --release -p studies -- dice` made this, on one thread ({}). Processor time of one triangle. {HOW} Errors are the largest of any cell, in \
+        cells, against exact rational arithmetic. Triangles are as far from the origin as the offset says, in cells.\n\n## All settings\n\n\
+        | triangle | offset | method | µs | worst error |\n| ---: | ---: | --- | ---: | ---: |\n",
+        provenance()
+    );
     for r in rows {
         let _ = writeln!(
             text,
-            "| {} cells | {:e} | {} | {:.2} µs | {:.1e} |",
+            "| {} cells | {:e} | {} | {:.2} | {:.1e} |",
             r.size,
             r.offset,
             r.method,
-            r.nanoseconds / 1e3,
+            Timing { seconds: r.nanoseconds.seconds / 1e3, ..r.nanoseconds },
             r.error
         );
     }
@@ -218,7 +252,7 @@ fn chart(rows: &[Row], path: &Path) -> Result<(), Box<dyn std::error::Error + Se
     chart.configure_mesh().x_desc("nanoseconds").y_desc("worst error, cells").draw()?;
     for (i, method) in METHODS.iter().enumerate() {
         let points = rows.iter().filter(|r| r.method == method.name && r.size == 12.0);
-        let points: Vec<_> = points.map(|r| (r.nanoseconds, r.error.max(SMALLEST))).collect();
+        let points: Vec<_> = points.map(|r| (r.nanoseconds.seconds, r.error.max(SMALLEST))).collect();
         let style = Palette99::pick(i).filled();
         chart
             .draw_series(PointSeries::<_, _, Circle<_, _>, _>::new(points, 4, style))?

@@ -9,6 +9,7 @@ mod expected;
 mod growth;
 mod ibpr;
 mod micropoint;
+mod mutants;
 mod quote;
 mod radiosity;
 mod report;
@@ -110,7 +111,7 @@ fn usage() -> String {
     for Study { name, what, .. } in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`.\n"
+    text + "  all         all of these\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n  mutants     how many faults tests see, from the runs of `.ci/mutants`\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`.\n"
 }
 
 fn main() -> ExitCode {
@@ -134,6 +135,7 @@ fn main() -> ExitCode {
         }
         ["quote"] => return code(quote::run(&out_dir, false)),
         ["quote", "--check"] => return code(quote::run(&out_dir, true)),
+        ["mutants"] => return code(mutants::run(&out_dir)),
         ["quick"] => return code(run_quick(&STUDIES)),
         [name, "quick"] if name != "shprobe" => match STUDIES.iter().find(|s| s.name == name) {
             Some(study) if study.quick.is_some() => return code(run_quick(std::slice::from_ref(study))),

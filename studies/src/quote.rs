@@ -6,7 +6,7 @@
 //! <!-- end of quote -->
 //! ```
 //!
-//! `columns` (from 1) and `rows` (beginnings of their first cells, in their order) may be left out. `quote` writes the tables anew; `quote --check`
+//! `columns` (from 1) and `rows` (beginnings of their first cells, in their order; `matt / * / exact` of their first three, whatever the second is) may be left out. `quote` writes the tables anew; `quote --check`
 //! fails where one would differ by more than figures.
 
 use std::fmt::Write as _;
@@ -122,8 +122,7 @@ impl<'a> Wanted<'a> {
             None => chosen.extend(body),
             Some(rows) => {
                 for row in rows {
-                    let found =
-                        body.iter().find(|line| cells(line).first().is_some_and(|c| c.starts_with(row)));
+                    let found = body.iter().find(|line| begins(line, row));
                     chosen.push(found.ok_or_else(|| format!("no row `{row}` below `{heading}`"))?);
                 }
             }
@@ -142,6 +141,13 @@ impl<'a> Wanted<'a> {
         let chosen = columns.iter().map(of).collect::<Result<Vec<_>, _>>()?;
         Ok(format!("| {} |", chosen.join(" | ")))
     }
+}
+
+/// Whether the first cells of a row begin as a mark has it: `matt / * / exact`.
+fn begins(line: &str, beginnings: &str) -> bool {
+    let (cells, beginnings): (_, Vec<&str>) = (cells(line), beginnings.split(" / ").collect());
+    let fits = |(cell, start): (&&str, &&str)| *start == "*" || cell.starts_with(start);
+    cells.len() >= beginnings.len() && cells.iter().zip(&beginnings).all(fits)
 }
 
 /// The cells of a row of a table.
@@ -201,8 +207,9 @@ mod tests {
             "{whole}"
         );
         assert!(whole.ends_with("| c | 3 | 4 |\n<!-- end of quote -->\nB."), "{whole}");
-        let part = quoted("<!-- quote: x.md#one-and-two; columns 1 3; rows c | a -->\n<!-- end of quote -->")
-            .expect("a quote");
+        let part =
+            quoted("<!-- quote: x.md#one-and-two; columns 1 3; rows * / 3 | a -->\n<!-- end of quote -->")
+                .expect("a quote");
         assert!(
             part.contains("-->\n| name | RMSE |\n| --- | ---: |\n| c | 4 |\n| a b | 2 |\n<!--"),
             "{part}"
@@ -217,6 +224,7 @@ mod tests {
         assert!(fault("y.md#one").contains("y.md"));
         assert!(fault("x.md#three").contains("no heading `three`"));
         assert!(fault("x.md#one-and-two; rows d").contains("no row `d`"));
+        assert!(fault("x.md#one-and-two; rows * / 2").contains("no row `* / 2`"));
         assert!(fault("x.md#one-and-two; columns 4").contains("no column 4"));
         assert!(quoted("<!-- quote: x.md#one-and-two -->").expect_err("no end").contains("does not end"));
     }
