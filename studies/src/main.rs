@@ -106,13 +106,6 @@ fn run_quick(studies: &[Study]) -> Outcome {
     Ok(passed)
 }
 
-/// Draws the pictures, too; the table is printed.
-fn together_with_pictures(folder: &str) -> Outcome {
-    std::fs::create_dir_all(folder)?;
-    print!("{}", shprobe::together::measure(Some(Path::new(folder)))?);
-    Ok(true)
-}
-
 fn usage() -> String {
     let mut text = "usage: studies NAME\n\nWrites studies/results/NAME.*; NAME is one of\n".to_owned();
     for Study { name, what, .. } in STUDIES {
@@ -155,7 +148,7 @@ fn main() -> ExitCode {
         ["micropoint", "checker"] => return code(micropoint::checker::run(&out_dir)),
         ["shadow", "area"] => return code(shadow::area::run(&out_dir)),
         ["radiosity", _, ..] => return code(radiosity::run_parts(&out_dir, &arguments[1..])),
-        ["together", folder] => return code(together_with_pictures(folder)),
+        ["together", folder] => return code(shprobe::together::run_with(&out_dir, Some(Path::new(folder)))),
         ["shprobe", _, ..] => return code(shprobe::run_with(&out_dir, &arguments[1..])),
         [name] if name == "all" || STUDIES.iter().any(|s| s.name == name) => name,
         _ => {
