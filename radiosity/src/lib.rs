@@ -51,6 +51,7 @@
 //! 9. S. Laine, T. Karras: *Stratified sampling for stochastic transparency*, Eurographics Symposium on Rendering 2011.
 //! 10. J. Neyman: *On the two different aspects of the representative method*, Journal of the Royal Statistical Society 97, 1934.
 //! 11. B. Smits, J. Arvo, D. Salesin: *An importance-driven radiosity algorithm*, SIGGRAPH 1992.
+//! 12. P. S. Heckbert: *Discontinuity meshing for radiosity*, Eurographics Workshop on Rendering 1992.
 #![forbid(unsafe_code)]
 mod assemble;
 mod bake;

@@ -55,6 +55,11 @@ proptest! {
     }
 
     #[test]
+    fn halves_hide_what_the_whole_hides((a, b) in pair(), occluder in polygon()) {
+        factors::halves_hide_what_the_whole_hides(&a, &b, &occluder).map_err(fails)?;
+    }
+
+    #[test]
     fn form_factors_are_reciprocal((a, b) in pair(), occluders in prop::collection::vec(polygon(), 0..2)) {
         factors::is_reciprocal(&a, &b, &occluders).map_err(fails)?;
     }

@@ -4,6 +4,7 @@ mod common;
 
 use common::{cornell, quad, room};
 use glam::{DQuat, DVec3, dvec3};
+use pointillist_dice::lambert;
 use pointillist_radiosity::{
     FactorOptions, HemicubeKind, Lamp, RadiosityError, Scene, SceneOptions, SolveOptions, Surface, Transport,
     form_factor,
@@ -26,6 +27,57 @@ fn far_triangles_get_enough_points() {
     let found = form_factor(&a, &b, &[], &coarse).value;
     // Area over π d², and the second order is (1/300)².
     assert!((found * std::f64::consts::PI * 9e4 / 0.5 - 1.0).abs() < 1e-4, "{found}");
+}
+
+/// Light passes between a ceiling and a lamp a thousandth of the room below it: of the ceiling, a strip of some thousandths sees the wall. Between samples nothing of
+/// it was seen, and with 1e-9 asked for the result was wrong by 2.3 %.
+#[test]
+fn light_through_a_gap_of_a_thousandth_is_found() {
+    let ceiling = quad(dvec3(0.5, 1.0, 0.375), DVec3::X * 0.125, DVec3::Z * 0.125);
+    let wall = quad(dvec3(1.0, 0.875, 0.375), DVec3::Z * 0.125, DVec3::Y * 0.125);
+    let (low, high) = (dvec3(0.4, 0.999, 0.4), dvec3(0.6, 0.999, 0.6));
+    let lamp = quad(low, DVec3::X * 0.2, DVec3::Z * 0.2);
+    // From a point of the wall the lamp hides a rectangle of the ceiling.
+    const N: usize = 400;
+    let mut exact = 0.0;
+    for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
+        let [y, z] = [i, j].map(|k| 0.125 * (k as f64 + 0.5) / N as f64);
+        let p = dvec3(1.0, 0.875 + y, 0.375 + z);
+        let hidden = if p.y < low.y {
+            let [from, to] = [low, high].map(|v| p + (v - p) * ((1.0 - p.y) / (v.y - p.y)));
+            let (from, to) = (from.max(ceiling.vertices()[0]), to.min(ceiling.vertices()[2]));
+            let ring = [from, dvec3(to.x, 1.0, from.z), to, dvec3(from.x, 1.0, to.z)];
+            if from.x < to.x && from.z < to.z { lambert::share(p, wall.normal(), &ring) } else { 0.0 }
+        } else {
+            0.0
+        };
+        exact += (lambert::share(p, wall.normal(), ceiling.vertices()) - hidden.abs()) / (N * N) as f64;
+    }
+    for (relative, allowed) in [(1e-3, 1e-6), (1e-5, 2e-8)] {
+        let options = FactorOptions::DEFAULT.with_occluded(relative);
+        let found = form_factor(&ceiling, &wall, std::slice::from_ref(&lamp), &options);
+        assert!((found.value - exact).abs() <= allowed, "{found:?} for {exact}");
+    }
+}
+
+/// An occluder that stands on a sliver hides a fortieth of it, between samples and near no corner. It counted as hiding nothing, with a bound of rounding.
+#[test]
+fn what_is_hidden_from_a_sliver_is_found() {
+    let polygon = |ring: [[f64; 3]; 3]| {
+        pointillist_radiosity::Polygon::new(&ring.map(DVec3::from_array)).expect("a triangle")
+    };
+    let sliver =
+        polygon([[-0.24694, 0.25, -0.981577], [-0.49694, 0.25, -0.981577], [-0.49694, 0.25, -0.981587]]);
+    let source = quad(dvec3(0.0, -1.0, 0.0), DVec3::Y * -0.25, DVec3::X * -0.25);
+    let occluder = polygon([
+        [0.167239, -1.0, -0.850558],
+        [0.457532, -0.014315, -1.005588],
+        [-0.458138, 0.485685, -1.005588],
+    ]);
+    let of = |occluders: &[_]| form_factor(&sliver, &source, occluders, &FactorOptions::DEFAULT).value;
+    // By four million lines between random points 2.7 % is hidden.
+    let hidden = 1.0 - of(&[occluder]) / of(&[]);
+    assert!((hidden - 0.0271).abs() < 0.001, "{hidden}");
 }
 
 /// What a patch sends ahead was added to its radiosity, which then was half as high again.

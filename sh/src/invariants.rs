@@ -71,14 +71,19 @@ pub fn difference<T: Channel>(left: &Sh<T>, right: &Sh<T>) -> f64 {
     left.minus(right).map_or(f64::INFINITY, |rest| largest(&rest) / scale_of(left))
 }
 
-/// Rotation keeps the power of each band, and the turned function is the function of the direction turned back.
+/// Rotation keeps the power of each band, and the turned function is the function of the direction turned back. Only what is no rotation is refused.
 ///
 /// # Errors
-/// The band or value that differs.
+/// The band or value that differs, or the rotation that is refused.
 pub fn rotation_turns(sh: &Sh, rotation: DQuat, direction: DVec3) -> Result<(), String> {
-    let (Ok(turned), Some(direction)) = (sh.rotated(rotation), direction.try_normalize()) else {
-        return Ok(());
+    let turned = match sh.rotated(rotation) {
+        Ok(turned) => turned,
+        Err(fault) => {
+            let is_unit = (rotation.length_squared() - 1.0).abs() < 1e-12;
+            return check(!is_unit, || format!("{rotation} is refused: {fault}"));
+        }
     };
+    let Some(direction) = direction.try_normalize() else { return Ok(()) };
     let scale = scale_of(sh);
     for l in 0..=sh.order() {
         let (before, after) = (sh.band_power(l), turned.band_power(l));

@@ -489,6 +489,8 @@ fn bad_input_has_its_own_error() {
     assert_eq!(Rotation::new(2, DMat3::from_diagonal(dvec3(1.0, 1.0, -1.0))).unwrap_err(), E::NotARotation);
     assert!(matches!(Lobe::phong(-1.0), Err(E::LobeShape { .. })) && Lobe::ggx(f64::NAN).is_err());
     assert!(Response::gamma(0.0).is_err() && Response::from_levels(&[0.0, 1.0]).is_err());
+    assert_eq!(Response::from_curve(&[]).unwrap_err(), E::ResponseCurve { index: 0 });
+    assert_eq!(Response::from_curve(&[0.5]).unwrap_err(), E::ResponseCurve { index: 1 });
     assert_eq!(Response::from_curve(&[0.0, 0.5, 0.5]).unwrap_err(), E::ResponseCurve { index: 2 });
     assert!(Response::linear().linearise(&[], f32::NAN).is_err());
 }

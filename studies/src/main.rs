@@ -10,6 +10,7 @@ mod expected;
 mod growth;
 mod ibpr;
 mod micropoint;
+mod mutants;
 mod quote;
 mod radiosity;
 mod report;
@@ -112,19 +113,12 @@ fn run_quick(studies: &[Study]) -> Outcome {
     Ok(passed)
 }
 
-/// Draws the pictures, too; the table is printed.
-fn together_with_pictures(folder: &str) -> Outcome {
-    std::fs::create_dir_all(folder)?;
-    print!("{}", shprobe::together::measure(Some(Path::new(folder)))?);
-    Ok(true)
-}
-
 fn usage() -> String {
     let mut text = "usage: studies NAME\n\nWrites studies/results/NAME.*; NAME is one of\n".to_owned();
     for Study { name, what, .. } in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`; `clouds POINTS` ends with that size.\n"
+    text + "  all         all of these\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n  mutants     how many faults tests see, from the runs of `.ci/mutants`\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too. `radiosity PART…` runs parts alone, such as `buildings` and `growth`; `clouds POINTS` ends with that size.\n"
 }
 
 fn main() -> ExitCode {
@@ -152,6 +146,7 @@ fn main() -> ExitCode {
         }
         ["quote"] => return code(quote::run(&out_dir, false)),
         ["quote", "--check"] => return code(quote::run(&out_dir, true)),
+        ["mutants"] => return code(mutants::run(&out_dir)),
         ["quick"] => return code(run_quick(&STUDIES)),
         [name, "quick"] if name != "shprobe" => match STUDIES.iter().find(|s| s.name == name) {
             Some(study) if study.quick.is_some() => return code(run_quick(std::slice::from_ref(study))),
@@ -164,7 +159,7 @@ fn main() -> ExitCode {
         ["micropoint", "checker"] => return code(micropoint::checker::run(&out_dir)),
         ["shadow", "area"] => return code(shadow::area::run(&out_dir)),
         ["radiosity", _, ..] => return code(radiosity::run_parts(&out_dir, &arguments[1..])),
-        ["together", folder] => return code(together_with_pictures(folder)),
+        ["together", folder] => return code(shprobe::together::run_with(&out_dir, Some(Path::new(folder)))),
         ["shprobe", _, ..] => return code(shprobe::run_with(&out_dir, &arguments[1..])),
         [name] if name == "all" || STUDIES.iter().any(|s| s.name == name) => name,
         _ => {

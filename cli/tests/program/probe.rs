@@ -503,3 +503,48 @@ fn near_and_far_say_which_surfaces_probes_see() {
     folder.fails(&[&line[..], &["--near=-1"]].concat(), 2, &["--near"]);
     folder.fails(&[&line[..], &["--far", "0"]].concat(), 2, &["--far"]);
 }
+
+#[test]
+fn mirrors_in_a_room_show_what_probes_of_any_order_hold_and_not_the_sky_behind_its_walls() {
+    let folder = folder();
+    let sky = image::Rgb32FImage::from_pixel(32, 16, image::Rgb([9.0; 3]));
+    sky.save(folder.path("sky.hdr")).unwrap();
+    let under_the_sky =
+        |text: &str| text.replace("size = [8, 8]", "size = [8, 8]\nenvironment = \"sky.hdr\"");
+    folder.write("room.toml", under_the_sky(BOX_SCENE));
+    folder.write("mirror.obj", "v -0.5 0 0.5\nv 0.5 0 0.5\nv 0.5 0 -0.5\nv -0.5 0 -0.5\nf 1 2 3 4\n");
+    folder.write("p.json", "{\"probes\":[{\"position\":[0,0.5,0]},{\"position\":[0.5,-0.5,0.2]}]}");
+    let shown = |roughness: f64, more: &str| {
+        let scene = under_the_sky(BOX_SCENE)
+            .replace("box.obj\"", "mirror.obj\"\nmaterial = \"metal\"")
+            .replace("eye = [0, 0, 0.9]", "eye = [0, 0.3, 0.3]");
+        let metal = format!(
+            "[material.metal]\nmodel = \"ggx\"\ndiffuse = [1, 1, 1]\nmetallic = 1\nroughness = {roughness}\n"
+        );
+        folder.write("mirror.toml", scene + &metal + more);
+        folder.prints(&["render", "mirror.toml", "--overwrite", "--float", "-o", "mirror.exr"]);
+        let picture = read_exr_picture(&std::fs::read(folder.path("mirror.exr")).unwrap()).unwrap();
+        f64::from(picture.color[4 * 8 + 4][1])
+    };
+    for order in ["2", "4", "8"] {
+        let line = [
+            "probe",
+            "bake",
+            "room.toml",
+            "p.json",
+            "--what",
+            "total",
+            "--resolution",
+            "16",
+            "--bounces",
+            "0",
+        ];
+        folder.prints(&[&line[..], &["--order", order, "-o", "baked.json"]].concat());
+        assert_eq!(json(&folder, "baked.json")["order"].to_string(), order);
+        for roughness in [0.0, 0.4] {
+            let open = shown(roughness, "");
+            let indoors = shown(roughness, "[ambient]\nprobes = \"baked.json\"\n");
+            assert!((indoors / open - 1.0 / 9.0).abs() < 0.003, "{order} {roughness}: {indoors} of {open}");
+        }
+    }
+}

@@ -6,8 +6,10 @@
 //!    unoccluded exchange. Both are exact ("settled").
 //! 4. In other cells the hidden share of the source is integrated by [`ORDER`]² Gauss points. At each point it is exact: Lambert's formula for
 //!    the parts of the source that occluders hide.
-//! 5. Cells with the largest error estimates are quartered until the sum of the estimates is within the [`Goal`]. The estimate of a quarter is
-//!    what quartering changed, so that cells become small where the hidden share is not smooth. Near a common edge of receiver and
+//! 5. Cells with the largest error estimates are divided until the sum of the estimates is within the [`Goal`]: at first along the lines where the hidden
+//!    share changes its kind ([`Events`]), into parts in each of which it is smooth, then into quarters. The estimate of a quarter is
+//!    what quartering changed, so that cells become small where the hidden share is not smooth all the same; that of a part is small as far as its samples
+//!    are those of a smooth function. Near a common edge of receiver and
 //!    source the unoccluded share is far from a polynomial, but only the hidden part, small there, is integrated numerically.
 
 use std::borrow::Cow;
@@ -15,6 +17,7 @@ use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
+use super::events::Events;
 use super::parts::{Pieces, Source};
 use super::shaft::Shaft;
 use crate::kernel::gauss;
@@ -36,6 +39,14 @@ const INWARD: f64 = 1e-3;
 /// Error estimate of the Gauss rule for a discontinuous hidden share, as a share of the difference between its largest and smallest sample.
 /// A step anywhere between two of three Gauss points is integrated with an error of at most 2/9 of its height; this is about half of that.
 const SPREAD: f64 = 1.0 / 8.0;
+/// Where this relative error or less is asked for, cells are cut along lines before they are sampled: hardly any would be good enough whole.
+const CUT_AT_ONCE: f64 = 2e-3;
+/// For a smooth function the Gauss rule misses what is beyond degree 5. If coefficients of Legendre polynomials fall by a factor `r` from degree to degree,
+/// samples differ by about `2r`, their second differences make `r²`, and the error is about `r⁶`, so that the estimate of [`SPREAD`] may be
+/// multiplied by the fourth power of the ratio of the two, times [`BEND`]. The third power is on the safe side; in a Cornell box the second makes no error smaller and takes a
+/// ninth longer.
+const BEND: f64 = 2.0;
+const DECAY: i32 = 3;
 /// The error that quarters are taken to have left is what quartering changed, divided by this. For a kink across a cell 4 would do; 2 allows
 /// for levels that agree by chance.
 const GAIN: f64 = 2.0;
@@ -65,12 +76,27 @@ pub(crate) struct Work {
     pub(crate) cells: usize,
 }
 
+/// Where a cell lies among the lines of [`Events`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Lines {
+    /// It was not asked yet whether any crosses it.
+    Unknown,
+    /// It lies between them.
+    Between,
+    /// It is a quarter of a cell.
+    Quarter,
+}
+
 struct Cell {
     quad: [DVec3; 4],
     occluders: Vec<u32>,
     hidden: f64,
-    /// Error estimate by [`SPREAD`], from the differences of the samples.
+    /// Error estimate from the differences of the samples: by [`SPREAD`], and by `rough` if no line is known to cross it.
     spread: f64,
+    /// How little the samples are those of a smooth function: 0 to 1.
+    rough: f64,
+    /// Where it lies among the lines of [`Events`].
+    lines: Lines,
     error: f64,
     depth: u8,
     /// Whether it is exact but for rounding and the unoccluded rule, which smaller cells do not improve.
@@ -132,7 +158,8 @@ pub(crate) fn mutual_in_shaft(
 fn past(a: &Polygon, b: &Polygon, occluders: &[&Polygon], goal: Goal, pieces: &mut Pieces) -> (Mutual, Work) {
     let (receiver, source) = if a.area() <= b.area() { (a, b) } else { (b, a) };
     let flat = Source::new(source);
-    Cubature { receiver, source, flat: &flat, occluders, goal, pieces, work: Work::default() }.run()
+    Cubature { receiver, source, flat: &flat, occluders, goal, pieces, events: None, work: Work::default() }
+        .run()
 }
 
 struct Cubature<'p> {
@@ -142,6 +169,8 @@ struct Cubature<'p> {
     occluders: &'p [&'p Polygon],
     goal: Goal,
     pieces: &'p mut Pieces,
+    /// Found when the first cell is divided.
+    events: Option<Events>,
     work: Work,
 }
 
@@ -152,7 +181,10 @@ impl Cubature<'_> {
         let mut settled = (0.0, open.error);
         let all: Vec<u32> = (0..self.occluders.len() as u32).collect();
         for quad in self.roots() {
-            let mut cell = self.cell(quad, &all, 0);
+            if self.goal.relative <= CUT_AT_ONCE && self.cut((&quad, &all, 0), &mut heap, &mut settled) {
+                continue;
+            }
+            let mut cell = self.cell(quad, &all, 0, Lines::Unknown);
             if cell.settled || self.goal.least_depth > 0 {
                 self.divide(&cell, &mut heap, &mut settled);
             } else {
@@ -209,11 +241,23 @@ impl Cubature<'_> {
             settled.1 += cell.error;
             return;
         }
+        if cell.lines == Lines::Unknown {
+            if self.cut((&cell.quad, &cell.occluders, cell.depth), heap, settled) {
+                return;
+            }
+            if cell.depth >= self.goal.least_depth && cell.rough < 1.0 {
+                let spread = cell.spread * cell.rough;
+                let (error, occluders) = (cell.error - cell.spread + spread, cell.occluders.clone());
+                heap.push(Cell { error, spread, occluders, lines: Lines::Between, ..*cell });
+                return;
+            }
+        }
         let [a, b, c, d] = cell.quad;
         let [ab, bc, cd, da] = [(a, b), (b, c), (c, d), (d, a)].map(|(p, q)| 0.5 * (p + q));
         let middle = 0.5 * (ab + cd);
         let quarters = [[a, ab, middle, da], [ab, b, bc, middle], [middle, bc, c, cd], [da, middle, cd, d]];
-        let mut children = quarters.map(|quad| self.cell(quad, &cell.occluders, cell.depth + 1));
+        let mut children =
+            quarters.map(|quad| self.cell(quad, &cell.occluders, cell.depth + 1, Lines::Quarter));
         let total: f64 = children.iter().map(|c| c.hidden).sum();
         let open = children.iter().filter(|c| !c.settled).count().max(1) as f64;
         let change = (total - cell.hidden).abs() / (GAIN * open);
@@ -235,10 +279,40 @@ impl Cubature<'_> {
         }
     }
 
+    /// Replaces a cell by parts along lines of [`Events`]; false if none meets it.
+    fn cut(
+        &mut self,
+        (&[a, b, c, d], list, depth): (&[DVec3; 4], &[u32], u8),
+        heap: &mut BinaryHeap<Cell>,
+        settled: &mut (f64, f64),
+    ) -> bool {
+        let (receiver, source, occluders) = (self.receiver, self.source, self.occluders);
+        let events = self.events.get_or_insert_with(|| Events::new(receiver, source, occluders));
+        let ring = if c == d { vec![a, b, c] } else { vec![a, b, c, d] };
+        let parts = events.cut(&ring);
+        if parts.len() == 1 {
+            return false;
+        }
+        for part in parts.into_iter().filter_map(Polygon::unchecked) {
+            for quad in part.quads() {
+                let mut child = self.cell(quad, list, depth + 1, Lines::Between);
+                if child.settled {
+                    settled.0 += child.hidden;
+                    settled.1 += child.error;
+                } else {
+                    child.error += child.spread;
+                    heap.push(child);
+                }
+            }
+        }
+        true
+    }
+
     /// A cell: settled if its shaft is free or blocked by one occluder, else sampled.
-    fn cell(&mut self, quad: [DVec3; 4], occluders: &[u32], depth: u8) -> Cell {
+    fn cell(&mut self, quad: [DVec3; 4], occluders: &[u32], depth: u8, lines: Lines) -> Cell {
+        let (hidden, spread, error, settled) = (0.0, 0.0, 0.0, true);
         let mut cell =
-            Cell { quad, occluders: vec![], hidden: 0.0, spread: 0.0, error: 0.0, depth, settled: true };
+            Cell { quad, occluders: vec![], hidden, spread, rough: 1.0, lines, error, depth, settled };
         let [a, b, c, d] = quad;
         let ring = if c == d { vec![a, b, c] } else { quad.to_vec() };
         let Some(mut polygon) = Polygon::unchecked(ring) else { return cell };
@@ -275,22 +349,32 @@ impl Cubature<'_> {
             hidden
         };
         let rule = gauss::rule(ORDER);
-        for (u, weight_u) in rule.iter() {
-            for (v, weight_v) in rule.iter() {
+        let mut samples = [[0.0; ORDER]; ORDER];
+        for ((u, weight_u), row) in rule.iter().zip(&mut samples) {
+            for ((v, weight_v), sample) in rule.iter().zip(row) {
                 let (p, jacobian) = gauss::on_quad(&cell.quad, u, v);
                 let weight = weight_u * weight_v * jacobian;
-                cell.hidden += weight * hidden_at(p);
+                *sample = hidden_at(p);
+                cell.hidden += weight * *sample;
                 area += weight;
             }
         }
-        if cell.depth < LOOKED_AT_CORNERS {
+        let mut bend = curvature(&samples);
+        if cell.depth < LOOKED_AT_CORNERS || cell.lines == Lines::Between {
             // The tip of a shadow, or of a lit gap between shadows, may lie between the Gauss points and a corner.
             let centre = 0.25 * cell.quad.iter().sum::<DVec3>();
-            for corner in cell.quad {
-                hidden_at(corner.lerp(centre, INWARD));
+            for (number, corner) in cell.quad.into_iter().enumerate() {
+                let found = hidden_at(corner.lerp(centre, INWARD));
+                bend = bend.max((found - extrapolated(&samples, number)).abs());
             }
         }
         cell.spread = SPREAD * area * (most - least);
+        if most > least {
+            cell.rough = (BEND * bend / (most - least)).min(1.0).powi(DECAY);
+        }
+        if cell.lines != Lines::Unknown {
+            cell.spread *= cell.rough;
+        }
         if searched {
             let unmet = met.iter().zip(&list).filter(|(met, _)| !**met).map(|(_, occluder)| *occluder);
             cell.error = unmet.map(|occluder| self.missed(&cell.quad, occluder)).sum();
@@ -311,6 +395,24 @@ impl Cubature<'_> {
         let most = lambert::share_above_horizon(centre, normal, occluder.vertices()).abs();
         0.5 * (c - a).cross(d - b).length() * most.min(whole).max(0.0)
     }
+}
+
+/// The biquadratic through the samples at a corner.
+fn extrapolated(samples: &[[f64; ORDER]; ORDER], corner: usize) -> f64 {
+    const WEIGHTS: [f64; ORDER] = [1.478_830_557_701_236, -2.0 / 3.0, 0.187_836_108_965_430_6];
+    let (far_u, far_v) = (corner == 1 || corner == 2, corner >= 2);
+    let at = |i: usize, far: bool| WEIGHTS[if far { ORDER - 1 - i } else { i }];
+    let row = |i: usize| (0..ORDER).map(|j| at(j, far_v) * samples[i][j]).sum::<f64>();
+    (0..ORDER).map(|i| at(i, far_u) * row(i)).sum()
+}
+
+/// Largest second difference of samples along a row or a column, as the coefficient of the Legendre polynomial of degree 2.
+fn curvature(samples: &[[f64; ORDER]; ORDER]) -> f64 {
+    let of = |a: f64, b: f64, c: f64| (a - 2.0 * b + c).abs() * (5.0 / 18.0) * 2.0;
+    (0..ORDER).fold(0.0, |most: f64, i| {
+        let row = of(samples[i][0], samples[i][1], samples[i][2]);
+        most.max(row).max(of(samples[0][i], samples[1][i], samples[2][i]))
+    })
 }
 
 /// The hidden exchange of all cells, and its error.

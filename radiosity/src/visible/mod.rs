@@ -2,5 +2,6 @@
 
 pub(crate) mod boxes;
 pub(crate) mod cubature;
+pub(crate) mod events;
 pub(crate) mod parts;
 pub(crate) mod shaft;

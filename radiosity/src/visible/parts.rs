@@ -18,11 +18,39 @@ const COPLANAR: f64 = 1e-12;
 /// Most vertices of a part of the source before it is cut.
 const MAX_SOURCE_VERTICES: usize = 8;
 
+/// Coordinates in the plane of a polygon.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    origin: DVec3,
+    axes: [DVec3; 2],
+}
+
+impl Frame {
+    /// Around the polygon's centre, right-handed seen from its front.
+    pub(crate) fn of(polygon: &Polygon) -> Self {
+        let u = polygon.normal().any_orthonormal_vector();
+        Self { origin: polygon.centre(), axes: [u, polygon.normal().cross(u)] }
+    }
+
+    /// The foot of a point in space.
+    pub(crate) fn flat(&self, p: DVec3) -> DVec2 {
+        self.flat_way(p - self.origin)
+    }
+
+    fn flat_way(&self, way: DVec3) -> DVec2 {
+        DVec2::new(way.dot(self.axes[0]), way.dot(self.axes[1]))
+    }
+
+    /// The point in space of a point in the plane.
+    pub(crate) fn in_space(&self, p: DVec2) -> DVec3 {
+        self.origin + self.axes[0] * p.x + self.axes[1] * p.y
+    }
+}
+
 /// A polygon with coordinates in its plane.
 #[derive(Clone, Debug)]
 pub(crate) struct Source {
-    origin: DVec3,
-    axes: [DVec3; 2],
+    frame: Frame,
     radius: f64,
     parts: Vec<ConvexPolygon>,
 }
@@ -58,12 +86,8 @@ pub(crate) struct Pieces {
 
 impl Source {
     pub(crate) fn new(polygon: &Polygon) -> Self {
-        let normal = polygon.normal();
-        let u = normal.any_orthonormal_vector();
-        let axes = [u, normal.cross(u)];
-        let origin = polygon.centre();
-        let flat = |v: &DVec3| DVec2::new((*v - origin).dot(axes[0]), (*v - origin).dot(axes[1]));
-        let ring: Vec<DVec2> = polygon.vertices().iter().map(flat).collect();
+        let frame = Frame::of(polygon);
+        let ring: Vec<DVec2> = polygon.vertices().iter().map(|&v| frame.flat(v)).collect();
         // A fan of pieces that leave room for cuts.
         let parts = (1..ring.len() - 1)
             .step_by(MAX_SOURCE_VERTICES - 2)
@@ -74,18 +98,18 @@ impl Source {
                 ConvexPolygon::from_vertices(&part)
             })
             .collect();
-        Self { origin, axes, radius: polygon.radius(), parts }
+        Self { frame, radius: polygon.radius(), parts }
     }
 
     /// The point in space of a point in the plane.
     pub(crate) fn in_space(&self, p: DVec2) -> DVec3 {
-        self.origin + self.axes[0] * p.x + self.axes[1] * p.y
+        self.frame.in_space(p)
     }
 
     /// The half-plane where `normal · (p − through)` is not negative.
     fn half_plane(&self, normal: DVec3, through: DVec3) -> HalfPlane {
-        let flat = DVec2::new(normal.dot(self.axes[0]), normal.dot(self.axes[1]));
-        HalfPlane { anchor: DVec2::ZERO, normal: flat, offset: normal.dot(self.origin - through) }
+        let flat = self.frame.flat_way(normal);
+        HalfPlane { anchor: DVec2::ZERO, normal: flat, offset: normal.dot(self.frame.origin - through) }
     }
 
     /// The pieces that `eye` sees; true with them if some occluder hides something.

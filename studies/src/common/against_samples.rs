@@ -8,7 +8,7 @@ use crate::common::draw;
 use crate::common::picture::Picture;
 use crate::common::provenance::provenance;
 use crate::common::report::{Row, on_one_thread, scenes, time_ratio};
-use crate::common::timing::{Clock, HOW, timed_by};
+use crate::common::timing::{Clock, HOW, Timing, timed_by};
 
 /// Further columns of the tables.
 pub(crate) const MORE: [&str; 1] = ["bias %"];
@@ -39,6 +39,11 @@ impl Subject {
     /// Measures one picture on one thread.
     pub(crate) fn row(&self, series: &str, setting: String, draw: impl FnMut() -> Picture + Send) -> Row {
         let (time, picture) = on_one_thread(|| timed_by(Clock::Processor, draw));
+        self.row_of(series, setting, time, &picture)
+    }
+
+    /// A picture that took this time.
+    pub(crate) fn row_of(&self, series: &str, setting: String, time: Timing, picture: &Picture) -> Row {
         Row {
             scene: self.name.clone(),
             series: series.to_owned(),

@@ -14,6 +14,7 @@ pub(crate) mod line_reference;
 pub(crate) mod loop_subdivision;
 pub(crate) mod opacities;
 pub(crate) mod paths;
+pub(crate) mod peer_scene;
 pub(crate) mod peers;
 pub(crate) mod picture;
 pub(crate) mod picture_layers;

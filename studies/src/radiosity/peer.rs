@@ -114,8 +114,17 @@ pub(crate) fn compare(text: &mut String) -> Outcome {
             writeln!(text, "\n{} `studies/peers/build python` does.", peers::skipped("pyviewfactor", PYTHON))?
         }
     }
+    writeln!(text, "\n{TRIED}")?;
     Ok(true)
 }
+
+/// What was measured when cells began to be cut along lines.
+const TRIED: &str = "\
+    Cells are cut along the lines where what is hidden changes its kind. Beside the algorithm before, which only quartered them, both in turn on one thread, processor seconds for all pairs, errors against \
+    1e-12, 1e-6, 1e-9 asked for: at 1e-9, 1e-3, 1e-5 it took 1.94 s and erred by 7.9e-7 in the root mean square, at 1e-9, 1e-4, 1e-6 4.05 s and 4.0e-7, at 1e-12, 1e-6, 1e-9 41 s and 3.3e-7, since samples missed the light \
+    between lamp and ceiling; now 1.72 s and 1.3e-7, 1.73 s and 8.0e-8 (a ten-thousandth of the mean). Tried: cut only where a first sample is not good enough, 1.98 s and 9.2e-8; parts no narrower than a twenty-fifth in the place of three thousandths, \
+    1.94 s and 3.6e-7; smoothness taken to the second power in the place of the third, 2.40 s and 8.8e-8. What limits it: pairs in the open and the search for occluders alone take 0.6 s, and twenty times pyviewfactor's rate is 0.92 s, which leaves 7 µs for each \
+    of the partly hidden pairs; a single cell of 13 samples takes 8.";
 
 fn list((open, relative, absolute): (f64, f64, f64)) -> String {
     format!("{open:e}, {relative:e}, {absolute:e}")

@@ -1,4 +1,4 @@
-//! Lights with an area: as a whole, by points of it, and by samples with a random point each.
+//! Lights with an area: as a whole, by points of it, and by samples with a random point each, our own and those of Mitsuba.
 
 use std::path::Path;
 
@@ -9,6 +9,8 @@ use pointillist_shade::sees_light;
 use crate::common::against_samples::{MORE, Subject, conditions, draw_cells, summary};
 use crate::common::casters;
 use crate::common::draw;
+use crate::common::peer_scene;
+use crate::common::peers;
 use crate::common::picture::Picture;
 use crate::common::ray_reference::{Tree, random, sampled};
 use crate::common::report::{Outcome, Row, table, write, write_csv};
@@ -25,6 +27,15 @@ const CONVERGED_CELLS: u32 = 4;
 
 /// Samples along a side of a pixel that the expected picture is compared with.
 const CHECK: u32 = 64;
+
+/// Names a program that takes scenes as `studies/peers/mitsuba` does.
+const MITSUBA: &str = "POINTILLIST_MITSUBA";
+
+/// Its rows.
+const SERIES: &str = "Mitsuba";
+
+/// Its samples along a side of a pixel.
+const SIDES: [u32; 4] = [4, 8, 16, 32];
 
 /// Measures and writes `shadow-area.csv` and `shadow-area.md`.
 pub(crate) fn run(out_dir: &Path) -> Outcome {
@@ -45,6 +56,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
         let floor = draw_cells(&fewer, CONVERGED_CELLS)?.rmse(&expected);
         let subject = Subject { name: name.to_owned(), expected, floor };
         rows.extend(of_scene(&subject, glossy));
+        rows.extend(by_mitsuba(&subject, &converged)?);
         subjects.push(subject);
     }
     write_csv(out_dir, "shadow-area", &MORE, &rows)?;
@@ -63,6 +75,42 @@ fn of_scene(subject: &Subject, glossy: bool) -> Vec<Row> {
     let scene = casters::area_light(SIZE, CONVERGED, glossy);
     rows.extend(subject.samples(|n| by_samples(&scene, n)));
     rows
+}
+
+/// None if the program is not there, or the scene has what it does not know.
+fn by_mitsuba(subject: &Subject, scene: &Scene) -> std::io::Result<Vec<Row>> {
+    let text = peer_scene::written(scene, peer_scene::Lights::Rectangles);
+    let (Some(program), Some(text)) = (peers::find(MITSUBA, "mitsuba"), text) else { return Ok(vec![]) };
+    let drawn = peers::draw(&program, &text, [SIZE, SIZE], &SIDES)?.into_iter();
+    let row =
+        |(side, (time, picture))| subject.row_of(SERIES, format!("{side}×{side} samples"), time, &picture);
+    Ok(SIDES.into_iter().zip(drawn).map(row).collect())
+}
+
+/// The whole light beside Mitsuba, as a section.
+fn beside_mitsuba(rows: &[Row]) -> String {
+    let title = "## Beside Mitsuba\n\n";
+    let own: Vec<&Row> = rows.iter().filter(|row| row.series == SERIES).collect();
+    let Some(ours) =
+        rows.iter().find(|row| row.series == "exact" && row.scene == "matt").filter(|_| !own.is_empty())
+    else {
+        return format!("{title}{}\n\n", peers::skipped("Mitsuba", MITSUBA));
+    };
+    let mut text = format!(
+        "{title}`studies/peers/mitsuba`: version 3 on one thread, its direct light by multi-jittered samples with a point of the light each, vectorised for this \
+         processor. Seconds are its processor's, without reading, writing and compiling its kernels. The matt scene; ours with one cell: RMSE {:.2e}, {} s.\n\n\
+         | samples | RMSE | bias % | seconds | its RMSE in ours | its seconds in ours |\n| --- | ---: | ---: | ---: | ---: | ---: |\n",
+        ours.rmse, ours.time
+    );
+    for row in own {
+        let (error, time) = (row.rmse / ours.rmse, row.time.seconds / ours.time.seconds);
+        let more = row.more.join(" | ");
+        text += &format!(
+            "| {} | {:.2e} | {more} | {} | {error:.1} | {time:.1} |\n",
+            row.setting, row.rmse, row.time
+        );
+    }
+    text + "\n"
 }
 
 fn by_samples(scene: &Scene, n: u32) -> Picture {
@@ -94,9 +142,10 @@ fn markdown(subjects: &[Subject], rows: &[Row], checks: &str) -> String {
          glossy (GGX). *Exact* takes the light as a whole, *points of the light* are as many shadow passes, *samples* send one shadow \
          ray each to a point of the light chosen at random. The expected picture has {CONVERGED} points of the light and \
          {CONVERGED_CELLS}×{CONVERGED_CELLS} cells a pixel; its own error is less than what a quarter as many points differ by, which is given. Pictures of {CHECK}×{CHECK} samples differ from \
-         it by ({checks}), most of it noise of the samples.\n\n## Beside samples\n\n{}\n## All settings\n\n{}",
+         it by ({checks}), most of it noise of the samples.\n\n## Beside samples\n\n{}\n{}## All settings\n\n{}",
         conditions("shadow area"),
         summary(subjects, rows),
+        beside_mitsuba(rows),
         table(&MORE, rows)
     )
 }

@@ -21,7 +21,7 @@ use crate::shprobe::truth::Truth;
 type Fault = Box<dyn std::error::Error + Send + Sync>;
 
 /// Numbers of adaptive probes.
-pub(crate) const COUNTS: [usize; 3] = [86, 96, 192];
+pub(crate) const COUNTS: [usize; 4] = [86, 96, 192, 432];
 
 /// Places on each face of the wall, and on all surfaces together.
 const ON_FACE: usize = 160;
