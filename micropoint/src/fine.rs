@@ -5,7 +5,7 @@
 //! and what lies behind a full square is hidden: it need not be compared with what hides it.
 
 use glam::DVec2;
-use pointillist_dice::{CellWindow, ConvexPolygon, Cut, convex, cut};
+use pointillist_dice::{CellWindow, ConvexPolygon, Cut, MAX_CUT_VERTICES, cut};
 
 /// Fewest and most squares on a side.
 const SIDES: [usize; 2] = [4, 64];
@@ -173,14 +173,23 @@ impl FineGrid {
         }
         let mut scaled = ConvexPolygon::EMPTY;
         seen.iter().for_each(|&v| scaled.push(v * size));
-        cut(scaled.vertices(), span.window(), |piece| match piece {
-            Cut::Span { row, first, end } => {
-                (first..end).for_each(|column| fill(row as usize * side + column as usize, 1.0));
-            }
-            Cut::Piece { cell, polygon } => {
-                fill(cell.y as usize * side + cell.x as usize, convex::area(polygon.vertices()));
-            }
-        });
+        // `cut` takes fewer vertices than a region may have: along a diagonal, the others are a polygon of their own.
+        let corners = scaled.vertices();
+        let (few, others) = corners.split_at(corners.len().min(MAX_CUT_VERTICES));
+        let mut rest = ConvexPolygon::EMPTY;
+        if !others.is_empty() {
+            [few[0], few[MAX_CUT_VERTICES - 1]].iter().chain(others).for_each(|&v| rest.push(v));
+        }
+        for outline in [few, rest.vertices()] {
+            cut(outline, span.window(), |piece| match piece {
+                Cut::Span { row, first, end } => {
+                    (first..end).for_each(|column| fill(row as usize * side + column as usize, 1.0));
+                }
+                Cut::Piece { cell, polygon } => {
+                    fill(cell.y as usize * side + cell.x as usize, polygon.area());
+                }
+            });
+        }
     }
 }
 
@@ -188,6 +197,7 @@ impl FineGrid {
 mod tests {
     use super::*;
     use glam::dvec2;
+    use pointillist_dice::convex;
 
     /// The two triangles of each quad of a sheet of `n` × `n` over the cell.
     fn sheet(n: u32) -> Vec<[DVec2; 3]> {
@@ -246,6 +256,24 @@ mod tests {
             assert!(!grid.hides(rank, 2.0), "{rank} is not behind");
         }
         assert!(!grid.hides(front.len() + gap, 1.0));
+    }
+
+    /// Regions between many occluders have more corners than `cut` takes.
+    #[test]
+    fn regions_of_many_corners_fill_their_area() {
+        let parts = sheet(13);
+        let mut grid = grid_of(&parts);
+        let sides = convex::MAX_VERTICES;
+        let corner = |i: usize| {
+            dvec2(0.5, 0.5) + 0.4 * DVec2::from_angle(std::f64::consts::TAU * i as f64 / sides as f64)
+        };
+        let region: Vec<DVec2> = (0..sides).map(corner).collect();
+        // As if it were what is seen of a part that covers the cell.
+        grid.spans[0] = Span { low: [0; 2], high: [grid.side as u16 - 1; 2] };
+        grid.fill(0, &region, convex::area(&region), 1.0);
+        let open: f64 = grid.squares.iter().map(|square| square.open).sum();
+        let filled = 1.0 - open / (grid.side * grid.side) as f64;
+        assert!((filled - convex::area(&region)).abs() < 1e-14, "{filled}");
     }
 
     #[test]
