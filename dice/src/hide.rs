@@ -333,6 +333,21 @@ mod tests {
         assert!(regions.is_hidden());
     }
 
+    #[test]
+    fn dimmed_regions_keep_their_share_and_dark_ones_go() {
+        let square = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
+        let glass = ConvexPolygon::rectangle(dvec2(0.0, 0.0), dvec2(0.5, 1.0));
+        let mut regions = Regions::default();
+        regions.start(square, 1e-12);
+        regions.attenuate(glass.vertices(), None, |_| 0.5);
+        regions.dim(0.25);
+        assert!((area(&regions) - 0.25 * 0.75).abs() < 1e-15);
+        regions.dim(6e-12);
+        assert_eq!(regions.list().len(), 1, "behind the glass it is dark");
+        regions.dim(0.0);
+        assert!(regions.is_hidden());
+    }
+
     /// Opaque triangles, and translucent ones after them.
     struct Tiles {
         triangles: Vec<[DVec2; 3]>,
