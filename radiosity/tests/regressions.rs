@@ -6,8 +6,8 @@ use common::{cornell, quad, room};
 use glam::{DQuat, DVec3, dvec3};
 use pointillist_dice::lambert;
 use pointillist_radiosity::{
-    FactorOptions, HemicubeKind, Lamp, RadiosityError, Scene, SceneOptions, SolveOptions, Surface, Transport,
-    form_factor,
+    FactorOptions, HemicubeKind, Lamp, RadiosityError, RayOptions, Scene, SceneOptions, SolveOptions,
+    Surface, Transport, form_factor,
 };
 
 /// Height and Jacobian alone need a point each: with the kernel's own order, far triangles were off by a thousandth.
@@ -27,6 +27,42 @@ fn far_triangles_get_enough_points() {
     let found = form_factor(&a, &b, &[], &coarse).value;
     // Area over π d², and the second order is (1/300)².
     assert!((found * std::f64::consts::PI * 9e4 / 0.5 - 1.0).abs() < 1e-4, "{found}");
+}
+
+/// Both shine, and no patch sees the other; only from a vertex whose normal is the mean of theirs a few rays meet one. So the error asked for was the smallest number,
+/// whose square is 0, and what was gathered was weighted by infinity over infinity.
+#[test]
+fn vertices_that_gather_what_no_patch_receives_are_finite() {
+    let first = [[0.0, -3.0, 0.0], [0.0, 2.0, 2.0], [0.0, 1.0, 0.0], [0.0; 3]].map(DVec3::from_array);
+    let second = [[0.0, -1.0, 0.0], [1.0, -3.0, 1.0], [0.0, -2.0, 3.0]].map(DVec3::from_array);
+    for emission in [1.0, 1e-200, 1e30] {
+        let surface = |ring: &[DVec3]| Surface::new(ring, [0.5; 3]).emitting([emission; 3]);
+        let surfaces = [surface(&first), surface(&second)];
+        let scene = Scene::new(&surfaces, &SceneOptions::DEFAULT.with_patch(4.0)).expect("both are sound");
+        let rays = RayOptions::DEFAULT.with_links(16).with_most_rays(128);
+        let transport = scene.transport_by_rays(&[], &rays, &|_| ()).expect("they fit");
+        let solved = transport.solve(&SolveOptions::DEFAULT).expect("it converges");
+        for vertex in solved.bake().vertices {
+            assert!((0.0..0.01 * emission).contains(&vertex.irradiance[0]), "{emission:e}: {vertex:?}");
+        }
+    }
+}
+
+/// Rooms that shine a little or a lot: irradiance is in proportion.
+#[test]
+fn light_of_any_strength_is_gathered() {
+    for emission in [1e-200, 1e-30, 1.0, 1e30, 1e100] {
+        let surfaces = room(DVec3::ONE, DQuat::IDENTITY, 0.5, emission);
+        let scene = Scene::new(&surfaces, &SceneOptions::DEFAULT.with_patch(0.5)).expect("a room");
+        let rays = RayOptions::DEFAULT.with_links(64).with_most_rays(512);
+        let transport = scene.transport_by_rays(&[], &rays, &|_| ()).expect("they fit");
+        let solved = transport.solve(&SolveOptions::DEFAULT).expect("it converges");
+        for vertex in solved.bake().vertices {
+            // Every ray meets a wall of twice the emission.
+            let share = vertex.irradiance[0] / (2.0 * emission);
+            assert!((share - 1.0).abs() < 0.01, "{emission:e}: {share}");
+        }
+    }
 }
 
 /// Light passes between a ceiling and a lamp a thousandth of the room below it: of the ceiling, a strip of some thousandths sees the wall. Between samples nothing of

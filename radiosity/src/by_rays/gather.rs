@@ -18,6 +18,8 @@ const DARK: f64 = 0.1;
 const SHORT: f64 = 1e-5;
 /// Standard errors below this share of [`Gatherer::floor`] count as so large.
 const LEAST: f64 = 1e-4;
+/// The least floor, also of scenes in which no light arrives anywhere: its square is far from the smallest number, so that every variance has a reciprocal.
+const FAINTEST: f64 = 1e-100;
 
 /// Gathers for one solution.
 pub(crate) struct Gatherer<'s> {
@@ -92,8 +94,8 @@ impl<'s> Gatherer<'s> {
             squares += area * own * own;
             light += area * own;
         }
-        let floor = if light > 0.0 { DARK * squares / light } else { f64::MIN_POSITIVE };
-        Self { solution, floor }
+        let floor = if light > 0.0 { DARK * squares / light } else { 0.0 };
+        Self { solution, floor: floor.max(FAINTEST) }
     }
 
     /// Irradiance at a point, in internal coordinates, that lies in front of its surface. `place` chooses the rays.
