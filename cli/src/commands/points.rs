@@ -11,7 +11,7 @@ use crate::input_error::InputError;
 use crate::memory;
 use crate::name_pattern;
 use crate::options::{CameraOptions, CloudLook, PictureOptions, Vector};
-use crate::points::{Colouring, Legend, draw_legend};
+use crate::points::{Colouring, Legend, Trees, draw_legend};
 use crate::scene::description::{CameraDescription, DEFAULT_FOV_DEG};
 use crate::scene::{Camera, FRAME_MARGIN as MARGIN, Projection, frame_around};
 use cpu_time::ProcessTime;
@@ -175,12 +175,33 @@ pub(super) fn output_paths(path: &Path, views: Option<usize>) -> Result<Vec<Path
     numbers.map(|number| name_pattern::fill(path, "frame", number).map_err(CliError::Usage)).collect()
 }
 
-/// The warning that a picture is coarser than it should be.
-pub(super) fn limited(cut: &Cut) -> String {
-    let (gap, points) = (cut.spacing_px, cut.points);
-    format!(
-        "points are up to {gap:.1} pixels apart: the memory is enough for {points} of them; --memory gives more"
-    )
+/// Draws a view by nodes with `draw`: a coarse picture first, if one is given, then that of all points that the view needs.
+pub(super) fn draw_coarse_first(
+    (coarse, cut): (Option<Cut>, &Cut),
+    target: &Target<'_>,
+    stamp: Stamp,
+    report: &Report<'_>,
+    mut draw: impl FnMut(&Cut, Stamp) -> Result<(), CliError>,
+) -> Result<(), CliError> {
+    if let Some(coarse) = coarse {
+        draw(&coarse, Stamp { unfinished: true, ..stamp.clone() })?;
+        let (path, more) = (target.path.display(), cut.points - coarse.points);
+        report.note(&format!("{path} is there, coarse; {more} more points are read"));
+    }
+    if cut.is_limited {
+        let (gap, points) = (cut.spacing_px, cut.points);
+        report.warn(&format!(
+            "points are up to {gap:.1} pixels apart: the memory is enough for {points} of them; --memory gives more"
+        ));
+    }
+    draw(cut, stamp)
+}
+
+/// Counts what was read of files with nodes.
+pub(super) fn count_nodes(report: &Report<'_>, trees: &Trees) {
+    report.stats.count("bytes_read", trees.bytes_read);
+    report.stats.count("nodes_read", trees.nodes_read);
+    report.stats.skip("nodes_kept", trees.nodes_kept);
 }
 
 /// Draws a frame as often as `--repeat` asks, and notes how long each took.
@@ -226,14 +247,6 @@ impl<'a> Target<'a> {
         look.colouring()
     }
 
-    /// Draws what colours mean into the picture, or says that there is no room.
-    pub(super) fn explain(&self, picture: &mut Frame, legend: Option<Legend>, report: &Report<'_>) {
-        let gain = self.format.gain(&self.options.display);
-        if legend.is_some_and(|legend| !draw_legend(picture, &legend, gain)) {
-            report.warn("--legend: the picture is too small for one; a larger --size has room");
-        }
-    }
-
     /// Whether an earlier run wrote the same picture.
     pub(super) fn is_done(&self, stamp: &Stamp, window: PixelRect, report: &Report<'_>) -> bool {
         let done = self.format == OutputFormat::Exr
@@ -245,8 +258,23 @@ impl<'a> Target<'a> {
         done
     }
 
-    pub(super) fn write(&self, picture: Frame, stamp: Stamp) -> Result<(), CliError> {
-        write_picture(&self.path, self.format, picture, stamp, self.options)
+    /// Writes a picture of so many points. What their colours mean is drawn into it if a legend is given; there may be no room for it.
+    pub(super) fn finish(
+        &self,
+        mut picture: Frame,
+        (legend, stamp): (Option<Legend>, Stamp),
+        points: usize,
+        report: &Report<'_>,
+    ) -> Result<(), CliError> {
+        let gain = self.format.gain(&self.options.display);
+        if legend.is_some_and(|legend| !draw_legend(&mut picture, &legend, gain)) {
+            report.warn("--legend: the picture is too small for one; a larger --size has room");
+        }
+        let write = || write_picture(&self.path, self.format, picture, stamp, self.options);
+        report.stats.stage("write", write)?;
+        let seconds = report.stats.elapsed().as_secs_f64();
+        report.note(&format!("{}: {points} points in {seconds:.2} s", self.path.display()));
+        Ok(())
     }
 }
 

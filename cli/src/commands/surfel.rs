@@ -84,9 +84,7 @@ pub(super) fn run(options: &SurfelOptions) -> Result<(), CliError> {
         pictures.draw(camera, target, &mut source)?;
     }
     if let Source::Trees { trees, .. } = &source {
-        report.stats.count("bytes_read", trees.bytes_read);
-        report.stats.count("nodes_read", trees.nodes_read);
-        report.stats.skip("nodes_kept", trees.nodes_kept);
+        points::count_nodes(&report, trees);
         report.stats.count("parts_made", trees.parts_made);
         report.stats.skip("parts_kept", trees.parts_kept);
     }
@@ -154,20 +152,10 @@ impl Pictures<'_> {
         target: &Target<'_>,
         stamp: Stamp,
     ) -> Result<(), CliError> {
-        let report = self.report;
-        let first = trees.coarse(cut).filter(|_| self.options.views.is_none());
-        if let Some(coarse) = first {
-            self.draw_cut(trees, ready, &coarse, view, target, Stamp { unfinished: true, ..stamp.clone() })?;
-            report.note(&format!(
-                "{} is there, coarse; {} more points are read",
-                target.path.display(),
-                cut.points - coarse.points
-            ));
-        }
-        if cut.is_limited {
-            report.warn(&points::limited(cut));
-        }
-        self.draw_cut(trees, ready, cut, view, target, stamp)
+        let coarse = trees.coarse(cut).filter(|_| self.options.views.is_none());
+        points::draw_coarse_first((coarse, cut), target, stamp, self.report, |cut, stamp| {
+            self.draw_cut(trees, ready, cut, view, target, stamp)
+        })
     }
 
     fn draw_cut(
@@ -235,12 +223,9 @@ impl Pictures<'_> {
             })
         })?;
         tell_counts(report, cloud, &frame, points::is_whole(self.window, points::size(&options.camera)));
-        let mut picture = window_of(&as_drawn(&frame), self.window, &self.layers, view, self.colouring.by);
-        target.explain(&mut picture, legend.filter(|_| options.look.legend), report);
-        report.stats.stage("write", || target.write(picture, stamp))?;
-        let seconds = report.stats.elapsed().as_secs_f64();
-        report.note(&format!("{}: {} points in {seconds:.2} s", target.path.display(), cloud.len()));
-        Ok(())
+        let picture = window_of(&as_drawn(&frame), self.window, &self.layers, view, self.colouring.by);
+        let legend = legend.filter(|_| options.look.legend);
+        target.finish(picture, (legend, stamp), cloud.len(), report)
     }
 }
 

@@ -34,18 +34,11 @@ pub(super) fn draw(picture: &Picture<'_>) -> Result<(), CliError> {
     if picture.target.is_done(&stamp, picture.window, report) {
         return Ok(());
     }
-    if let Some(coarse) = trees.coarse(&cut) {
-        draw_cut(picture, &mut trees, &coarse, &view, Stamp { unfinished: true, ..stamp.clone() })?;
-        let (path, more) = (picture.target.path.display(), cut.points - coarse.points);
-        report.note(&format!("{path} is there, coarse; {more} more points are read"));
-    }
-    if cut.is_limited {
-        report.warn(&points::limited(&cut));
-    }
-    draw_cut(picture, &mut trees, &cut, &view, stamp)?;
-    report.stats.count("bytes_read", trees.bytes_read);
-    report.stats.count("nodes_read", trees.nodes_read);
-    report.stats.skip("nodes_kept", trees.nodes_kept);
+    let coarse = trees.coarse(&cut);
+    points::draw_coarse_first((coarse, &cut), &picture.target, stamp, report, |cut, stamp| {
+        draw_cut(picture, &mut trees, cut, &view, stamp)
+    })?;
+    points::count_nodes(report, &trees);
     Ok(())
 }
 

@@ -93,12 +93,9 @@ impl Picture<'_> {
         let frame_options = frame_options.with_window(window);
         report.stats.stage("draw", || draw(options, cloud, view, &frame_options, &mut frame, report))?;
         tell_counts(report, cloud, &frame, points::is_whole(window, points::size(&options.camera)));
-        let mut picture = window_of(&as_drawn(&frame), window, &self.layers, view, self.colouring.by);
-        self.target.explain(&mut picture, legend.filter(|_| options.look.legend), report);
-        report.stats.stage("write", || self.target.write(picture, stamp))?;
-        let seconds = report.stats.elapsed().as_secs_f64();
-        report.note(&format!("{}: {} points in {seconds:.2} s", self.target.path.display(), cloud.len()));
-        Ok(())
+        let picture = window_of(&as_drawn(&frame), window, &self.layers, view, self.colouring.by);
+        let legend = legend.filter(|_| options.look.legend);
+        self.target.finish(picture, (legend, stamp), cloud.len(), report)
     }
 }
 
