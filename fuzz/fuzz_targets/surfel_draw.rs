@@ -1,11 +1,11 @@
-//! Clouds, views and options of any kind: octrees and frames are sound, and neither order nor culling shows.
+//! Clouds, views and options of any kind: octrees and frames are sound, neither order nor culling shows, and parts of a cloud are the whole.
 #![no_main]
 
 use arbitrary::Arbitrary;
 use glam::{DVec3, Vec3, dvec3};
 use libfuzzer_sys::fuzz_target;
 use pointillist_surfel::invariants::{self, OwnedPoints, look_at};
-use pointillist_surfel::{Focus, Light, Options, Procedure, Projection, View};
+use pointillist_surfel::{Division, Focus, Light, NO_PART, Options, Procedure, Projection, View};
 
 /// Points in steps of 1/64, often repeated, on a line or on a plane.
 #[derive(Arbitrary, Debug)]
@@ -134,6 +134,25 @@ fn view(picture: &Picture, k: f64, most: [u8; 2]) -> Option<View> {
     look_at(steps(picture.eye) * k, steps(picture.target) * k, projection, w, h)
 }
 
+/// Parts without an order, and points that only lie around them.
+fn part_numbers(points: &OwnedPoints, seed: u64) -> Vec<u8> {
+    let number = |i: usize| match (seed >> (i % 61)) & 7 {
+        7 => NO_PART,
+        part => part as u8,
+    };
+    (0..points.positions.len()).map(number).collect()
+}
+
+/// A cube that may hold the points or not.
+fn division(picture: &Picture, k: f64) -> Division {
+    let side = f64::from(picture.size.0) / 32.0 * k;
+    Division {
+        low: steps(picture.target) * k - 0.5 * side,
+        side,
+        spacing: f64::from(picture.fov) / 4096.0 * k,
+    }
+}
+
 fuzz_target!(|input: (Vec<Shape>, Attributes, Picture, Rules, u64)| {
     let (shapes, attributes, picture, rules, seed) = input;
     let k = f64::from(picture.power).exp2();
@@ -148,7 +167,11 @@ fuzz_target!(|input: (Vec<Shape>, Attributes, Picture, Rules, u64)| {
         .and_then(|()| invariants::opaque_points_need_no_opacities(&points, &view, &options))
         .and_then(|()| invariants::order_does_not_matter(&points, &view, &options, seed))
         .and_then(|()| invariants::culling_changes_nothing(&points, &view, &options))
-        .and_then(|()| invariants::one_color_stays_one_color(&points, &view, &options, [0.25, 1.0, 0.7]));
+        .and_then(|()| invariants::one_color_stays_one_color(&points, &view, &options, [0.25, 1.0, 0.7]))
+        .and_then(|()| invariants::parts_are_the_whole(&points))
+        .and_then(|()| {
+            invariants::parts_are_sound(&points, &part_numbers(&points, seed), &division(&picture, k))
+        });
     if let Err(broken) = facts {
         panic!("{broken}");
     }

@@ -1,7 +1,11 @@
 //! Facts that hold for every cloud and every file, as functions `fn fact(…) -> Result<(), String>`: `Err` says what was found instead.
 
-use crate::{Builder, Cube, OctreeError, TreeHeader, TreeReader, TreeWriter};
+use crate::{
+    Builder, Cube, CutOptions, Neighbourhood, OctreeError, Region, Tree, TreeHeader, TreeReader, TreeWriter,
+    cut, regions,
+};
 use glam::DVec3;
+use pointillist_view::View;
 use std::io::Cursor;
 
 fn check(holds: bool, message: impl FnOnce() -> String) -> Result<(), String> {
@@ -105,4 +109,83 @@ pub fn changes_are_found(file: &[u8], at: usize, change: u8) -> Result<(), Strin
     check((0..nodes).any(|node| reader.read(node).is_err()), || {
         format!("byte {at} was changed and nobody noticed")
     })
+}
+
+/// A position as something that can be sorted and compared to the bit.
+type Bits = [u64; 3];
+
+fn bits(p: &DVec3) -> Bits {
+    p.to_array().map(f64::to_bits)
+}
+
+/// The octants of the regions of a cut hold, with those around them, each point of the cut that is in the picture as often as it is there, and
+/// no other; no node that has points in them is left out.
+///
+/// # Errors
+/// What is not so.
+pub fn regions_have_every_point_once(
+    points: &[DVec3],
+    view: &View,
+    options: &CutOptions,
+) -> Result<(), String> {
+    let names: Vec<u32> = (0..points.len() as u32).collect();
+    let Ok(file) = file_of(points, &names, 1 << 30) else { return Ok(()) };
+    let mut reader = TreeReader::new(Cursor::new(file)).map_err(|error| error.to_string())?;
+    let tree = reader.tree().clone();
+    // By position: the records of a node are those of its points.
+    let mut stored: Vec<Vec<DVec3>> = vec![];
+    for node in 0..tree.nodes().len() as u32 {
+        let records = reader.read(node).map_err(|error| error.to_string())?;
+        let cell = |r: &[u8]| [0, 4, 8].map(|at| u32::from_le_bytes(std::array::from_fn(|i| r[at + i])));
+        stored.push(records.chunks_exact(16).map(|record| tree.cube().position(cell(record))).collect());
+    }
+    let cut = cut(&[&tree], view, options);
+    let mut drawn: Vec<Bits> = vec![];
+    for region in regions(&[&tree], view, options, &cut) {
+        check(cut.nodes.contains(&(0, region.node)), || "a node that is not in the cut".to_owned())?;
+        points_of(&tree, &stored, region, &mut drawn)?;
+    }
+    let in_cut = || cut.nodes.iter().flat_map(|&(_, node)| &stored[node as usize]);
+    let (width, height) = (f64::from(view.width()), f64::from(view.height()));
+    let is_seen = |p: &&DVec3| {
+        view.project(**p).is_some_and(|at| {
+            let [x, y] = at.pixel.to_array();
+            (0.0..width).contains(&x) && (0.0..height).contains(&y)
+        })
+    };
+    let mut wanted: Vec<Bits> = in_cut().filter(is_seen).map(bits).collect();
+    let mut there: Vec<Bits> = in_cut().map(bits).collect();
+    [&mut drawn, &mut wanted, &mut there].into_iter().for_each(|list| list.sort_unstable());
+    check(are_among(&wanted, &drawn), || "a point in view is not drawn, or not often enough".to_owned())?;
+    check(are_among(&drawn, &there), || "a point is drawn that is not in the cut, or twice".to_owned())
+}
+
+/// Whether all of a sorted list are in another one, each as often as there.
+fn are_among(some: &[Bits], all: &[Bits]) -> bool {
+    let mut rest = all.iter();
+    some.iter().all(|point| rest.any(|other| other == point))
+}
+
+/// Adds the points that the octants of a region hold themselves.
+fn points_of(
+    tree: &Tree,
+    stored: &[Vec<DVec3>],
+    region: Region,
+    drawn: &mut Vec<Bits>,
+) -> Result<(), String> {
+    let level = tree.nodes()[region.node as usize].key.level;
+    for octant in (0..8).filter(|octant| region.octants >> octant & 1 == 1) {
+        let near = Neighbourhood::of(tree, region.node, octant, 6.0);
+        let nodes = near.nodes(tree);
+        for &node in &nodes {
+            drawn.extend(stored[node as usize].iter().filter(|p| near.holds(**p) == Some(true)).map(bits));
+        }
+        // No other node of these levels has a point that it holds.
+        let is_other = |node: usize| tree.nodes()[node].key.level <= level && !nodes.contains(&(node as u32));
+        for node in (0..stored.len()).filter(|&node| is_other(node)) {
+            let holds_none = stored[node].iter().all(|p| near.holds(*p).is_none());
+            check(holds_none, || format!("node {node} was forgotten"))?;
+        }
+    }
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! The facts of `invariants`, and cuts of trees.
 
 use glam::{DVec3, dvec3};
-use pointillist_octree::{CutOptions, Neighbourhood, OctreeError, TreeReader, cut, invariants, regions};
+use pointillist_octree::{Cube, CutOptions, OctreeError, TreeReader, cut, invariants};
 use pointillist_view::{Projection, View};
 use proptest::prelude::*;
 use std::io::Cursor;
@@ -103,11 +103,9 @@ proptest! {
         most in 0u64..60_000,
         spacing_px in prop_oneof![Just(0.3), Just(1.0), Just(6.0)],
     ) {
-        let names: Vec<u32> = (0..points.len() as u32).collect();
-        let Ok(file) = invariants::file_of(&points, &names, 1 << 30) else { return Ok(()) };
-        let mut reader = TreeReader::new(Cursor::new(file)).unwrap();
-        let tree = reader.tree().clone();
-        let cube = tree.cube();
+        let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let Ok(cube) = Cube::around(low, high) else { return Ok(()) };
         let eye = cube.low + DVec3::from_array(eye) * cube.side;
         let perspective = Projection::Perspective { fov_y_rad: 0.6 };
         let target = cube.low + 0.4 * cube.side;
@@ -115,53 +113,7 @@ proptest! {
             return Ok(());
         };
         let options = CutOptions::default().with_spacing_px(spacing_px).with_most_points(most);
-        let cut = cut(&[&tree], &view, &options);
-        let all = regions(&[&tree], &view, &options, &cut);
-        // By position: the records of a node are those of its points.
-        let mut stored: Vec<Vec<DVec3>> = vec![];
-        for node in 0..tree.nodes().len() as u32 {
-            let records = reader.read(node).unwrap();
-            let cell = |r: &[u8]| [0, 4, 8].map(|at| u32::from_le_bytes(std::array::from_fn(|i| r[at + i])));
-            stored.push(records.chunks_exact(16).map(|record| cube.position(cell(record))).collect());
-        }
-        let mut drawn: Vec<[u64; 3]> = vec![];
-        for region in &all {
-            prop_assert!(cut.nodes.contains(&(0, region.node)), "a node that is not in the cut");
-            let level = tree.nodes()[region.node as usize].key.level;
-            for octant in (0..8).filter(|octant| region.octants >> octant & 1 == 1) {
-                let near = Neighbourhood::of(&tree, region.node, octant, 6.0);
-                let nodes = near.nodes(&tree);
-                for &node in &nodes {
-                    let own = stored[node as usize].iter().filter(|p| near.holds(**p) == Some(true));
-                    drawn.extend(own.map(|p| p.to_array().map(f64::to_bits)));
-                }
-                // No other node of these levels has a point that it holds.
-                let others = stored.iter().enumerate().filter(|(node, _)| !nodes.contains(&(*node as u32)));
-                for (node, points) in others.filter(|(node, _)| tree.nodes()[*node].key.level <= level) {
-                    prop_assert!(points.iter().all(|p| near.holds(*p).is_none()), "node {node} was forgotten");
-                }
-            }
-        }
-        // Points of the cut that are in view, each as often as they are there.
-        let mut wanted: Vec<[u64; 3]> = vec![];
-        for &(_, node) in &cut.nodes {
-            wanted.extend(stored[node as usize].iter().filter(|p| view.project(**p).is_some_and(|at| {
-                let [x, y] = at.pixel.to_array();
-                (0.0..300.0).contains(&x) && (0.0..200.0).contains(&y)
-            })).map(|p| p.to_array().map(f64::to_bits)));
-        }
-        drawn.sort_unstable();
-        wanted.sort_unstable();
-        let mut rest = drawn.iter();
-        let missing = wanted.iter().find(|point| !rest.any(|other| &other == point));
-        prop_assert!(missing.is_none(), "a point in view is not drawn, or not often enough");
-        // And no point is drawn that is not in the cut, or twice.
-        let mut there: Vec<[u64; 3]> =
-            cut.nodes.iter().flat_map(|&(_, node)| &stored[node as usize]).map(|p| p.to_array().map(f64::to_bits)).collect();
-        there.sort_unstable();
-        let mut rest = there.iter();
-        let twice = drawn.iter().find(|point| !rest.any(|other| &other == point));
-        prop_assert!(twice.is_none(), "a point is drawn that is not in the cut, or twice");
+        holds!(invariants::regions_have_every_point_once(&points, &view, &options));
     }
 }
 

@@ -6,7 +6,7 @@ use crate::lattice::Lattice;
 use crate::node::{Node, nodes};
 use crate::packed_links::PackedLinks;
 use crate::points::Points;
-use crate::{links, octree, pairs};
+use crate::{links, octree, pairs, sharpen};
 use glam::DVec3;
 
 /// A cloud of surfels in an octree: points at the leaves, links to them above.
@@ -45,6 +45,9 @@ impl Cloud {
     ) -> Self {
         let (cubes, generations) = octree::divide(codes);
         let mut links = links::make(&cubes, &generations, &attributes);
+        if attributes.colors.is_some() && attributes.opacities.is_none() {
+            sharpen::sharpen(&cubes, &mut links);
+        }
         let pairs = pairs::arrange(&cubes, &mut attributes, &mut links);
         let mut nodes = nodes(&cubes, &generations, &links, &attributes, two_sided);
         nodes.iter_mut().zip(pairs).for_each(|(node, pairs)| node.pairs = pairs);

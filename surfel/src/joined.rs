@@ -32,7 +32,7 @@ impl Cloud {
             lattice: first.lattice,
             points: Attributes::joined(&of_points),
             nodes: nodes(parts),
-            links: PackedLinks::joined(&of_links, &of_points),
+            links: PackedLinks::joined(&of_links),
             two_sided: first.two_sided,
         })
     }
@@ -89,18 +89,9 @@ impl Attributes {
 }
 
 impl PackedLinks {
-    fn joined(parts: &[&Self], of_points: &[&Attributes]) -> Self {
-        let mut points = concat(parts, |part| &part.points);
-        let (mut link, mut first) = (0, 0);
-        for (part, of_part) in parts.iter().zip(of_points) {
-            let own = &mut points[link..link + part.points.len()];
-            own.iter_mut().for_each(|point| *point += first);
-            link += part.points.len();
-            first += of_part.radii.len() as u32;
-        }
-        let opaque = (packed::pack_share(1.0), |part: &Self| part.points.len());
+    fn joined(parts: &[&Self]) -> Self {
+        let opaque = (packed::pack_share(1.0), |part: &Self| part.len());
         Self {
-            points,
             places: [0, 1, 2].map(|axis| concat(parts, |part| &part.places[axis])),
             areas: concat(parts, |part| &part.areas),
             normals: concat(parts, |part| &part.normals),
@@ -128,7 +119,7 @@ fn nodes(parts: &[&Cloud]) -> Vec<Node> {
         roots.extend(own.next());
         others.extend(own);
         points += part.len() as u32;
-        links += part.links.points.len() as u32;
+        links += part.links.len() as u32;
     }
     let around = node::around(&roots.iter().collect::<Vec<_>>(), 1..first_other as u32);
     [vec![around], roots, others].concat()

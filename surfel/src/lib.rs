@@ -117,6 +117,7 @@ mod sample;
 mod scene;
 mod select;
 mod shade;
+mod sharpen;
 mod spacing;
 mod splat;
 mod splats;

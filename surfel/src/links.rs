@@ -1,7 +1,8 @@
 //! Coarser levels: links to a few of a cube's points, each of which represents the points around it.
 //!
-//! A link names the point that is nearest to the middle of those that it represents. Its place, normal, color and
+//! While levels are made a link names the point that is nearest to the middle of those that it represents, for its order. Its place, normal, color and
 //! opacity are their means and its area is their sum, like the prefiltered textures of \[1\], so that coarse levels are not noisy.
+//! `sharpen.rs` goes over the colors when all links are made.
 
 use crate::attributes::Attributes;
 use crate::lattice::{between, morton, moved};
@@ -12,7 +13,7 @@ use pointillist_view::MORTON_BITS;
 
 /// A cube of the octree is divided into 2^DIVISIONS cells a side; each cell in which there is surface gets a link for
 /// every side that the surface has there.
-const DIVISIONS: u32 = 3;
+pub(crate) const DIVISIONS: u32 = 3;
 
 /// A point that represents others, while levels are made.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +47,7 @@ impl Link {
 
 /// Radius of a disc over the square root of its share of the surface: a little more than half the diagonal of a square
 /// (0.71), so that discs on a square lattice overlap at its corners.
-const RADIUS_PER_ROOT_AREA: f32 = 0.75;
+pub(crate) const RADIUS_PER_ROOT_AREA: f32 = 0.75;
 
 /// The radius that a link is drawn with.
 pub(crate) fn radius_of_area(area: f32) -> f32 {

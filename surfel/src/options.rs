@@ -25,8 +25,8 @@ pub struct Options {
     /// Default: [`Procedure::Blended`].
     pub procedure: Procedure,
     /// Level of detail: points are taken from the coarsest level on which they are at most this many pixels apart, up
-    /// to √2 times as far where the surface is seen at an angle; 0 always takes all points. Default: 1.4, with which
-    /// about one point falls on a pixel, and never less than half a one.
+    /// to √2 times as far where the surface is seen at an angle; 0 always takes all points. Default: 1.27, found by
+    /// experiment: a small object then costs a twentieth of a large one, and about one point falls on a pixel.
     pub level: f32,
     /// Whether nodes that face away or are hidden are skipped, which never changes the picture. Default: true.
     pub culling: bool,
@@ -54,7 +54,7 @@ impl Options {
     pub const DEFAULT: Self = Self {
         focus: Focus::Everywhere,
         procedure: Procedure::Blended,
-        level: 1.4,
+        level: 1.27,
         culling: true,
         light: Light::Eye,
         ambient: 0.1,

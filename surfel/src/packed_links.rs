@@ -5,10 +5,9 @@ use crate::links::Link;
 use crate::node::Node;
 use crate::packed;
 
-/// The links of all cubes, packed: 18 bytes each, 4 more with color, 2 more with opacity.
+/// The links of all cubes, packed: 14 bytes each, 4 more with color, 2 more with opacity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PackedLinks {
-    pub(crate) points: Vec<u32>,
     /// Where they are drawn in the boxes of their nodes, see [`Node::offset`].
     pub(crate) places: [Vec<i16>; 3],
     pub(crate) areas: Vec<f32>,
@@ -29,7 +28,6 @@ impl PackedLinks {
                 .collect()
         };
         Self {
-            points: all().map(|l| l.point).collect(),
             places: [0, 1, 2].map(place),
             areas: all().map(|l| l.area).collect(),
             normals: all().map(|l| packed::pack_direction(l.normal)).collect(),
@@ -41,10 +39,13 @@ impl PackedLinks {
         }
     }
 
+    pub(crate) fn len(&self) -> usize {
+        self.areas.len()
+    }
+
     /// Memory of all links.
     pub(crate) fn bytes(&self) -> usize {
-        4 * (self.points.len() + self.areas.len() + self.normals.len())
-            + 2 * 3 * self.points.len()
+        (4 + 4 + 2 * 3) * self.len()
             + 4 * self.colors.as_ref().map_or(0, Vec::len)
             + 2 * self.opacities.as_ref().map_or(0, Vec::len)
     }

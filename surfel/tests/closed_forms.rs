@@ -151,7 +151,7 @@ fn holes(cloud: &Cloud, procedure: Procedure) -> Vec<String> {
         (height, look_at(eye * 5.0, DVec3::ZERO, camera, SIZE, SIZE).unwrap())
     });
     let mut found = vec![];
-    for level in [0.0, 1.0, 1.4] {
+    for level in [0.0, 1.0, 1.27, 1.4] {
         let options = with(|o| (o.procedure, o.level) = (procedure, level));
         for (zoom, view) in near.iter().chain(&flat) {
             let holes = sphere_has_no_holes(cloud, view, &options, DVec3::ZERO, 1.0, 1.5);
@@ -215,7 +215,7 @@ fn coarser_levels_come_near_to_all_points() {
     // About a point per pixel, and fewer pixels than points.
     for distance in [4.0, 9.0] {
         let view = perspective(DVec3::Z * distance, DVec3::ZERO, 0.7);
-        let levels = [(0.25, 0.01), (0.5, 0.015), (1.0, 0.03), (1.4, 0.03)];
+        let levels = [(0.25, 0.01), (0.5, 0.015), (1.0, 0.03), (1.27, 0.03), (1.4, 0.03)];
         level_of_detail_converges(&cloud, &view, &with(|_| {}), &levels).unwrap();
     }
 }
@@ -406,7 +406,7 @@ fn light_passes_sheets_by_the_product_of_what_they_let_through() {
         light *= 1.0 - opacity;
     }
     wanted[3] = 1.0 - light;
-    for level in [0.0, 1.4, 6.0] {
+    for level in [0.0, 1.27, 6.0] {
         let options = with(|o| (o.ambient, o.level) = (1.0, level));
         let drawn = frame(&points, &flat_view(), &options).unwrap();
         for i in middle(&drawn, 40.0) {

@@ -87,7 +87,7 @@ fn focus() -> BoxedStrategy<Focus> {
 }
 
 fn options() -> BoxedStrategy<Options> {
-    let level = prop_oneof![2 => Just(1.4f32), 1 => Just(0.0), 2 => 0.0..9.0f32];
+    let level = prop_oneof![2 => Just(1.27f32), 1 => Just(0.0), 2 => 0.0..9.0f32];
     let light = (prop::option::of(direction()), 0.0..=1.0f32);
     (focus(), any::<[bool; 3]>(), level, light)
         .prop_map(|(focus, [culling, normals, paper], level, (light, ambient))| {

@@ -86,7 +86,7 @@ pub struct FocusOptions {
 #[command(next_help_heading = "Discs")]
 pub struct DiscOptions {
     /// Level of detail: take the coarsest level whose points are at most this many pixels apart; 0 takes all points
-    #[arg(long, value_name = "PX", allow_negative_numbers = true, default_value_t = 1.4, value_parser = values::not_negative)]
+    #[arg(long, value_name = "PX", allow_negative_numbers = true, default_value_t = 1.27, value_parser = values::not_negative)]
     pub level: f64,
     /// How discs become a picture
     #[arg(long, value_name = "NAME", default_value = "blended")]

@@ -30,7 +30,7 @@ const LARGE_SIZE: u32 = 1024;
 
 /// Pixels between points, with the default in the middle.
 const LEVELS: [f32; 7] = [0.0, 0.5, 1.0, DEFAULT_LEVEL, 2.0, 3.0, 4.0];
-const DEFAULT_LEVEL: f32 = 1.4;
+const DEFAULT_LEVEL: f32 = 1.27;
 
 /// How far away the eye is, in distances of the front view, and how large the object looks then.
 const SIZES: [(f64, &str); 4] = [(1.0, "full size"), (2.0, "1/2 size"), (4.0, "1/4 size"), (8.0, "1/8 size")];
