@@ -136,7 +136,8 @@ impl Items {
         }
         normalise(&mut self.normals, count);
         let areas = &links.areas[items.clone()];
-        for ((radius, to), &area) in self.radii.iter_mut().zip(&mut self.areas).zip(areas) {
+        for ((radius, to), &share) in self.radii.iter_mut().zip(&mut self.areas).zip(areas) {
+            let area = node.area(share);
             (*radius, *to) = (radius_of_area(area), area);
         }
         if let Some(colors) = &links.colors {

@@ -54,6 +54,13 @@ pub(crate) fn radius_of_area(area: f32) -> f32 {
     RADIUS_PER_ROOT_AREA * area.sqrt()
 }
 
+/// The area of a link that is drawn with this radius.
+#[inline(always)]
+pub(crate) fn area_of_radius(radius: f32) -> f32 {
+    let root = radius / RADIUS_PER_ROOT_AREA;
+    root * root
+}
+
 /// Makes the links of every cube from those of its children, the deepest first; leaves get none.
 pub(crate) fn make(cubes: &[Cube], generations: &[usize], points: &Attributes) -> Vec<Vec<Link>> {
     let mut links: Vec<Vec<Link>> = vec![vec![]; cubes.len()];

@@ -2,7 +2,7 @@
 
 use crate::attributes::{Attributes, SMALLEST};
 use crate::lattice::{between, offset};
-use crate::links::{Link, radius_of_area};
+use crate::links::{Link, area_of_radius, radius_of_area};
 use crate::octree::Cube;
 use crate::pairs::FARTHEST;
 use glam::Vec3;
@@ -11,6 +11,12 @@ use std::ops::Range;
 
 /// Steps of a packed coordinate on either side of 0.
 const STEPS: f32 = 32767.0;
+
+/// Steps of a packed area.
+const SHARES: f32 = 65535.0;
+
+/// No radius may exceed the widest of its node by rounding: nodes are skipped by that.
+const AREA_ROUNDED_DOWN: f32 = 1.0 - 1e-6;
 
 /// All normals of a node lie within `half_angle_rad` of `axis`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +68,23 @@ impl Node {
     /// places of a pair up to half of what they are apart.
     pub(crate) fn widest_of_pairs(&self) -> f32 {
         self.widest * (1.0 + FARTHEST * FARTHEST).sqrt()
+    }
+
+    /// The area of a link in 65535ths of the largest of an inner node.
+    pub(crate) fn share(&self, area: f32) -> u16 {
+        // At least 1: what has no area has no kernel either.
+        (area / self.share_unit()).round().clamp(1.0, SHARES) as u16
+    }
+
+    /// That area again, square units; off by 1/131070 of the largest at most, or by as much as that is rounded down.
+    #[inline(always)]
+    pub(crate) fn area(&self, share: u16) -> f32 {
+        f32::from(share) * self.share_unit()
+    }
+
+    #[inline(always)]
+    fn share_unit(&self) -> f32 {
+        area_of_radius(self.widest) * (AREA_ROUNDED_DOWN / SHARES)
     }
 
     /// A coordinate of a cell of its box in steps of half a side over [`STEPS`], from the middle.

@@ -5,12 +5,13 @@ use crate::links::Link;
 use crate::node::Node;
 use crate::packed;
 
-/// The links of all cubes, packed: 14 bytes each, 4 more with color, 2 more with opacity.
+/// The links of all cubes, packed: 12 bytes each, 4 more with color, 2 more with opacity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PackedLinks {
     /// Where they are drawn in the boxes of their nodes, see [`Node::offset`].
     pub(crate) places: [Vec<i16>; 3],
-    pub(crate) areas: Vec<f32>,
+    /// Shares of the largest area of their nodes, see [`Node::area`].
+    pub(crate) areas: Vec<u16>,
     pub(crate) normals: Vec<u32>,
     pub(crate) colors: Option<Vec<u32>>,
     pub(crate) opacities: Option<Vec<u16>>,
@@ -29,7 +30,7 @@ impl PackedLinks {
         };
         Self {
             places: [0, 1, 2].map(place),
-            areas: all().map(|l| l.area).collect(),
+            areas: with_nodes().map(|(node, link)| node.share(link.area)).collect(),
             normals: all().map(|l| packed::pack_direction(l.normal)).collect(),
             colors: points.colors.as_ref().map(|_| all().map(|l| packed::pack_color(color_of(l))).collect()),
             opacities: points
@@ -45,7 +46,7 @@ impl PackedLinks {
 
     /// Memory of all links.
     pub(crate) fn bytes(&self) -> usize {
-        (4 + 4 + 2 * 3) * self.len()
+        (4 + 2 + 2 * 3) * self.len()
             + 4 * self.colors.as_ref().map_or(0, Vec::len)
             + 2 * self.opacities.as_ref().map_or(0, Vec::len)
     }

@@ -8,12 +8,12 @@ use crate::packed::unpack_way;
 use glam::Vec3;
 use std::ops::Range;
 
-/// Rounding of sums of areas, relative.
+/// Rounding of areas and their sums, relative.
 const AREA_ROUNDING: f64 = 1e-3;
 
 /// Bytes per point that octree, links and areas of a surface take at most, for clouds of 10,000 points and more: 4 for
-/// the area, and for nodes and links 3 (a sphere) to 10 (a thin sheet with two sides and colors).
-pub const MOST_OVERHEAD: f64 = 16.0;
+/// the area, and for nodes and links 3 (a sphere) to 8 (a thin sheet with two sides and colors).
+pub const MOST_OVERHEAD: f64 = 12.0;
 
 /// Any points become a sound octree, or are refused.
 ///
@@ -112,8 +112,9 @@ fn links_are_sound(cloud: &Cloud, node: &Node, below: Range<usize>) -> Result<()
         return Ok(());
     }
     check(items.len() <= below.len(), || format!("{} links", items.len()))?;
-    let sum = |areas: &[f32]| areas.iter().map(|&a| f64::from(a)).sum::<f64>();
-    let (links, points) = (sum(&cloud.links.areas[items.clone()]), sum(&cloud.points.areas[below]));
+    let links =
+        cloud.links.areas[items.clone()].iter().map(|&share| f64::from(node.area(share))).sum::<f64>();
+    let points = cloud.points.areas[below].iter().map(|&a| f64::from(a)).sum::<f64>();
     let off = (links / points - 1.0).abs();
     check(off <= AREA_ROUNDING, || format!("links stand for an area of {links:e}, not {points:e}"))?;
     let colored = cloud.links.colors.as_ref().is_none_or(|c| c.len() == cloud.links.len());
