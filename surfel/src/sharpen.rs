@@ -153,7 +153,7 @@ mod tests {
             // A kernel of this variance would leave exp(−½·v·k²) of the wave.
             let left = (-0.5 * VARIANCE * std::f32::consts::FRAC_PI_2.powi(2)).exp();
             let of_wave = (wave[i] - 1.0) / (0.5 * (x * std::f32::consts::FRAC_PI_2).cos());
-            if x as u32 % 2 == 0 {
+            if (x as u32).is_multiple_of(2) {
                 assert!(of_wave > 1.15 && of_wave * left < 1.2, "{x}, {y}: {of_wave}");
             }
         }
