@@ -90,8 +90,8 @@ const fn goal(
 
 /// Why goals are missed, of those that are, and what was tried.
 const LIMITS: &str = "\nWhat limits those that are missed, where they are:\n\n\
-    * *Depth RMSE with steps*: where the outline of what is in front is drawn, not the depth of it. Without the half pixel by which outlines reach beyond the outermost points (*outline 0* below) it is 0.04 spacings without noise, but the outline is then \
-      2.4 px off and PSNR 27 dB. A pixel whose centre lies between the drawn outline and the true one shows the other surface, a step of tens of spacings away: 1 pixel in 5000, off by 40, makes the 0.57 that are left. Outlines would \
+    * *Depth RMSE with steps*: where the outline of what is in front is drawn, not the depth of it. Without the 0.3 buffer pixels by which outlines reach beyond the outermost points (*outline 0* below) it is 0.04 spacings without noise and 0.75 at σ = 0.25, but the outline is then \
+      2.4 px off and PSNR 27 dB. A pixel whose centre lies between the drawn outline and the true one shows the other surface, a step of tens of spacings away: if 1 pixel in 5000 were off by 40, that alone would be an RMSE of 0.57. Outlines would \
       have to be right to a few hundredths of a pixel. Smaller buffer pixels (factor 1: 0.56), two passes (0.60), narrower outlines (0.2: 0.61) and other weights (0.55 to 0.62) do not change it.\n\
     * *Outline at σ = 0.25*: noise of the outermost points. It grows with σ whatever the setting: 0.57, 0.56, 0.81, 1.60, 3.51 px for σ = 0, 0.1, 0.25, 0.5, 1. Factor 1 has 0.70 for 30 % more time, two passes 0.81 to 0.86, outlines of 0.2 to 0.35 \
       buffer pixels 0.81 to 0.82.\n";
