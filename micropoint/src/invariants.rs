@@ -2,12 +2,12 @@
 //!
 //! Each takes any input at all. A scene or view that is refused satisfies every fact.
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
 use crate::lens::TIE;
 use crate::{
-    Geometry, Interval, Lens, LensKind, MicropointError, MicropointOptions, PixelRect, PlainOpacity,
-    Renderer, SurfaceOpacity, Tile, View,
+    Geometry, Interval, Lens, LensKind, MicropointError, MicropointOptions, Occlusion, PixelRect, Placement,
+    PlainOpacity, Renderer, Shape, SurfaceOpacity, Tile, View,
 };
 
 /// Rounding allowed to a sum of weights over a pixel.
@@ -15,6 +15,9 @@ pub const SUM_TOLERANCE: f64 = 1e-12;
 
 /// Areas below this are dropped where parts are cut by one another, once per cut.
 pub const CUT_TOLERANCE: f64 = 1e-9;
+
+/// What [`CUT_TOLERANCE`] makes of a pixel's shares where the hidden sides of solids are culled.
+pub const CULLED_TOLERANCE: f64 = 10.0 * CUT_TOLERANCE;
 
 /// Triangles as a renderer gets them.
 #[derive(Clone, Debug, Default)]
@@ -105,6 +108,17 @@ impl Soup {
             surface_of: order.iter().map(|&i| self.surface_of[i as usize]).collect(),
             ..self.clone()
         }
+    }
+
+    /// The first triangle of the same place and surface.
+    fn first_like(&self, triangle: u32) -> u32 {
+        let key = |t: u32| {
+            let mut corners =
+                self.triangles[t as usize].map(|v| self.positions[v as usize].to_array().map(f64::to_bits));
+            corners.sort_unstable();
+            (corners, self.surface_of[t as usize])
+        };
+        (0..triangle).find(|&o| key(o) == key(triangle)).unwrap_or(triangle)
     }
 
     /// Prepares it.
@@ -284,17 +298,59 @@ pub fn triangle_order_does_not_matter(
     let order = permutation(soup.triangles.len(), seed);
     let pictures = (picture(soup, view, options), picture(&soup.reordered(&order), view, options));
     let (Some(mut expected), Some(mut got)) = pictures else { return Ok(()) };
-    // Triangles are named by the first one that is equal.
-    let key = |t: u32| {
-        let mut corners =
-            soup.triangles[t as usize].map(|v| soup.positions[v as usize].to_array().map(f64::to_bits));
-        corners.sort_unstable();
-        (corners, soup.surface_of[t as usize])
-    };
-    let first = |t: u32| (0..t).find(|&o| key(o) == key(t)).unwrap_or(t);
-    expected.iter_mut().flatten().for_each(|s| s.triangle = first(s.triangle));
-    got.iter_mut().flatten().for_each(|s| s.triangle = first(order[s.triangle as usize]));
+    expected.iter_mut().flatten().for_each(|s| s.triangle = soup.first_like(s.triangle));
+    got.iter_mut().flatten().for_each(|s| s.triangle = soup.first_like(order[s.triangle as usize]));
     pictures_are_identical(&expected, &got, view.width())
+}
+
+/// A shape that is stored once is drawn in its places as all of its triangles, bit for bit; and with closed components culled, in the same
+/// shares. By the paper's rule what is left out behind a full cell depends on which cluster comes first, so that the fact is one of
+/// [`Occlusion::Correlated`].
+///
+/// # Errors
+/// The first pixel that differs, or that one of the two is refused.
+pub fn instances_are_their_triangles(
+    shape: &Soup,
+    places: &[DAffine3],
+    view: View,
+    options: MicropointOptions,
+) -> Result<(), String> {
+    let mut all = Soup { surfaces: shape.surfaces.clone(), ..Soup::default() };
+    for world in places {
+        let first = all.positions.len() as u32;
+        all.positions.extend(shape.positions.iter().map(|&p| world.transform_point3(p)));
+        let mirrors = world.matrix3.determinant() < 0.0;
+        let turned = |[a, b, c]: [u32; 3]| if mirrors { [a, c, b] } else { [a, b, c] };
+        all.triangles.extend(shape.triangles.iter().map(|&t| turned(t).map(|v| first + v)));
+        all.surface_of.extend_from_slice(&shape.surface_of);
+    }
+    let count = shape.triangles.len() as u32;
+    let placed = (0u32..).zip(places);
+    let placed: Vec<Placement> =
+        placed.map(|(i, &world_from_shape)| Placement { world_from_shape, first_id: i * count }).collect();
+    let Soup { positions, triangles, surface_of, surfaces } = shape;
+    let nothing = Shape { positions: &[], triangles: &[], surface_of: &[], places: &[] };
+    let shape = Shape { positions, triangles, surface_of, places: &placed };
+    let instances = Geometry::with_instances(&nothing, surfaces, &[shape]);
+    let (instances, expanded) = match (instances, all.geometry()) {
+        (Ok(instances), Ok(expanded)) => (instances, expanded),
+        (Err(_), Err(_)) => return Ok(()),
+        (a, b) => return Err(format!("{:?} and {:?}", a.map(|_| ()), b.map(|_| ()))),
+    };
+    check(instances.triangle_count() == expanded.triangle_count(), || "triangles are missing".to_owned())?;
+    let draw = |geometry: &Geometry, culls: bool| {
+        let options = options.with_occlusion(Occlusion::Correlated).with_cull_solids(culls);
+        let renderer = Renderer::new(geometry, &PlainOpacity, view, options).ok()?;
+        let mut picture = picture_of(&renderer, [renderer.picture()]);
+        picture.iter_mut().flatten().for_each(|s| s.triangle = all.first_like(s.triangle));
+        Some(picture)
+    };
+    let (Some(expected), Some(got)) = (draw(&expanded, false), draw(&instances, false)) else {
+        return Ok(());
+    };
+    pictures_are_identical(&expected, &got, view.width())?;
+    let Some(culled) = draw(&instances, true) else { return Ok(()) };
+    shares_agree(&shares(&expected, surfaces.len()), &shares(&culled, surfaces.len()), CULLED_TOLERANCE)
 }
 
 /// What a scene line sees of a triangle: a range of x, and nearness as an affine function.
