@@ -233,9 +233,8 @@ fn emitting_sides<'a>(
             Side::LightsWithin(low, high) => Some((low, high)),
         };
         let name = || {
-            let mesh = &prepared.scene.mesh;
-            let material = mesh.material_of[emitter.triangles[0] as usize] as usize;
-            prepared.scene.materials[material].name.clone()
+            let material = prepared.scene.mesh.material(emitter.triangles[0]);
+            prepared.scene.materials[material as usize].name.clone()
         };
         let side = AreaLight::new(geometry, &*prepared.surfaces, vertices, options)
             .map_err(|source| RenderError::Shadow { name: name(), source })?
