@@ -99,8 +99,10 @@ impl Stored<'_> {
     }
 }
 
-/// The matrix that takes normals along: the inverse transposed, up to a factor.
-fn normal_matrix(linear: DMat3) -> DMat3 {
+/// The matrix that takes normals along where positions are taken by `linear`: its inverse transposed, up to a factor. What `linear` mirrors keeps
+/// its front in front.
+#[must_use]
+pub fn normal_matrix(linear: DMat3) -> DMat3 {
     let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
     // Cofactors instead of the inverse: no division, and the sign is put right for what is mirrored.
     DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * linear.determinant().signum()
@@ -287,6 +289,19 @@ impl Mesh {
     pub fn object(&self, triangle: u32) -> u32 {
         let stored = self.stored(triangle);
         stored.instance.map_or_else(|| self.object_of[stored.index], |instance| instance.object)
+    }
+
+    /// The corners of all triangles in the world, with the object of each, in the order of their numbers.
+    pub fn world_triangles(&self) -> impl Iterator<Item = (u32, [DVec3; 3])> + '_ {
+        let own = self.triangles.iter().zip(&self.object_of);
+        let own = own.map(|(t, &object)| (object, t.map(|v| self.positions[v as usize])));
+        let placed = self.instances.list.iter().flat_map(|instance| {
+            let shape = &self.instances.shapes[instance.shape as usize];
+            let (world, order) = (instance.world_from_shape, order(instance.mirrors));
+            let corner = move |v: u32| world.transform_point3(shape.positions[v as usize]);
+            shape.triangles.iter().map(move |t| (instance.object, order.map(|k| corner(t[k]))))
+        });
+        own.chain(placed)
     }
 
     /// World positions of all vertices, those of all instances included.
