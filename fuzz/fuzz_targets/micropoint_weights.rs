@@ -55,7 +55,7 @@ fuzz_target!(|input: Input| {
                 DAffine3::from_translation(steps(to)) * DAffine3::from_scale(scale)
             };
             let places: Vec<DAffine3> = input.places.iter().take(4).map(place).collect();
-            invariants::instances_are_their_triangles(&soup, &places, view, options)
+            invariants::instances_are_their_triangles(&soup, &places, view)
         });
     if let Err(broken) = facts {
         panic!("{broken}");

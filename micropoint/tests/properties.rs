@@ -201,9 +201,9 @@ proptest! {
 
     #[test]
     fn a_shape_in_many_places_is_drawn_as_its_triangles(
-        s in soup(), places in prop::collection::vec(placement(), 0..5), v in view(), o in options(),
+        s in soup(), places in prop::collection::vec(placement(), 0..5), v in view(),
     ) {
-        holds!(invariants::instances_are_their_triangles(&s, &places, v, o));
+        holds!(invariants::instances_are_their_triangles(&s, &places, v));
     }
 }
 
