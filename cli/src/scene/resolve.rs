@@ -61,14 +61,8 @@ pub(super) fn resolve(
     }
     builder.warnings.extend(told.iter().map(InputError::to_string));
     let mut warnings = builder.warnings;
-    let mut scene = Scene::new(camera, description.image.size);
-    scene.image.background = description.image.background;
-    scene.image.hides_environment = description.image.hides_environment;
+    let mut scene = empty(description, camera, has_normals(&mesh));
     scene.image.environment = environment;
-    scene.render.cells_per_pixel = description.render.subpixel;
-    scene.render.occlusion = description.render.occlusion;
-    let own = if has_normals(&mesh) { Interpolation::Phong } else { Interpolation::Flat };
-    scene.render.shading = description.render.shading.unwrap_or(own);
     scene.mesh = mesh;
     scene.materials = builder.materials.into_materials();
     scene.textures = builder.textures.into_textures()?;
@@ -90,6 +84,18 @@ pub(super) fn resolve(
     let fingerprint = fingerprint::of_view(&scene.camera, description.image.size, light);
     let motion = Motion::new(description, moving);
     Ok(LoadedScene { scene, unmatched, warnings, fingerprint, light, motion, is_lit_from_camera: unlit })
+}
+
+/// What a description says of the picture and how to draw it.
+fn empty(description: &Description, camera: Camera, has_normals: bool) -> Scene {
+    let mut scene = Scene::new(camera, description.image.size);
+    scene.image.background = description.image.background;
+    scene.image.hides_environment = description.image.hides_environment;
+    scene.render.cells_per_pixel = description.render.subpixel;
+    scene.render.occlusion = description.render.occlusion;
+    let own = if has_normals { Interpolation::Phong } else { Interpolation::Flat };
+    scene.render.shading = description.render.shading.unwrap_or(own);
+    scene
 }
 
 /// The camera of frame 0, from which what it leaves open is in view.
