@@ -66,6 +66,11 @@ impl Gathered {
         if self.near > 0.0 { 1.0 / self.near } else { 1.0 }
     }
 
+    /// Whether the place is behind or inside of something: surfaces are around it, and all of them are black, as nothing is where light is reflected.
+    pub(crate) fn is_covered(&self) -> bool {
+        self.near > 0.0 && self.light() == [0.0; 3]
+    }
+
     /// Sets the precision of the first round of rays, which were spread evenly.
     pub(crate) fn weigh_first(&mut self, precision: f64) {
         if self.precision == 0.0 {

@@ -1,4 +1,5 @@
 //! Averages over neighbouring places where light comes from far away: their rays count for one another (\[8\]'s test for interpolation).
+//! Places behind a wall and places in front of it are no neighbours, however close they are: a surface that reaches into a wall has both.
 
 use glam::DVec3;
 
@@ -45,6 +46,9 @@ impl<'p> Places<'p> {
             self.within(at, APART * reach, near);
             for &(_, j) in &*near {
                 let (j, other) = (j as usize, &gathered[j as usize]);
+                if other.is_covered() != gathered[i].is_covered() {
+                    continue;
+                }
                 let turn = (1.0 - normals[i].dot(normals[j])).max(0.0).sqrt();
                 let apart = (at - self.positions[j]).length() / reach.min(other.reach()) + TURN * turn;
                 let weight = (1.0 - apart / APART).max(0.0) * f64::from(other.rays());
