@@ -115,3 +115,24 @@ impl<'p> Places<'p> {
         self.visit((2 * cell + 1, middle, to), point, within2, near);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+
+    /// The foot of a wall that reaches into another one has vertices where its visible part has some: half of the light of both was a dark dash along the corner.
+    #[test]
+    fn covered_places_take_no_part_in_the_light_of_visible_ones() {
+        let positions = [DVec3::ZERO, DVec3::ZERO, dvec3(0.01, 0.0, 0.0)];
+        let places = Places::new(&positions);
+        let seen = |light: f64| Gathered::of(64, [light; 3], 1.0);
+        let smooth = |gathered: &[Gathered]| places.smooth(&[DVec3::Z; 3], gathered, &[0, 1, 2]);
+        let light = smooth(&[seen(2.0), seen(0.0), seen(1.0)]);
+        assert!(light[0].0[0] > 1.5 && light[2].0[0] > 1.0, "{light:?}");
+        assert_eq!(light[1].0, [0.0; 3]);
+        // Dim is not covered.
+        let light = smooth(&[seen(2.0), seen(1e-9), seen(1.0)]);
+        assert!(light[1].0[0] > 0.9, "{light:?}");
+    }
+}
