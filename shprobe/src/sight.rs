@@ -66,13 +66,13 @@ const FULL_COSINE: f64 = 0.2;
 
 /// Height above the plane of the surface, over the spacing of probes, from which on a probe counts fully at any cosine: a probe a hand's breadth off a
 /// wall is in front of all of that wall. By the cosine alone it lit a disc of the wall about itself, whose edges showed as scallops where probes
-/// farther off took over. By experiment (the rooms of `studies shprobe wall` and `seams`, surfaces anywhere with 96 and 192 probes): by the
-/// cosine alone 4.9 and 3.2 %, 0.05 4.9 and 2.6 %, 0.03 4.0 and 2.6 %, 0.02 4.1 and 2.6 %.
-const FULL_HEIGHT: f64 = 0.03;
+/// farther off took over. By experiment (the rooms of `studies shprobe wall` and `seams`, 96 probes, surfaces anywhere): by the cosine alone 4.9 %, with
+/// 0.05 4.6 to 4.9, with 0.02 and 0.03 3.9 to 4.6 %, within which placement differs by chance.
+const FULL_HEIGHT: f64 = 0.02;
 
 /// The least cosine from which on a probe counts fully, whatever its height: shares must not change by more than their rounding from one normal in single
 /// precision to the next.
-const LEAST_COSINE: f64 = 0.025;
+const LEAST_COSINE: f64 = 0.03;
 
 /// Distance, over the spacing of probes, below which the direction to a probe does not matter: a probe in the
 /// surface itself has none.
