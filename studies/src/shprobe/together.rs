@@ -175,10 +175,8 @@ pub(crate) fn run_parts(out_dir: &Path, folder: Option<&Path>, parts: &[&str]) -
 const SEEN: &str = "\
      The pictures: [two rooms](../../docs/together-rooms.jpg), [Sponza](../../docs/together-sponza.jpg), \
      [Šibenik](../../docs/together-sibenik.jpg), each by paths, by radiosity, by 86 and by 192 probes. What is to be seen in them at full size, \
-     plain and brightened by two stops: by radiosity, two dark dashes of a pixel's width in the corner between the dividing wall and the front \
-     wall of the two rooms; by probes, scallops on walls and ceiling beside the corners of the dark room, where one probe takes over from \
-     another, a bright dash under the foremost capital of Sponza (192 probes), and bright specks at a moulding of Šibenik, where probes are too \
-     dark as a whole.\n";
+     plain and brightened by two stops: in the two rooms, by probes, nothing but soft brighter and darker places beside the foot of the doorway; by 192 probes a bright dash under the foremost capital of Sponza, \
+     which no probe sees: one that sees it by a fifth, from behind a column, has four fifths of the say there; and in Šibenik probes are too dark as a whole.\n";
 
 fn building(site: &Site, folder: Option<&Path>, text: &mut String) -> Result<(), Fault> {
     let reference = Reference::new(&site.scene, PATHS);
