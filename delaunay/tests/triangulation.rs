@@ -26,6 +26,32 @@ fn tetrahedra(points: &[DVec3]) -> Tetrahedra {
     }
 }
 
+/// Determinants of integers of this size may not fit into the digits of `f64`, so that they are asked for exactly; of points on one sphere they are 0.
+#[test]
+fn large_integers_on_one_sphere_are_on_one_sphere() {
+    for radius2 in [690 * 690, 553_349, 699_901] {
+        let reach = f64::from(radius2).sqrt() as i32;
+        let mut on_sphere = vec![];
+        for (x, y) in (-reach..=reach).flat_map(|x| (-reach..=reach).step_by(7).map(move |y| (x, y))) {
+            let z2 = radius2 - x * x - y * y;
+            let z = f64::from(z2.max(0)).sqrt() as i32;
+            if z * z == z2 {
+                let z = if (x + y) % 2 == 0 { z } else { -z };
+                on_sphere.push(dvec3(x.into(), y.into(), z.into()));
+            }
+        }
+        let step = on_sphere.len() / 24;
+        let points: Vec<DVec3> = on_sphere.iter().copied().step_by(step.max(1)).collect();
+        assert!(points.len() >= 16, "{} points", points.len());
+        facts::partition_is_delaunay(&points).unwrap();
+        facts::insertion_is_building(&points).unwrap();
+        let backward: Vec<DVec3> = points.iter().rev().copied().collect();
+        let order: Vec<u32> = (0..points.len() as u32).rev().collect();
+        let renamed = facts::renamed(Delaunay::new(&backward).unwrap().partition(), &order);
+        assert_eq!(Delaunay::new(&points).unwrap().partition(), renamed);
+    }
+}
+
 proptest! {
     #![proptest_config(testkit::config(64))]
 

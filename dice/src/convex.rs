@@ -366,6 +366,22 @@ mod tests {
     }
 
     #[test]
+    fn edges_that_meet_up_to_rounding_separate() {
+        let rounded = 0.1 + 0.2;
+        assert!(rounded > 0.3);
+        // Upright and level edges, too, have their slack.
+        let left = ConvexPolygon::rectangle(DVec2::ZERO, dvec2(rounded, 1.0));
+        let right = ConvexPolygon::rectangle(dvec2(0.3, 0.0), DVec2::ONE);
+        assert!(left.has_separating_edge(right.vertices()) && right.has_separating_edge(left.vertices()));
+        let below = ConvexPolygon::rectangle(DVec2::ZERO, dvec2(1.0, rounded));
+        let above = ConvexPolygon::rectangle(dvec2(0.0, 0.3), DVec2::ONE);
+        assert!(below.has_separating_edge(above.vertices()) && above.has_separating_edge(below.vertices()));
+        // What overlaps by more does not.
+        let nearer = ConvexPolygon::rectangle(dvec2(0.3 - 1e-9, 0.0), DVec2::ONE);
+        assert!(!left.has_separating_edge(nearer.vertices()) && !nearer.has_separating_edge(left.vertices()));
+    }
+
+    #[test]
     fn neighbours_are_separated_by_their_common_edge() {
         let diagonal = HalfPlane::left_of(dvec2(0.0, 0.0), dvec2(1.0, 1.0));
         let (a, b) = square().divided(&diagonal);

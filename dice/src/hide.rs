@@ -348,6 +348,23 @@ mod tests {
         assert!(regions.is_hidden());
     }
 
+    #[test]
+    fn from_one_region_too_many_on_they_are_dimmed_whole() {
+        let square = ConvexPolygon::rectangle(DVec2::ZERO, DVec2::ONE);
+        let left = ConvexPolygon::rectangle(DVec2::ZERO, dvec2(0.5, 1.0));
+        let below = ConvexPolygon::rectangle(DVec2::ZERO, dvec2(1.0, 0.25));
+        for (most, count) in [(1, 2), (2, 4)] {
+            let mut regions = Regions::default();
+            regions.start(square, 1e-12);
+            regions.attenuate_up_to(most, left.vertices(), None, |_| 0.5);
+            assert_eq!(regions.list().len(), 2, "one region is divided if it is all that there may be");
+            regions.attenuate_up_to(most, below.vertices(), None, |_| 0.5);
+            assert_eq!(regions.list().len(), count, "two, of which there may be {most}");
+            // A quarter of each is dimmed by half, divided or not.
+            assert!((area(&regions) - 0.75 * 0.875).abs() < 1e-15, "{}", area(&regions));
+        }
+    }
+
     /// Opaque triangles, and translucent ones after them.
     struct Tiles {
         triangles: Vec<[DVec2; 3]>,

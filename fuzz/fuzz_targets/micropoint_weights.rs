@@ -1,10 +1,10 @@
-//! Triangles and views of any kind: weights are shares, and tiles do not matter.
+//! Triangles and views of any kind: weights are shares, tiles do not matter, instances are their triangles.
 #![no_main]
 
 mod steps;
 
 use arbitrary::Arbitrary;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use libfuzzer_sys::fuzz_target;
 use pointillist_micropoint::invariants;
 use pointillist_micropoint::{MicropointOptions, Occlusion, Projection, View};
@@ -22,6 +22,8 @@ struct Input {
     size: (u8, u8),
     paper: bool,
     raw: Option<[f64; 3]>,
+    /// Where all of it stands: scales in quarters, and steps.
+    places: Vec<([i8; 3], [i8; 3])>,
 }
 
 fuzz_target!(|input: Input| {
@@ -46,7 +48,15 @@ fuzz_target!(|input: Input| {
         return;
     }
     let facts = invariants::weights_are_shares(&soup, view, options)
-        .and_then(|()| invariants::tiles_do_not_matter(&soup, view, options));
+        .and_then(|()| invariants::tiles_do_not_matter(&soup, view, options))
+        .and_then(|()| {
+            let place = |&(scale, to): &([i8; 3], [i8; 3])| {
+                let scale = DVec3::from_array(scale.map(|s| f64::from(s) / 4.0));
+                DAffine3::from_translation(steps(to)) * DAffine3::from_scale(scale)
+            };
+            let places: Vec<DAffine3> = input.places.iter().take(4).map(place).collect();
+            invariants::instances_are_their_triangles(&soup, &places, view)
+        });
     if let Err(broken) = facts {
         panic!("{broken}");
     }

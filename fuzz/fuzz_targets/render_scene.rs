@@ -2,7 +2,7 @@
 #![no_main]
 
 use arbitrary::Arbitrary;
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DAffine3, DVec2, DVec3, Vec3};
 use libfuzzer_sys::fuzz_target;
 use pointillist_render::shade::{self, Falloff, Light, Wrap};
 use pointillist_render::{
@@ -27,6 +27,8 @@ struct Input {
     eye: [i8; 3],
     objects: u8,
     environment: Option<u8>,
+    /// Where all of the mesh stands once more: scales in quarters, and steps.
+    places: Vec<([i8; 3], [i8; 3])>,
 }
 
 #[derive(Arbitrary, Debug)]
@@ -119,7 +121,13 @@ fuzz_target!(|input: Input| {
         let _ = invariants::picture(&scene);
         return;
     }
-    if let Err(broken) = invariants::pixels_are_sound(&scene) {
+    let place = |&(scale, to): &([i8; 3], [i8; 3])| {
+        let scale = DVec3::from_array(scale.map(|s| f64::from(s) / 4.0));
+        DAffine3::from_translation(steps(to)) * DAffine3::from_scale(scale)
+    };
+    let places: Vec<DAffine3> = input.places.iter().take(3).map(place).collect();
+    let instances = invariants::with_instances(&scene, &places).filter(|_| !places.is_empty());
+    if let Err(broken) = invariants::pixels_are_sound(instances.as_ref().unwrap_or(&scene)) {
         panic!("{broken}");
     }
 });

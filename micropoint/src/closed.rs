@@ -3,7 +3,8 @@
 //! Of such a component an outside viewer never sees a back face, and every ray that enters it also
 //! leaves it; so half of its triangles can be skipped, for the camera and for a light.
 
-use glam::DVec3;
+use crate::bounds::Bounds;
+use glam::{DAffine3, DVec3};
 
 /// A triangle's component is not closed.
 pub(crate) const OPEN: u32 = u32::MAX;
@@ -15,6 +16,20 @@ pub(crate) struct Solid {
     pub(crate) orientation: i8,
     pub(crate) low: DVec3,
     pub(crate) high: DVec3,
+    /// Which of the geometry's places its triangles stand in.
+    pub(crate) place: u32,
+}
+
+impl Solid {
+    /// The same solid of a shape in one of its places, in a box that may be larger than needed. A place that mirrors keeps fronts in front.
+    pub(crate) fn moved(&self, world_from_shape: &DAffine3, place: u32) -> Self {
+        let mut bounds = Bounds::EMPTY;
+        for corner in 0..8 {
+            let side = |axis: u32| if corner >> axis & 1 == 0 { self.low } else { self.high };
+            bounds.include(world_from_shape.transform_point3(DVec3::new(side(0).x, side(1).y, side(2).z)));
+        }
+        Self { orientation: self.orientation, low: bounds.low, high: bounds.high, place }
+    }
 }
 
 /// The closed components, and for each triangle the index of its own, or [`OPEN`].
@@ -161,7 +176,7 @@ fn collect_solids(
         let v = tri.map(|c| positions[c as usize]);
         if solid_of_root[root] == OPEN {
             solid_of_root[root] = sums.len() as u32;
-            sums.push((v[0], 0.0, Solid { orientation: 1, low: v[0], high: v[0] }));
+            sums.push((v[0], 0.0, Solid { orientation: 1, low: v[0], high: v[0], place: 0 }));
         }
         let (anchor, volume, solid) = &mut sums[solid_of_root[root] as usize];
         // Six times the signed volume, about a vertex of the component so that distance does not matter.

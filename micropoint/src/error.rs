@@ -54,6 +54,14 @@ pub enum MicropointError {
         /// How many.
         count: usize,
     },
+    /// A place of a shape that stands in several is not finite, or beyond the range of numbers.
+    #[error("place {place} of shape {shape} takes it out of the range of numbers")]
+    BadPlacement {
+        /// Position in the array of shapes.
+        shape: usize,
+        /// Position among the shape's places.
+        place: usize,
+    },
     /// The camera or the size of the picture was refused. No function of this crate returns it: it lets callers use `?` on
     /// [`View`](crate::View) beside the rest.
     #[error(transparent)]

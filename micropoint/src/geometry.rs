@@ -1,11 +1,12 @@
 //! Triangles prepared once for any number of views and lights.
 
 use crate::bounds::Bounds;
-use crate::closed::{OPEN, Solid, find_solids, solid_angle};
+use crate::build::check_opacities;
+use crate::closed::{OPEN, Solid, solid_angle};
 use crate::error::MicropointError;
+use crate::instances::Placed;
 use crate::lens::{Lens, LensKind};
 use glam::DVec3;
-use pointillist_view::morton_code;
 
 /// How a surface lets light through; the rest of a material is the shader's business.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,34 +55,78 @@ pub(crate) struct Triangle {
     pub(crate) solid: u32,
 }
 
-/// Up to 64 neighbouring triangles with their own vertices and bounds.
+/// A run of stored triangles with vertices of their own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run {
+    pub(crate) first_vertex: u32,
+    pub(crate) vertex_count: u32,
+    pub(crate) first_triangle: u32,
+    pub(crate) triangle_count: u32,
+}
+
+/// Up to 64 neighbouring triangles in one of their places.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
     /// Bounds in the world.
     pub bounds: Bounds,
-    first_vertex: u32,
-    vertex_count: u32,
-    first_triangle: u32,
-    triangle_count: u32,
+    pub(crate) run: Run,
+    /// Which of [`Geometry::places`].
+    pub(crate) place: u32,
     /// If all triangles bound one solid: it, and a cone that holds their outward normals.
-    facing: Option<Facing>,
+    pub(crate) facing: Option<Facing>,
 }
 
 /// The normals of a cluster.
 #[derive(Clone, Copy, Debug)]
-struct Facing {
-    solid: u32,
-    axis: DVec3,
+pub(crate) struct Facing {
+    pub(crate) solid: u32,
+    pub(crate) axis: DVec3,
     /// Sine of the cone's half-angle, which is less than a right angle.
-    spread: f64,
+    pub(crate) spread: f64,
 }
 
-/// Most triangles in a cluster: small enough that bounds are tight, large enough that refusing one
-/// saves real work. 64 triangles have at most 192 vertices, so that a corner fits in a byte.
-const CLUSTER_SIZE: usize = 64;
+/// A cluster's triangles where they stand.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedCluster<'a> {
+    pub(crate) bounds: &'a Bounds,
+    place: &'a Placed,
+    stored_vertices: &'a [DVec3],
+    stored_triangles: &'a [Triangle],
+}
 
-/// Children of a node of the hierarchy.
-const FAN_OUT: usize = 4;
+impl<'a> PlacedCluster<'a> {
+    /// Its vertices in the world.
+    #[inline]
+    pub(crate) fn vertices(self) -> impl Iterator<Item = DVec3> + 'a {
+        self.stored_vertices.iter().map(|&p| self.place.point(p))
+    }
+
+    /// The same as a slice; `memory` holds those that are not stored as they stand.
+    pub(crate) fn vertex_slice(self, memory: &'a mut Vec<DVec3>) -> &'a [DVec3] {
+        if self.place.world_from_shape.is_none() {
+            return self.stored_vertices;
+        }
+        memory.clear();
+        memory.extend(self.vertices());
+        memory
+    }
+
+    #[inline]
+    pub(crate) fn triangles(self) -> impl Iterator<Item = Triangle> + 'a {
+        self.stored_triangles.iter().map(|t| self.place.triangle(t))
+    }
+
+    #[inline]
+    pub(crate) fn triangle(self, index: u32) -> Triangle {
+        self.place.triangle(&self.stored_triangles[index as usize])
+    }
+
+    /// Corners of one of its triangles in the world.
+    #[inline]
+    pub(crate) fn corners(self, triangle: &Triangle) -> [DVec3; 3] {
+        triangle.corners.map(|c| self.place.point(self.stored_vertices[usize::from(c)]))
+    }
+}
 
 /// Which winding of a closed component a viewer can never see, for each component.
 #[derive(Clone, Debug, Default)]
@@ -107,48 +152,17 @@ pub struct Geometry {
     pub(crate) vertices: Vec<DVec3>,
     pub(crate) triangles: Vec<Triangle>,
     pub(crate) clusters: Vec<Cluster>,
+    /// Where clusters stand; the first is that of all that are stored as they stand.
+    pub(crate) places: Vec<Placed>,
     /// `levels[0]` bounds groups of clusters, each further level groups of the one before.
-    levels: Vec<Vec<Bounds>>,
-    surfaces: Vec<SurfaceOpacity>,
-    solids: Vec<Solid>,
-    bounds: Bounds,
+    pub(crate) levels: Vec<Vec<Bounds>>,
+    pub(crate) surfaces: Vec<SurfaceOpacity>,
+    /// Those of all places, one place after the other.
+    pub(crate) solids: Vec<Solid>,
+    pub(crate) bounds: Bounds,
 }
 
 impl Geometry {
-    /// Prepares triangles: checks them, finds closed components, sorts along a space-filling curve
-    /// and bounds clusters.
-    ///
-    /// Triangles without area are kept and draw nothing. An empty set is a scene without geometry.
-    ///
-    /// # Errors
-    /// [`MicropointError`] names the first vertex, triangle or surface that cannot be used.
-    pub fn new(
-        positions: &[DVec3],
-        triangles: &[[u32; 3]],
-        surface_of: &[u32],
-        surfaces: &[SurfaceOpacity],
-    ) -> Result<Self, MicropointError> {
-        check(positions, triangles, surface_of, surfaces)?;
-        let opaque = |t: usize| surfaces[surface_of[t] as usize].is_opaque();
-        let (solids, solid_of) = find_solids(positions, triangles, opaque);
-        let order = morton_order(positions, triangles);
-        let mut geometry = Self {
-            vertices: Vec::with_capacity(triangles.len()),
-            triangles: Vec::with_capacity(triangles.len()),
-            clusters: Vec::with_capacity(triangles.len() / CLUSTER_SIZE + 1),
-            levels: Vec::new(),
-            surfaces: surfaces.to_vec(),
-            solids,
-            bounds: Bounds::EMPTY,
-        };
-        let mut local = LocalNumbers::new(positions.len());
-        for ids in order.chunks(CLUSTER_SIZE) {
-            geometry.push_cluster(ids, positions, triangles, surface_of, &solid_of, &mut local);
-        }
-        geometry.build_levels();
-        Ok(geometry)
-    }
-
     /// The same triangles in the same clusters, with other opacities of the surfaces, which `opacity` gives by number. A closed component that
     /// is not opaque any more counts as open.
     ///
@@ -161,101 +175,36 @@ impl Geometry {
         }
         check_opacities(&geometry.surfaces)?;
         let mut opened = vec![false; geometry.solids.len()];
-        for t in geometry.triangles.iter().filter(|t| t.solid != OPEN) {
-            opened[t.solid as usize] |= !geometry.surfaces[t.surface as usize].is_opaque();
-        }
-        for triangle in geometry.triangles.iter_mut().filter(|t| t.solid != OPEN) {
-            if opened[triangle.solid as usize] {
-                triangle.solid = OPEN;
+        for cluster in 0..geometry.clusters.len() as u32 {
+            for t in geometry.cluster(cluster).triangles().filter(|t| t.solid != OPEN) {
+                opened[t.solid as usize] |= !geometry.surfaces[t.surface as usize].is_opaque();
             }
         }
         for cluster in &mut geometry.clusters {
             cluster.facing = cluster.facing.filter(|facing| !opened[facing.solid as usize]);
+            // A solid is open in all places of its shape, or in none.
+            let first_solid = geometry.places[cluster.place as usize].first_solid;
+            let (first, count) = (cluster.run.first_triangle as usize, cluster.run.triangle_count as usize);
+            for triangle in &mut geometry.triangles[first..][..count] {
+                if triangle.solid != OPEN && opened[(triangle.solid + first_solid) as usize] {
+                    triangle.solid = OPEN;
+                }
+            }
         }
         Ok(geometry)
     }
 
-    fn push_cluster(
-        &mut self,
-        ids: &[u32],
-        positions: &[DVec3],
-        triangles: &[[u32; 3]],
-        surface_of: &[u32],
-        solid_of: &[u32],
-        local: &mut LocalNumbers,
-    ) {
-        let (first_vertex, first_triangle) = (self.vertices.len(), self.triangles.len());
-        let mut bounds = Bounds::EMPTY;
-        local.next_cluster();
-        for &id in ids {
-            let t = id as usize;
-            let corners = triangles[t].map(|v| {
-                let (number, new) = local.number(v);
-                if new {
-                    let p = positions[v as usize];
-                    bounds.include(p);
-                    self.vertices.push(p);
-                }
-                number
-            });
-            self.triangles.push(Triangle { corners, id, surface: surface_of[t], solid: solid_of[t] });
-        }
-        self.bounds = self.bounds.union(bounds);
-        self.clusters.push(Cluster {
-            bounds,
-            first_vertex: first_vertex as u32,
-            vertex_count: (self.vertices.len() - first_vertex) as u32,
-            first_triangle: first_triangle as u32,
-            triangle_count: ids.len() as u32,
-            facing: None,
-        });
-        let facing = self.facing(self.clusters.len() - 1);
-        self.clusters[facing.0].facing = facing.1;
-    }
-
-    fn facing(&self, index: usize) -> (usize, Option<Facing>) {
-        let (_, vertices, triangles) = self.cluster(index as u32);
-        let solid = triangles[0].solid;
-        if solid == OPEN || triangles.iter().any(|t| t.solid != solid) {
-            return (index, None);
-        }
-        let outward = f64::from(self.solids[solid as usize].orientation);
-        let normal = |t: &Triangle| {
-            let [a, b, c] = t.corners.map(|c| vertices[usize::from(c)]);
-            ((b - a).cross(c - a) * outward).normalize_or_zero()
-        };
-        let axis = triangles.iter().map(normal).sum::<DVec3>().normalize_or_zero();
-        let least = triangles.iter().map(|t| normal(t).dot(axis)).fold(1.0, f64::min);
-        // Rounding of the normals, generously.
-        let least = least - 1e-6;
-        (index, (least > 0.1).then(|| Facing { solid, axis, spread: (1.0 - least * least).sqrt() }))
-    }
-
-    fn build_levels(&mut self) {
-        let union = |group: &[Bounds]| group.iter().fold(Bounds::EMPTY, |a, &b| a.union(b));
-        let leaves: Vec<Bounds> = self.clusters.iter().map(|c| c.bounds).collect();
-        let mut level: Vec<Bounds> = leaves.chunks(FAN_OUT).map(union).collect();
-        while !level.is_empty() {
-            let next: Vec<Bounds> = level.chunks(FAN_OUT).map(union).collect();
-            let last = level.len() == 1;
-            self.levels.push(level);
-            if last {
-                break;
-            }
-            level = next;
-        }
-    }
-
-    /// Number of triangles.
+    /// Number of triangles, each counted in all of its places.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
-        self.triangles.len()
+        self.clusters.iter().map(|c| c.run.triangle_count as usize).sum()
     }
 
     /// Number of triangles that bound solids.
     #[must_use]
     pub fn solid_triangle_count(&self) -> usize {
-        self.triangles.iter().filter(|t| t.solid != OPEN).count()
+        let bound = |cluster: u32| self.cluster(cluster).triangles().filter(|t| t.solid != OPEN).count();
+        (0..self.clusters.len() as u32).map(bound).sum()
     }
 
     /// Number of clusters.
@@ -276,14 +225,18 @@ impl Geometry {
         &self.surfaces
     }
 
-    /// A cluster's bounds, vertices and triangles.
+    /// A cluster's triangles where they stand.
     #[must_use]
     #[inline]
-    pub(crate) fn cluster(&self, index: u32) -> (&Bounds, &[DVec3], &[Triangle]) {
+    pub(crate) fn cluster(&self, index: u32) -> PlacedCluster<'_> {
         let c = &self.clusters[index as usize];
-        let vertices = &self.vertices[c.first_vertex as usize..][..c.vertex_count as usize];
-        let triangles = &self.triangles[c.first_triangle as usize..][..c.triangle_count as usize];
-        (&c.bounds, vertices, triangles)
+        let Run { first_vertex, vertex_count, first_triangle, triangle_count } = c.run;
+        PlacedCluster {
+            bounds: &c.bounds,
+            place: &self.places[c.place as usize],
+            stored_vertices: &self.vertices[first_vertex as usize..][..vertex_count as usize],
+            stored_triangles: &self.triangles[first_triangle as usize..][..triangle_count as usize],
+        }
     }
 
     /// Corners of a prepared triangle in the world.
@@ -293,8 +246,8 @@ impl Geometry {
     #[must_use]
     #[inline]
     pub fn corners(&self, triangle: ClusterTriangle) -> [DVec3; 3] {
-        let (_, vertices, triangles) = self.cluster(triangle.cluster);
-        triangles[triangle.index as usize].corners.map(|c| vertices[usize::from(c)])
+        let cluster = self.cluster(triangle.cluster);
+        cluster.corners(&cluster.triangle(triangle.index))
     }
 
     /// Whether all of a cluster is hidden from a viewer because it is the side of a solid that the viewer
@@ -358,196 +311,13 @@ impl Geometry {
     /// How often a closed component winds around a point.
     fn winding(&self, solid: u32, origin: DVec3) -> f64 {
         let mut total = 0.0;
-        for cluster in 0..self.clusters.len() as u32 {
-            let (_, vertices, triangles) = self.cluster(cluster);
-            for t in triangles.iter().filter(|t| t.solid == solid) {
-                total += solid_angle(t.corners.map(|c| vertices[usize::from(c)] - origin));
+        let place = self.solids[solid as usize].place;
+        for (number, _) in self.clusters.iter().enumerate().filter(|(_, c)| c.place == place) {
+            let cluster = self.cluster(number as u32);
+            for t in cluster.triangles().filter(|t| t.solid == solid) {
+                total += solid_angle(cluster.corners(&t).map(|p| p - origin));
             }
         }
         total / (4.0 * std::f64::consts::PI)
-    }
-
-    /// The level of the hierarchy's root, above which there is nothing; clusters are level 0. `None` without geometry.
-    pub(crate) fn top_level(&self) -> Option<usize> {
-        self.levels.last()?.first().map(|_| self.levels.len())
-    }
-
-    /// A box of the hierarchy: a cluster's at level 0.
-    pub(crate) fn box_at(&self, level: usize, index: usize) -> &Bounds {
-        if level == 0 { &self.clusters[index].bounds } else { &self.levels[level - 1][index] }
-    }
-
-    /// The boxes within a box of a level above 0, at the level below.
-    pub(crate) fn children(&self, level: usize, index: usize) -> std::ops::Range<usize> {
-        let below = level - 1;
-        let count = if below == 0 { self.clusters.len() } else { self.levels[below - 1].len() };
-        let first = index * FAN_OUT;
-        first..(first + FAN_OUT).min(count)
-    }
-
-    /// Visits the clusters that `bound` admits, in order of the distance it gives, nearest first.
-    ///
-    /// `bound` returns a lower bound of the distance of anything in the box, or `None` to refuse it
-    /// with all its contents; `visit` returns the distance beyond which nothing matters any more.
-    /// Returns how many boxes were refused or left unvisited.
-    pub(crate) fn visit_near_to_far(
-        &self,
-        queue: &mut ClusterQueue,
-        mut bound: impl FnMut(&Bounds) -> Option<f64>,
-        mut visit: impl FnMut(u32) -> f64,
-    ) -> u64 {
-        let heap = &mut queue.heap;
-        heap.clear();
-        let mut skipped = 0;
-        let Some(root) = self.levels.last().and_then(|l| l.first()) else { return 0 };
-        let clusters_below = |level: usize| (FAN_OUT as u64).pow(level as u32);
-        if let Some(d) = bound(root) {
-            heap.push(Entry { distance: d, level: self.levels.len() as u32, index: 0 });
-        }
-        let mut limit = f64::INFINITY;
-        while let Some(Entry { distance, level, index }) = heap.pop() {
-            if distance > limit {
-                skipped += heap.drain().map(|e| clusters_below(e.level as usize)).sum::<u64>() + 1;
-                break;
-            }
-            if level == 0 {
-                limit = visit(index);
-                continue;
-            }
-            let below = level as usize - 1;
-            for child in self.children(level as usize, index as usize) {
-                match bound(self.box_at(below, child)) {
-                    Some(d) if d <= limit => {
-                        heap.push(Entry { distance: d, level: below as u32, index: child as u32 });
-                    }
-                    _ => skipped += clusters_below(below),
-                }
-            }
-        }
-        skipped
-    }
-}
-
-/// Reusable memory of [`Geometry::visit_near_to_far`].
-#[derive(Debug, Default)]
-pub(crate) struct ClusterQueue {
-    heap: std::collections::BinaryHeap<Entry>,
-}
-
-/// A box in the queue, ordered so that the heap gives the nearest first.
-#[derive(Debug, PartialEq)]
-struct Entry {
-    distance: f64,
-    level: u32,
-    index: u32,
-}
-
-impl Eq for Entry {}
-
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Entry {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        other
-            .distance
-            .total_cmp(&self.distance)
-            .then(other.level.cmp(&self.level))
-            .then(other.index.cmp(&self.index))
-    }
-}
-
-fn check(
-    positions: &[DVec3],
-    triangles: &[[u32; 3]],
-    surface_of: &[u32],
-    surfaces: &[SurfaceOpacity],
-) -> Result<(), MicropointError> {
-    if triangles.len() >= (u32::MAX / 4) as usize {
-        return Err(MicropointError::TooManyTriangles { count: triangles.len() });
-    }
-    if surface_of.len() != triangles.len() {
-        let (surfaces, triangles) = (surface_of.len(), triangles.len());
-        return Err(MicropointError::LengthMismatch { surfaces, triangles });
-    }
-    // Squares and products of three coordinates must not overflow.
-    let usable = |p: &DVec3| p.is_finite() && p.abs().max_element() < 1e90;
-    if let Some(index) = positions.iter().position(|p| !usable(p)) {
-        return Err(MicropointError::VertexNotFinite { index, value: positions[index].to_array() });
-    }
-    for (triangle, t) in triangles.iter().enumerate() {
-        if let Some(&vertex) = t.iter().find(|&&v| v as usize >= positions.len()) {
-            return Err(MicropointError::VertexOutOfRange { triangle, vertex, count: positions.len() });
-        }
-    }
-    for (triangle, &surface) in surface_of.iter().enumerate() {
-        if surface as usize >= surfaces.len() {
-            return Err(MicropointError::SurfaceOutOfRange { triangle, surface, count: surfaces.len() });
-        }
-    }
-    check_opacities(surfaces)
-}
-
-fn check_opacities(surfaces: &[SurfaceOpacity]) -> Result<(), MicropointError> {
-    let bad = surfaces.iter().position(|s| !(0.0..=1.0).contains(&s.opacity));
-    bad.map_or(Ok(()), |index| Err(MicropointError::BadOpacity { index, opacity: surfaces[index].opacity }))
-}
-
-/// Last cell per axis of the lattice that orders triangles: codes of 3 · 10 bits leave 32 for the number of the
-/// triangle.
-const LAST_CELL: u32 = 1023;
-
-/// Triangle numbers along a Morton curve of their centres. Those that name a vertex twice are left out: they are never seen, and must not
-/// decide which others share a cluster.
-fn morton_order(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<u32> {
-    let mut bounds = Bounds::EMPTY;
-    let centre = |t: &[u32; 3]| t.iter().map(|&v| positions[v as usize] / 3.0).sum::<DVec3>();
-    let has_corners = |&(_, &[a, b, c]): &(usize, &[u32; 3])| a != b && b != c && c != a;
-    let shown = || triangles.iter().enumerate().filter(has_corners);
-    for (_, t) in shown() {
-        bounds.include(centre(t));
-    }
-    // One scale for all axes keeps clusters compact in flat scenes.
-    let size = (bounds.high - bounds.low).max_element();
-    let scale = if size > 0.0 { f64::from(LAST_CELL) / size } else { 0.0 };
-    let key = |(i, t): (usize, &[u32; 3])| {
-        let q = (centre(t) - bounds.low) * scale;
-        let cell = q.to_array().map(|c| (c as u32).min(LAST_CELL));
-        morton_code(cell) << 32 | i as u64
-    };
-    let mut keys: Vec<u64> = shown().map(key).collect();
-    keys.sort_unstable();
-    keys.into_iter().map(|k| k as u32).collect()
-}
-
-/// Numbers the vertices of one cluster from 0, in order of first use.
-struct LocalNumbers {
-    /// For each vertex: the last cluster that used it (from 1), and its number there.
-    last: Vec<(u32, u8)>,
-    cluster: u32,
-    used: u32,
-}
-
-impl LocalNumbers {
-    fn new(vertices: usize) -> Self {
-        Self { last: vec![(0, 0); vertices], cluster: 0, used: 0 }
-    }
-
-    fn next_cluster(&mut self) {
-        self.cluster += 1;
-        self.used = 0;
-    }
-
-    fn number(&mut self, vertex: u32) -> (u8, bool) {
-        let entry = &mut self.last[vertex as usize];
-        let new = entry.0 != self.cluster;
-        if new {
-            *entry = (self.cluster, self.used as u8);
-            self.used += 1;
-        }
-        (entry.1, new)
     }
 }

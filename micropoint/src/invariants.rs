@@ -2,12 +2,12 @@
 //!
 //! Each takes any input at all. A scene or view that is refused satisfies every fact.
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
 use crate::lens::TIE;
 use crate::{
-    Geometry, Interval, Lens, LensKind, MicropointError, MicropointOptions, PixelRect, PlainOpacity,
-    Renderer, SurfaceOpacity, Tile, View,
+    Geometry, Interval, Lens, LensKind, MicropointError, MicropointOptions, PixelRect, Placement,
+    PlainOpacity, Renderer, Shape, SurfaceOpacity, Tile, View,
 };
 
 /// Rounding allowed to a sum of weights over a pixel.
@@ -15,6 +15,9 @@ pub const SUM_TOLERANCE: f64 = 1e-12;
 
 /// Areas below this are dropped where parts are cut by one another, once per cut.
 pub const CUT_TOLERANCE: f64 = 1e-9;
+
+/// What [`CUT_TOLERANCE`] makes of a pixel's shares where the hidden sides of solids are culled.
+pub const CULLED_TOLERANCE: f64 = 10.0 * CUT_TOLERANCE;
 
 /// Triangles as a renderer gets them.
 #[derive(Clone, Debug, Default)]
@@ -105,6 +108,17 @@ impl Soup {
             surface_of: order.iter().map(|&i| self.surface_of[i as usize]).collect(),
             ..self.clone()
         }
+    }
+
+    /// The first triangle of the same place and surface.
+    fn first_like(&self, triangle: u32) -> u32 {
+        let key = |t: u32| {
+            let mut corners =
+                self.triangles[t as usize].map(|v| self.positions[v as usize].to_array().map(f64::to_bits));
+            corners.sort_unstable();
+            (corners, self.surface_of[t as usize])
+        };
+        (0..triangle).find(|&o| key(o) == key(triangle)).unwrap_or(triangle)
     }
 
     /// Prepares it.
@@ -284,17 +298,70 @@ pub fn triangle_order_does_not_matter(
     let order = permutation(soup.triangles.len(), seed);
     let pictures = (picture(soup, view, options), picture(&soup.reordered(&order), view, options));
     let (Some(mut expected), Some(mut got)) = pictures else { return Ok(()) };
-    // Triangles are named by the first one that is equal.
-    let key = |t: u32| {
-        let mut corners =
-            soup.triangles[t as usize].map(|v| soup.positions[v as usize].to_array().map(f64::to_bits));
-        corners.sort_unstable();
-        (corners, soup.surface_of[t as usize])
-    };
-    let first = |t: u32| (0..t).find(|&o| key(o) == key(t)).unwrap_or(t);
-    expected.iter_mut().flatten().for_each(|s| s.triangle = first(s.triangle));
-    got.iter_mut().flatten().for_each(|s| s.triangle = first(order[s.triangle as usize]));
+    expected.iter_mut().flatten().for_each(|s| s.triangle = soup.first_like(s.triangle));
+    got.iter_mut().flatten().for_each(|s| s.triangle = soup.first_like(order[s.triangle as usize]));
     pictures_are_identical(&expected, &got, view.width())
+}
+
+/// A shape that is stored once is drawn in its places as all of its triangles: each has the same share of each pixel, and if all is opaque each
+/// surface has, also with closed components culled. Not bit for bit: clusters are others, so that parts behind what covers a cell may be left out in one case and cut in the other. By the
+/// paper's rule it is not true at all, because there it matters what is left out.
+///
+/// # Errors
+/// The first pixel that differs, or that one of the two is refused.
+pub fn instances_are_their_triangles(shape: &Soup, places: &[DAffine3], view: View) -> Result<(), String> {
+    let (all, instances) = placed(shape, places);
+    let (instances, expanded) = match (instances, all.geometry()) {
+        (Ok(instances), Ok(expanded)) => (instances, expanded),
+        (Err(_), Err(_)) => return Ok(()),
+        (a, b) => return Err(format!("{:?} and {:?}", a.map(|_| ()), b.map(|_| ()))),
+    };
+    check(instances.triangle_count() == expanded.triangle_count(), || "triangles are missing".to_owned())?;
+    let by_triangle = |geometry: &Geometry, culls: bool| {
+        let options = MicropointOptions::DEFAULT.with_cull_solids(culls);
+        let renderer = Renderer::new(geometry, &PlainOpacity, view, options).ok()?;
+        let mut picture = picture_of(&renderer, [renderer.picture()]);
+        // Of triangles that coincide, which comes first is nothing that a picture shows.
+        picture.iter_mut().flatten().for_each(|s| s.surface = all.first_like(s.triangle));
+        Some(shares(&picture, all.triangles.len()))
+    };
+    let (Some(expected), Some(got)) = (by_triangle(&expanded, false), by_triangle(&instances, false)) else {
+        return Ok(());
+    };
+    shares_agree(&expected, &got, CULLED_TOLERANCE)?;
+    let by_surface = |shares: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let sum = |pixel: &Vec<f64>| {
+            let mut sums = vec![0.0; all.surfaces.len()];
+            pixel.iter().zip(&all.surface_of).for_each(|(share, &s)| sums[s as usize] += share);
+            sums
+        };
+        shares.iter().map(sum).collect()
+    };
+    // Where fronts and backs coincide, another one of them is seen if one is culled. Behind dozens of translucent parts some are dimmed by their
+    // mean, and which, depends on how many there are.
+    let is_opaque = all.surfaces.iter().all(SurfaceOpacity::is_opaque);
+    let Some(culled) = by_triangle(&instances, true).filter(|_| is_opaque) else { return Ok(()) };
+    shares_agree(&by_surface(&expected), &by_surface(&culled), CULLED_TOLERANCE)
+}
+
+/// A shape in its places: as triangles of their own, and as instances.
+fn placed(shape: &Soup, places: &[DAffine3]) -> (Soup, Result<Geometry, MicropointError>) {
+    let mut all = Soup { surfaces: shape.surfaces.clone(), ..Soup::default() };
+    let mut placements = vec![];
+    for &world in places {
+        placements.push(Placement { world_from_shape: world, first_id: all.triangles.len() as u32 });
+        let first = all.positions.len() as u32;
+        all.positions.extend(shape.positions.iter().map(|&p| world.transform_point3(p)));
+        let mirrors = world.matrix3.determinant() < 0.0;
+        let turned = |[a, b, c]: [u32; 3]| if mirrors { [a, c, b] } else { [a, b, c] };
+        all.triangles.extend(shape.triangles.iter().map(|&t| turned(t).map(|v| first + v)));
+        all.surface_of.extend_from_slice(&shape.surface_of);
+    }
+    let Soup { positions, triangles, surface_of, surfaces } = shape;
+    let nothing = Shape { positions: &[], triangles: &[], surface_of: &[], places: &[] };
+    let shape = Shape { positions, triangles, surface_of, places: &placements };
+    let instances = Geometry::with_instances(&nothing, surfaces, &[shape]);
+    (all, instances)
 }
 
 /// What a scene line sees of a triangle: a range of x, and nearness as an affine function.

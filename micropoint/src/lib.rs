@@ -39,6 +39,7 @@
 #![forbid(unsafe_code)]
 
 mod bounds;
+mod build;
 mod closed;
 mod dicer;
 mod divide;
@@ -47,6 +48,8 @@ mod face;
 mod fine;
 mod front;
 mod geometry;
+mod hierarchy;
+mod instances;
 mod interval;
 #[cfg(feature = "invariants")]
 pub mod invariants;
@@ -69,6 +72,7 @@ pub use face::{
 };
 pub use front::{Front, Layer, in_front};
 pub use geometry::{ClusterTriangle, Geometry, HiddenSides, SurfaceOpacity};
+pub use instances::{Placement, Shape};
 pub use interval::Interval;
 pub use lens::{BoxImage, Lens, LensKind, Plane};
 pub use pointillist_view::{PixelRect, Projection, View, ViewError};

@@ -9,6 +9,7 @@ use crate::neighbours::{self, Neighbours};
 use glam::DVec2;
 use pointillist_dice::hide::{Blocker, Occluders, Region, Regions};
 use pointillist_dice::{ConvexPolygon, convex};
+use std::ops::ControlFlow;
 
 /// How parts in one cell hide one another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -87,11 +88,14 @@ pub(crate) fn resolve_exactly(
         if order.len() >= neighbours::WORTH_IT {
             dicer.bring_together(&mut order);
         }
-        let masked = |&p: &u32| Parts { dicer, job, corner }.is_masked(p);
-        let compared = if job.squares_per_side > 1 && order.iter().any(masked) {
+        let compared = if job.squares_per_side > 1 && shows_mask(dicer, scratch, job, corner, &order) {
             resolve_divided(dicer, scratch, job, corner, &order, &mut emit)
         } else {
-            resolve_square(dicer, scratch, job, (corner, 1.0), &order, &mut emit)
+            let emit = &mut |dicer: &Dicer, visible: Visible<'_>| {
+                emit(dicer, visible);
+                ControlFlow::Continue(())
+            };
+            resolve_square(dicer, scratch, job, (corner, 1.0), &order, emit)
         };
         dicer.forget_since(stored);
         dicer.counts.cells_single += u64::from(!compared && order.len() == 1);
@@ -99,6 +103,26 @@ pub(crate) fn resolve_exactly(
         dicer.counts.cells_apart += u64::from(!compared && order.len() > 1);
     }
     dicer.recycle(order);
+}
+
+/// Whether anything is seen of a mask that is partly open. One that lies behind what covers the cell must not matter: whether it is here at all depends
+/// on what came first.
+fn shows_mask(
+    dicer: &Dicer,
+    scratch: &mut ResolveScratch,
+    job: &DiceJob<'_>,
+    corner: DVec2,
+    order: &[u32],
+) -> bool {
+    let parts = Parts { dicer, job, corner };
+    let mut shown = false;
+    if order.iter().any(|&p| parts.is_masked(p)) {
+        resolve_square(dicer, scratch, job, (corner, 1.0), order, &mut |_, visible| {
+            shown = parts.is_masked(visible.part);
+            if shown { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+    }
+    shown
 }
 
 /// Resolves a cell square by square. Returns whether parts touch one another.
@@ -115,23 +139,27 @@ fn resolve_divided(
     let area = 1.0 / f64::from(job.squares_per_side * job.squares_per_side);
     let mut compared = false;
     for order in squares.iter() {
-        compared |= resolve_square(dicer, scratch, job, (corner, area), order, emit);
+        compared |= resolve_square(dicer, scratch, job, (corner, area), order, &mut |dicer, visible| {
+            emit(dicer, visible);
+            ControlFlow::Continue(())
+        });
     }
     scratch.squares = squares;
     compared
 }
 
-/// Resolves a cell, or a square of one, with this area, in which these parts are, nearest first. Returns whether parts touch one another.
+/// Resolves a cell, or a square of one, with this area, in which these parts are, nearest first, until `emit` breaks. Returns whether parts touch
+/// one another.
 fn resolve_square(
     dicer: &Dicer,
     scratch: &mut ResolveScratch,
     job: &DiceJob<'_>,
     (corner, area): (DVec2, f64),
     order: &[u32],
-    emit: &mut impl FnMut(&Dicer, Visible<'_>),
+    emit: &mut impl FnMut(&Dicer, Visible<'_>) -> ControlFlow<()>,
 ) -> bool {
     if let [only] = *order {
-        emit(dicer, Visible::whole(dicer, only));
+        let _ = emit(dicer, Visible::whole(dicer, only));
         return false;
     }
     let (mut seen, mut compared) = (0.0, false);
@@ -164,8 +192,7 @@ fn resolve_square(
             continue;
         }
         seen += visible.weight;
-        emit(dicer, visible);
-        if seen >= area - FINISHED {
+        if emit(dicer, visible).is_break() || seen >= area - FINISHED {
             break;
         }
     }

@@ -2,7 +2,8 @@
 
 use crate::bounds::Bounds;
 use crate::face::{Face, GridRect, ProjectedVertex, Setup, set_up_face};
-use crate::geometry::{ClusterQueue, ClusterTriangle, Geometry, SurfaceOpacity, Triangle};
+use crate::geometry::{ClusterTriangle, Geometry, PlacedCluster, SurfaceOpacity};
+use crate::hierarchy::ClusterQueue;
 use crate::volume::ViewVolume;
 use glam::{DVec2, DVec3};
 
@@ -78,23 +79,28 @@ impl Geometry {
         counts: &mut VisitCounts,
         visitor: &mut impl FaceVisitor,
     ) {
-        let (bounds, vertices, triangles) = self.cluster(cluster);
-        if self.hides_cluster(cluster, setup.lens, setup.hidden) || !visitor.wants(bounds) {
+        let placed = self.cluster(cluster);
+        if self.hides_cluster(cluster, setup.lens, setup.hidden) || !visitor.wants(placed.bounds) {
             counts.clusters_skipped += 1;
             return;
         }
         counts.clusters += 1;
         projected.clear();
-        projected.extend(vertices.iter().map(|&v| ProjectedVertex::new(setup.lens, v)));
-        for (i, triangle) in triangles.iter().enumerate() {
+        projected.extend(placed.vertices().map(|v| ProjectedVertex::new(setup.lens, v)));
+        for (i, triangle) in placed.triangles().enumerate() {
             let corners = triangle.corners.map(|c| &projected[usize::from(c)]);
             let surface = &self.surfaces()[triangle.surface as usize];
             if visitor.skips(corners, surface) {
                 counts.triangles_culled += 1;
                 continue;
             }
-            match set_up_face(setup, triangle, ClusterTriangle { cluster, index: i as u32 }, corners, surface)
-            {
+            match set_up_face(
+                setup,
+                &triangle,
+                ClusterTriangle { cluster, index: i as u32 },
+                corners,
+                surface,
+            ) {
                 None => counts.triangles_culled += 1,
                 Some((face, outline)) => {
                     let opacity = if surface.textured_opacity { None } else { Some(surface.opacity) };
@@ -111,7 +117,7 @@ pub struct ClusterView<'a> {
     number: u32,
     /// Vertices that its triangles refer to, in the world.
     pub vertices: &'a [DVec3],
-    triangles: &'a [Triangle],
+    placed: PlacedCluster<'a>,
 }
 
 /// A triangle of a [`ClusterView`].
@@ -130,7 +136,7 @@ pub struct ClusterFace {
 impl ClusterView<'_> {
     /// Its triangles.
     pub fn faces(&self) -> impl Iterator<Item = ClusterFace> + '_ {
-        self.triangles.iter().enumerate().map(|(i, t)| ClusterFace {
+        self.placed.triangles().enumerate().map(|(i, t)| ClusterFace {
             source: ClusterTriangle { cluster: self.number, index: i as u32 },
             corners: t.corners.map(usize::from),
             id: t.id,
@@ -147,13 +153,14 @@ impl Geometry {
         mut visit: impl FnMut(&ClusterView<'_>),
     ) {
         let Some(top) = self.top_level() else { return };
-        self.visit_boxes(top, 0, &mut wants, &mut visit);
+        self.visit_boxes(top, 0, &mut vec![], &mut wants, &mut visit);
     }
 
     fn visit_boxes(
         &self,
         level: usize,
         index: usize,
+        memory: &mut Vec<DVec3>,
         wants: &mut impl FnMut(&Bounds) -> bool,
         visit: &mut impl FnMut(&ClusterView<'_>),
     ) {
@@ -162,11 +169,11 @@ impl Geometry {
         }
         if level == 0 {
             let number = index as u32;
-            let (_, vertices, triangles) = self.cluster(number);
-            return visit(&ClusterView { number, vertices, triangles });
+            let placed = self.cluster(number);
+            return visit(&ClusterView { number, vertices: placed.vertex_slice(memory), placed });
         }
         for child in self.children(level, index) {
-            self.visit_boxes(level - 1, child, wants, visit);
+            self.visit_boxes(level - 1, child, memory, wants, visit);
         }
     }
 }

@@ -1,7 +1,9 @@
 //! The facts of `invariants`, on scenes that aim at trouble.
 
-use glam::{DMat3, DVec3, dvec2, dvec3};
-use pointillist_micropoint::invariants::{self, CUT_TOLERANCE, Picture, Soup, picture, shares};
+use glam::{DAffine3, DMat3, DQuat, DVec3, dvec2, dvec3};
+use pointillist_micropoint::invariants::{
+    self, CULLED_TOLERANCE, CUT_TOLERANCE, Picture, Soup, picture, shares,
+};
 use pointillist_micropoint::{
     Geometry, MicropointOptions, Occlusion, PixelRect, PlainOpacity, Projection, Renderer, Tile, View,
 };
@@ -150,6 +152,20 @@ fn small_balls(opacity: impl Strategy<Value = f32> + 'static) -> BoxedStrategy<S
         .boxed()
 }
 
+/// Moved, turned, scaled, mirrored, flattened, or as it was.
+fn placement() -> BoxedStrategy<DAffine3> {
+    let factor = prop_oneof![4 => 0.2..1.5f64, 1 => -1.5..-0.2f64, 1 => Just(1.0), 1 => Just(0.0)];
+    let scale = prop_oneof![
+        factor.clone().prop_map(DVec3::splat),
+        (factor.clone(), factor.clone(), factor).prop_map(|(x, y, z)| dvec3(x, y, z)),
+    ];
+    let moved = (scale, generic_point(), 0.0..6.0f64, point()).prop_map(|(scale, axis, angle, to)| {
+        let turn = DQuat::from_axis_angle(axis.try_normalize().unwrap_or(DVec3::X), angle);
+        DAffine3::from_scale_rotation_translation(scale, turn, to)
+    });
+    prop_oneof![4 => moved, 1 => Just(DAffine3::IDENTITY)].boxed()
+}
+
 fn options() -> impl Strategy<Value = MicropointOptions> {
     (prop_oneof![Just(1u32), Just(2), Just(4)], any::<bool>(), any::<bool>()).prop_map(
         |(cells, paper, cull)| {
@@ -180,7 +196,14 @@ proptest! {
     fn culling_the_back_faces_of_solids_never_changes_a_correlated_picture(s in soup(), v in view()) {
         let pictures = [true, false].map(|c| picture(&s, v, EXACT.with_cull_solids(c)).unwrap());
         let [a, b] = pictures.map(|p| shares(&p, s.surfaces.len()));
-        holds!(invariants::shares_agree(&a, &b, CUT_TOLERANCE * 10.0));
+        holds!(invariants::shares_agree(&a, &b, CULLED_TOLERANCE));
+    }
+
+    #[test]
+    fn a_shape_in_many_places_is_drawn_as_its_triangles(
+        s in soup(), places in prop::collection::vec(placement(), 0..5), v in view(),
+    ) {
+        holds!(invariants::instances_are_their_triangles(&s, &places, v));
     }
 }
 

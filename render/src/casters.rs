@@ -47,18 +47,18 @@ pub(crate) enum Origin {
 impl ClearBoxes {
     pub(crate) fn new(scene: &Scene) -> Self {
         let mesh = &scene.mesh;
-        let is_clear = |&t: &usize| {
-            let material = &scene.materials[mesh.material_of[t] as usize];
+        let is_clear = |&t: &u32| {
+            let material = &scene.materials[mesh.material(t) as usize];
             material.details.transmission.is_some_and(|t| t.color != Vec3::ZERO)
         };
-        let around = |triangles: &[usize]| {
-            let corners = triangles.iter().flat_map(|&t| scene.corners(t as u32));
+        let around = |triangles: &[u32]| {
+            let corners = triangles.iter().flat_map(|&t| scene.corners(t));
             corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), c| (low.min(c), high.max(c)))
         };
-        let clear: Vec<usize> = (0..mesh.triangles.len()).filter(is_clear).collect();
+        let clear: Vec<u32> = mesh.numbers().filter(is_clear).collect();
         let list = clear.chunks(TRIANGLES_A_BOX).map(around).collect();
-        let everything = mesh.positions.iter().copied();
-        let (low, high) = everything
+        let (low, high) = mesh
+            .world_positions()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
         Self { list, reach: 2.0 * (high - low).length() }
     }

@@ -5,7 +5,7 @@
 //! normals of the one that is turned the other way.
 
 use crate::scene::Mesh;
-use crate::uvs::Uvs;
+use glam::DVec2;
 use std::collections::HashMap;
 
 /// Three corners as bits of their positions and texture coordinates, sorted: the same for both sides of a card.
@@ -19,10 +19,11 @@ pub(crate) struct MaskedCopy {
     pub(crate) original: u32,
 }
 
-/// All copies, rising. `surface` tells a triangle's surface if it is masked and seen from both sides; other triangles have no copies.
+/// All copies among a mesh's own triangles, rising. `uvs` tells a triangle's texture coordinates in both sets, `surface` its surface if it is
+/// masked and seen from both sides; other triangles have no copies.
 pub(crate) fn masked_copies(
     mesh: &Mesh,
-    uvs: &Uvs,
+    uvs: impl Fn(usize) -> [[DVec2; 3]; 2],
     surface: impl Fn(usize) -> Option<u32>,
 ) -> Vec<MaskedCopy> {
     let mut first: HashMap<(u32, Corners), u32> = HashMap::new();
@@ -30,7 +31,7 @@ pub(crate) fn masked_copies(
     for t in 0..mesh.triangles.len() {
         let Some(surface) = surface(t) else { continue };
         let triangle = t as u32;
-        let original = *first.entry((surface, corners(mesh, uvs, t))).or_insert(triangle);
+        let original = *first.entry((surface, corners(mesh, uvs(t), t))).or_insert(triangle);
         if original != triangle {
             copies.push(MaskedCopy { triangle, original });
         }
@@ -41,7 +42,8 @@ pub(crate) fn masked_copies(
 /// The other side of a card.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OtherSide {
-    pub(crate) triangle: u32,
+    /// How much larger its number is than that of the first side.
+    pub(crate) ahead: u32,
     /// For each corner of the first side, the corner of this one that is in its place.
     pub(crate) corners: [usize; 3],
 }
@@ -54,13 +56,12 @@ pub(crate) fn other_sides(mesh: &Mesh, copies: &[MaskedCopy]) -> HashMap<u32, Ot
         let [a, b, c] = places(original).map(|p| there.iter().position(|&q| q == p));
         let corners = [a?, b?, c?];
         let turned = matches!(corners, [0, 2, 1] | [2, 1, 0] | [1, 0, 2]);
-        turned.then_some((original, OtherSide { triangle, corners }))
+        turned.then_some((original, OtherSide { ahead: triangle - original, corners }))
     };
     copies.iter().filter_map(side).collect()
 }
 
-fn corners(mesh: &Mesh, uvs: &Uvs, triangle: usize) -> Corners {
-    let [first, second] = uvs.both(triangle as u32);
+fn corners(mesh: &Mesh, [first, second]: [[DVec2; 3]; 2], triangle: usize) -> Corners {
     let vertices = mesh.triangles[triangle];
     let mut corners = [0, 1, 2].map(|k: usize| {
         let (p, a, b) = (mesh.positions[vertices[k] as usize], first[k], second[k]);

@@ -86,15 +86,15 @@ impl Shader<'_> {
         let rect = tile.rect();
         let ids = self.mattes.of(matte, self.scene);
         let mesh = &self.scene.mesh;
-        let number_of = match matte {
-            Matte::Object => &mesh.object_of,
-            Matte::Material => &mesh.material_of,
+        let number_of = |triangle: u32| match matte {
+            Matte::Object => mesh.object(triangle),
+            Matte::Material => mesh.material(triangle),
         };
         // Bits of ids, so that they can be sorted: names with the same id are one.
         let mut seen: Vec<(u32, u32, f64)> = Vec::with_capacity(tile.points().len());
         seen.extend(tile.points().iter().map(|m| {
             let triangle = self.seen_triangle(&tile.faces()[m.face as usize]);
-            let id = ids[number_of[triangle as usize] as usize];
+            let id = ids[number_of(triangle) as usize];
             ((m.y - rect.y0) * rect.width() + (m.x - rect.x0), id.to_bits(), m.weight)
         }));
         // Stable: equal ids are added up in the order of the micropoints, whatever sorts them.

@@ -192,7 +192,7 @@ impl Shader<'_> {
 
     /// The measured reflection of a triangle's material, which takes the place of its constants.
     pub(crate) fn measured(&self, triangle: u32) -> Option<&MeasuredBrdf> {
-        let material = self.scene.mesh.material_of[triangle as usize] as usize;
+        let material = self.scene.mesh.material(triangle) as usize;
         self.scene.materials[material].details.measured.as_ref()
     }
 }

@@ -38,25 +38,25 @@ pub(crate) enum Side {
 /// The polygons of a scene that shine. `radiance_of` tells that of a triangle whose material emits.
 pub(crate) fn emitting_polygons(scene: &Scene, radiance_of: impl Fn(u32) -> Vec3) -> Vec<EmittingPolygon> {
     let mesh = &scene.mesh;
-    let material = |t: u32| &scene.materials[mesh.material_of[t as usize] as usize];
-    let mut emitting: Vec<u32> =
-        (0..mesh.triangles.len() as u32).filter(|&t| material(t).details.emits).collect();
+    let material = |t: u32| &scene.materials[mesh.material(t) as usize];
+    if !scene.materials.iter().any(|material| material.details.emits) {
+        return vec![];
+    }
+    let mut emitting: Vec<u32> = mesh.numbers().filter(|&t| material(t).details.emits).collect();
     // By place: how triangles are joined does not depend on their order.
     emitting.sort_by_cached_key(|&t| scene.corners(t).map(place));
     if emitting.is_empty() {
         return vec![];
     }
     let lamps = Lamps::new(scene, &emitting);
-    let alike = |a: u32, b: u32| {
-        let of = |list: &[u32]| list[a as usize] == list[b as usize];
-        of(&mesh.material_of) && of(&mesh.object_of)
-    };
+    let of = |t: u32| (mesh.material(t), mesh.object(t));
+    let alike = |a: u32, b: u32| of(a) == of(b);
     let polygons = joined_polygons(scene, &emitting, alike).into_iter();
     let shining = polygons.map(|polygon| {
         let first = polygon.triangles[0];
         let lamp = lamps.of(first);
-        let two_sided = mesh.objects[mesh.object_of[first as usize] as usize].two_sided
-            && !material(first).details.one_sided;
+        let two_sided =
+            mesh.objects[mesh.object(first) as usize].two_sided && !material(first).details.one_sided;
         let inner = |side| lamp.inner_side() == Some(side);
         let side = |drawn: bool, is_inner: bool| match (drawn, is_inner) {
             (false, _) => Side::Dark,
@@ -77,7 +77,7 @@ pub(crate) fn emitting_polygons(scene: &Scene, radiance_of: impl Fn(u32) -> Vec3
 
 /// What a triangle sends out, its maps averaged over it: its emission times its opacity, each with the mean of its own map.
 pub(crate) fn radiance_of_triangle(scene: &Scene, surfaces: &Surfaces, triangle: u32) -> Vec3 {
-    let surface = &scene.materials[scene.mesh.material_of[triangle as usize] as usize].surface;
+    let surface = &scene.materials[scene.mesh.material(triangle) as usize].surface;
     let [a, b, c] = scene.corners(triangle);
     // The triangle in its plane, as a picture of it from straight above.
     let along = (b - a).normalize_or_zero();

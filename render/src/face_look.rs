@@ -57,7 +57,7 @@ impl Shader<'_> {
         FaceLook {
             normal: if face.front { normal } else { -normal }.as_vec3(),
             material,
-            varies_by_corner: !self.scene.mesh.colors.is_empty()
+            varies_by_corner: self.scene.mesh.has_colors()
                 || (!is_flat && self.corner_normals(face).is_some()),
             is_constant: self.surfaces.details(face.id).is_none()
                 && material.diffuse == Vec3::ZERO
@@ -68,6 +68,6 @@ impl Shader<'_> {
 
     /// The material of a face.
     pub(crate) fn described(&self, face: &Face) -> &scene::Material {
-        &self.scene.materials[self.scene.mesh.material_of[face.id as usize] as usize]
+        &self.scene.materials[self.scene.mesh.material(face.id) as usize]
     }
 }

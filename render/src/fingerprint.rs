@@ -112,11 +112,14 @@ pub fn of_light(scene: &Scene) -> u64 {
 #[must_use]
 pub fn of_geometry(mesh: &Mesh) -> u64 {
     let mut hash = Fingerprint::default();
-    hash.int(mesh.positions.len() as u64);
-    mesh.positions.iter().for_each(|&p| hash.vector(p));
-    hash.triples(&mesh.triangles);
-    mesh.object_of.iter().for_each(|n| hash.0.write(&n.to_le_bytes()));
-    mesh.objects.iter().for_each(|object| hash.int(u64::from(object.two_sided)));
+    for part in std::iter::once(mesh).chain(mesh.shapes()) {
+        hash.int(part.positions.len() as u64);
+        part.positions.iter().for_each(|&p| hash.vector(p));
+        hash.triples(&part.triangles);
+        part.object_of.iter().for_each(|n| hash.0.write(&n.to_le_bytes()));
+        part.objects.iter().for_each(|object| hash.int(u64::from(object.two_sided)));
+    }
+    hash.instances(mesh);
     hash.0.finish()
 }
 
@@ -124,8 +127,10 @@ pub fn of_geometry(mesh: &Mesh) -> u64 {
 #[must_use]
 pub fn of_sources(scene: &Scene) -> u64 {
     let mut hash = Fingerprint::default();
-    scene.mesh.material_of.iter().for_each(|n| hash.0.write(&n.to_le_bytes()));
-    scene.mesh.colors.iter().for_each(|&color| hash.color(color));
+    for part in std::iter::once(&scene.mesh).chain(scene.mesh.shapes()) {
+        part.material_of.iter().for_each(|n| hash.0.write(&n.to_le_bytes()));
+        part.colors.iter().for_each(|&color| hash.color(color));
+    }
     scene.materials.iter().for_each(|material| hash.material(material));
     scene.textures.iter().for_each(|texture| hash.texture(texture));
     for light in &scene.lights {
@@ -190,6 +195,15 @@ impl Fingerprint {
         lists.into_iter().for_each(|list| self.triples(list));
         mesh.material_of.iter().chain(&mesh.object_of).for_each(|n| self.0.write(&n.to_le_bytes()));
         mesh.objects.iter().for_each(|object| self.int(u64::from(object.two_sided)));
+        mesh.shapes().iter().for_each(|shape| self.mesh(shape));
+        self.instances(mesh);
+    }
+
+    fn instances(&mut self, mesh: &Mesh) {
+        for instance in mesh.instances() {
+            self.int(u64::from(instance.shape) << 32 | u64::from(instance.object));
+            instance.world_from_shape.to_cols_array().into_iter().for_each(|n| self.float(n));
+        }
     }
 
     fn material(&mut self, material: &Material) {

@@ -66,13 +66,11 @@ pub(crate) fn on_surfaces(
     let (low, high) = box_of(probes);
     let diagonal = (high - low).length();
     let (low, high) = (low - MARGIN * diagonal, high + MARGIN * diagonal);
-    let corners = |t: &[u32; 3]| t.map(|v| mesh.positions[v as usize]);
     let mut sum = 0.0;
     let areas: Vec<f64> = mesh
-        .triangles
-        .iter()
+        .numbers()
         .map(|t| {
-            let [a, b, c] = corners(t);
+            let [a, b, c] = mesh.corners(t);
             // What is far beyond the box would take all the places, and is refused below.
             let is_near = a.min(b).min(c).cmple(high).all() && a.max(b).max(c).cmpge(low).all();
             sum += if is_near { 0.5 * (b - a).cross(c - a).length() } else { 0.0 };
@@ -84,7 +82,7 @@ pub(crate) fn on_surfaces(
     }
     let place = |r: DVec3| {
         let index = areas.partition_point(|a| *a <= r.x * sum).min(areas.len() - 1);
-        let [a, b, c] = corners(&mesh.triangles[index]);
+        let [a, b, c] = mesh.corners(index as u32);
         // Uniform on the triangle: what is beyond the diagonal of the parallelogram is folded back.
         let (u, v) = if r.y + r.z > 1.0 { (1.0 - r.y, 1.0 - r.z) } else { (r.y, r.z) };
         let normal = (b - a).cross(c - a).normalize_or_zero();

@@ -100,8 +100,8 @@ impl Shader<'_> {
         if self.own_light.is_empty() {
             return m.weight;
         }
-        let triangle = tile.faces()[m.face as usize].id as usize;
-        m.weight * self.own_light[self.scene.mesh.material_of[triangle] as usize]
+        let triangle = tile.faces()[m.face as usize].id;
+        m.weight * self.own_light[self.scene.mesh.material(triangle) as usize]
     }
 
     fn geometry_value(&self, layer: LayerKind, tile: &Tile, p: &Point, m: &Micropoint) -> Vec3 {
@@ -109,8 +109,8 @@ impl Shader<'_> {
             LayerKind::Normal => p.normal,
             LayerKind::Position => p.place.position.as_vec3(),
             _ => {
-                let triangle = tile.faces()[m.face as usize].id as usize;
-                Vec3::splat(self.scene.mesh.object_of[triangle] as f32 + 1.0)
+                let triangle = tile.faces()[m.face as usize].id;
+                Vec3::splat(self.scene.mesh.object(triangle) as f32 + 1.0)
             }
         }
     }

@@ -109,7 +109,7 @@ pub fn solve_indirect(
     } else {
         by_pairs(scene, &surfaces, options, monitor)?
     };
-    Ok(Lightmap::of_baked(&baked, &surfaces.faces, scene.mesh.triangles.len())?)
+    Ok(Lightmap::of_baked(&baked, &surfaces.faces, scene.mesh.triangle_count())?)
 }
 
 /// Tells a monitor how far all the work is.

@@ -3,11 +3,15 @@
 //! Each takes any input at all. A scene that is refused satisfies every fact.
 
 use crate::{AmbientLight, DrawOptions, Frame, LayerKind, Matte, Prepared, RenderError, Scene};
-use glam::Vec3;
+use glam::{DAffine3, Vec3};
 use pointillist_view::PixelRect;
 
 /// Rounding of a pixel in ulps of `f32` (2⁻²³) of its brightest term: colours are sums in `f64` of terms rounded to `f32`.
 pub const PIXEL_ULPS: f32 = 64.0;
+
+/// How far colours of instances may be from those of their triangles, over the brightest one: parts that are hidden are cut in one case and left out in the
+/// other.
+const INSTANCE_TOLERANCE: f32 = 1e-5;
 
 /// Every layer that does not depend on lights' names.
 const LAYERS: [LayerKind; 9] = [
@@ -95,6 +99,43 @@ pub fn frames_are_identical(a: &Frame, b: &Frame) -> Result<(), String> {
         Some(0) => Err("colours differ".to_owned()),
         Some(1) => Err("depths differ".to_owned()),
         Some(i) => Err(format!("plane {} differs", i - 2)),
+    }
+}
+
+/// The same scene with its mesh as a shape, too, that stands in further places: `None` if it has no objects, or a place is refused.
+#[must_use]
+pub fn with_instances(scene: &Scene, places: &[DAffine3]) -> Option<Scene> {
+    let mut scene = scene.clone();
+    let mut shape = scene.mesh.clone();
+    shape.objects.truncate(1);
+    shape.object_of.fill(0);
+    let shape = scene.mesh.add_shape(shape).ok()?;
+    for (i, &place) in places.iter().enumerate() {
+        scene.mesh.add_instance(shape, &format!("instance {i}"), place).ok()?;
+    }
+    Some(scene)
+}
+
+/// Triangles that are stored once are drawn in their places as if they were stored there: the same colours to rounding, in places that are no others'
+/// and touch no others, because what touches may be closed together and open by itself.
+///
+/// # Errors
+/// What differs.
+pub fn instances_are_drawn_as_their_triangles(scene: &Scene) -> Result<(), String> {
+    let mut expanded = scene.clone();
+    expanded.mesh = scene.mesh.expanded().map_err(|error| error.to_string())?.into_owned();
+    let draw = |scene: &Scene| crate::render(scene, &DrawOptions::DEFAULT, &()).map(|frame| frame.color);
+    match (draw(scene), draw(&expanded)) {
+        (Ok(a), Ok(b)) => {
+            let brightest = b.iter().flatten().fold(1.0_f32, |most, v| most.max(v.abs()));
+            let apart = |(i, (a, b)): (usize, (&[f32; 4], &[f32; 4]))| {
+                let difference = (0..4).map(|k| (a[k] - b[k]).abs()).fold(0.0, f32::max);
+                (difference > INSTANCE_TOLERANCE * brightest).then(|| format!("pixel {i}: {a:?} and {b:?}"))
+            };
+            a.iter().zip(&b).enumerate().find_map(apart).map_or(Ok(()), Err)
+        }
+        (Err(_), Err(_)) => Ok(()),
+        (a, b) => Err(format!("{:?} and {:?}", a.err(), b.err())),
     }
 }
 

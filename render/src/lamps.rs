@@ -52,7 +52,7 @@ impl Lamps {
             }
         }
         let radiances = direct_radiances(scene);
-        let radiance_of = |t: u32| radiances[scene.mesh.material_of[t as usize] as usize];
+        let radiance_of = |t: u32| radiances[scene.mesh.material(t) as usize];
         for emitter in emitting_polygons(scene, radiance_of) {
             let exitance = bands(emitter.radiance).map(|r| r * PI);
             let back = emitter.vertices.iter().rev().copied().collect();

@@ -131,9 +131,9 @@ pub use pointillist_shadow::check_outline;
 pub use prepared::{Prepared, PreparedMaps};
 pub use radiosity_surfaces::{SceneSurfaces, scene_surfaces};
 pub use scene::{
-    AmbientLight, Bump, BumpHeight, Camera, Channel, Details, ImageSettings, LightSource, Map, MapPlace,
-    Material, MeasuredBrdf, Mesh, NONE, Object, Part, RenderSettings, Scene, SceneError, SkyLight,
-    Surroundings, Texels, Texture, Transmission, UvSet, linear_from_srgb, srgb_from_linear,
+    AmbientLight, Bump, BumpHeight, Camera, Channel, Details, ImageSettings, Instance, LightSource, Map,
+    MapPlace, Material, MeasuredBrdf, Mesh, NONE, Object, Part, RenderSettings, Scene, SceneError, SkyLight,
+    Surroundings, Texels, Texture, Transmission, UvSet, linear_from_srgb, normal_matrix, srgb_from_linear,
 };
 pub use solids::Solids;
 

@@ -102,7 +102,7 @@ pub(crate) fn scene_lights<'a>(
             !shown(light) && !may_reach(&source.light) && !of_highlights.as_ref().is_some_and(may_reach);
         let unhindered = (!source.shadow).then_some((Vec3::ONE, &*prepared.geometry, Occasion::Always));
         let casters = unhindered.into_iter().chain(prepared.casters().filter(|_| source.shadow));
-        for cast @ (channels, geometry, occasion) in casters {
+        for cast in casters {
             if !sampled && let Some(area) = source.light.exact_area() {
                 let sides = whole_light((light, source), area, cast, surfaces)?;
                 lights.whole.extend(sides.into_iter().filter(|_| !is_idle));
@@ -114,40 +114,12 @@ pub(crate) fn scene_lights<'a>(
                 continue;
             }
             for sample in 0..source.light.samples() {
-                let shadow = if source.shadow {
-                    let options = ShadowOptions::default()
-                        .with_occlusion(scene.render.occlusion())
-                        .with_resolution(source.resolution);
-                    let named = |e| RenderError::Shadow { name: source.name.clone(), source: e };
-                    let shadow =
-                        ShadowLight::new(geometry, surfaces, emitter(&source.light, sample), options);
-                    let shadow = shadow.map_err(named)?;
-                    if is_idle {
-                        continue;
-                    }
-                    Some(shadow.seen_from(lens))
-                } else if is_idle {
-                    continue;
-                } else {
-                    None
-                };
-                let origin = match source.light.source(sample) {
-                    Source::Direction(direction) => Origin::Direction(direction),
-                    Source::Position(position) => Origin::Within((position, position)),
-                    _ => unreachable!("light comes from a point or a direction"),
-                };
-                let is_narrow =
-                    matches!(source.light, Light::Spot { .. } | Light::Rect { .. } | Light::Polygon { .. });
-                lights.samples.push(LightSample {
-                    light,
-                    sample,
-                    channels,
-                    of_highlights,
-                    occasion,
-                    origin,
-                    shadow,
-                    is_narrow,
-                });
+                // What is wrong with a light is told also where it is idle.
+                let mut found = light_sample(prepared, (light, source), sample, cast)?;
+                if !is_idle {
+                    found.shadow = found.shadow.map(|shadow| shadow.seen_from(lens));
+                    lights.samples.push(found);
+                }
             }
         }
     }
@@ -160,6 +132,33 @@ pub(crate) fn scene_lights<'a>(
         }
     }
     Ok(lights)
+}
+
+/// One sample of a light, for viewers anywhere.
+fn light_sample<'a>(
+    prepared: &'a Prepared<'_>,
+    (light, source): (usize, &LightSource),
+    sample: u32,
+    (channels, geometry, occasion): Cast<'a>,
+) -> Result<LightSample<'a>, RenderError> {
+    let shadow = if source.shadow {
+        let options = ShadowOptions::default()
+            .with_occlusion(prepared.scene.render.occlusion())
+            .with_resolution(source.resolution);
+        let found = ShadowLight::new(geometry, &*prepared.surfaces, emitter(&source.light, sample), options);
+        let named = |e| RenderError::Shadow { name: source.name.clone(), source: e };
+        Some(found.map_err(named)?)
+    } else {
+        None
+    };
+    let origin = match source.light.source(sample) {
+        Source::Direction(direction) => Origin::Direction(direction),
+        Source::Position(position) => Origin::Within((position, position)),
+        _ => unreachable!("light comes from a point or a direction"),
+    };
+    let is_narrow = matches!(source.light, Light::Spot { .. } | Light::Rect { .. } | Light::Polygon { .. });
+    let of_highlights = source.of_highlights();
+    Ok(LightSample { light, sample, channels, of_highlights, occasion, origin, shadow, is_narrow })
 }
 
 /// The share of a light that these channels are.
@@ -233,9 +232,8 @@ fn emitting_sides<'a>(
             Side::LightsWithin(low, high) => Some((low, high)),
         };
         let name = || {
-            let mesh = &prepared.scene.mesh;
-            let material = mesh.material_of[emitter.triangles[0] as usize] as usize;
-            prepared.scene.materials[material].name.clone()
+            let material = prepared.scene.mesh.material(emitter.triangles[0]);
+            prepared.scene.materials[material as usize].name.clone()
         };
         let side = AreaLight::new(geometry, &*prepared.surfaces, vertices, options)
             .map_err(|source| RenderError::Shadow { name: name(), source })?

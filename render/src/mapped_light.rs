@@ -47,7 +47,7 @@ impl MappedLight {
     }
 
     fn mean_of_triangle(&self, scene: &Scene, triangle: u32) -> DVec3 {
-        let uv = scene.mesh.map_corners(triangle as usize, &self.map.place);
+        let uv = scene.mesh.map_corners(triangle, &self.map.place);
         let uv = uv.unwrap_or_else(|| self.map.place.of([DVec2::ZERO; 3]));
         let size = DVec2::new(f64::from(self.sums.width()), f64::from(self.sums.height()));
         let corner = |k: usize| TexelCorner {

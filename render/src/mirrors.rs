@@ -29,12 +29,12 @@ fn find(scene: &Scene) -> Mirrors {
         return found;
     }
     let mesh = &scene.mesh;
-    for (t, triangle) in mesh.triangles.iter().enumerate() {
-        if captures[mesh.material_of[t] as usize] {
-            let key = (mesh.object_of[t], mesh.material_of[t]);
+    for t in mesh.numbers() {
+        let material = mesh.material(t);
+        if captures[material as usize] {
+            let key = (mesh.object(t), material);
             let around = found.entry(key).or_insert((DVec3::INFINITY, DVec3::NEG_INFINITY));
-            for &v in triangle {
-                let p = mesh.positions[v as usize];
+            for p in mesh.corners(t) {
                 *around = (around.0.min(p), around.1.max(p));
             }
         }

@@ -42,7 +42,7 @@ pub struct PreparedMaps {
 
 /// Triangles, materials and textures.
 fn sizes(scene: &Scene) -> [usize; 3] {
-    [scene.mesh.triangles.len(), scene.materials.len(), scene.textures.len()]
+    [scene.mesh.triangle_count(), scene.materials.len(), scene.textures.len()]
 }
 
 impl PreparedMaps {

@@ -45,10 +45,10 @@ pub fn scene_surfaces(scene: &Scene) -> Result<SceneSurfaces, SceneError> {
     let looks: Vec<Look> = scene.materials.iter().map(|material| look_of(material, &mean)).collect();
     let mesh = &scene.mesh;
     let mapped = MappedLight::of_materials(scene)?;
-    let mut taken = vec![false; mesh.triangles.len()];
+    let mut taken = vec![false; mesh.triangle_count()];
     let partners = Partners::new(scene);
-    for triangle in 0..mesh.triangles.len() as u32 {
-        let material = mesh.material_of[triangle as usize] as usize;
+    for triangle in mesh.numbers() {
+        let material = mesh.material(triangle) as usize;
         let look = &looks[material];
         if look.opacity < OPAQUE {
             found.translucent += 1;
@@ -81,7 +81,7 @@ pub fn scene_surfaces(scene: &Scene) -> Result<SceneSurfaces, SceneError> {
         };
         let exitance = bands(own + known).map(|radiance| radiance * PI);
         let mut surface = Surface::new(&vertices, bands(reflectance)).emitting(exitance);
-        surface.two_sided = mesh.objects[mesh.object_of[triangle as usize] as usize].two_sided
+        surface.two_sided = mesh.objects[mesh.object(triangle) as usize].two_sided
             && !scene.materials[material].details.one_sided;
         found.surfaces.push(surface);
         found.faces.push(faces);
@@ -129,16 +129,15 @@ fn look_of(material: &Material, mean: &dyn Fn(usize) -> Vec4) -> Look {
 
 /// Mean of the vertices' colours over triangles, by area.
 fn mean_color(mesh: &Mesh, triangles: &[u32]) -> Vec3 {
-    if mesh.colors.is_empty() {
+    if !mesh.has_colors() {
         return Vec3::ONE;
     }
     let (mut sum, mut areas) = (DVec3::ZERO, 0.0);
     for &t in triangles {
-        let corners = mesh.triangles[t as usize];
-        let [a, b, c] = corners.map(|v| mesh.positions[v as usize]);
+        let [a, b, c] = mesh.corners(t);
         // A triangle without area counts a little, so that the mean of no area at all is a mean, too.
         let area = (b - a).cross(c - a).length().max(f64::MIN_POSITIVE);
-        let colors: DVec3 = corners.iter().map(|&v| mesh.colors[v as usize].as_dvec3()).sum();
+        let colors: DVec3 = mesh.corner_colors(t).iter().map(|color| color.as_dvec3()).sum();
         sum += colors / 3.0 * area;
         areas += area;
     }
@@ -168,7 +167,7 @@ fn key(p: DVec3) -> [u64; 3] {
 impl Partners {
     fn new(scene: &Scene) -> Self {
         let mut by_edge = HashMap::new();
-        for triangle in 0..scene.mesh.triangles.len() as u32 {
+        for triangle in scene.mesh.numbers() {
             let ring = scene.corners(triangle);
             for i in 0..3 {
                 by_edge.entry([key(ring[i]), key(ring[(i + 1) % 3])]).or_insert(triangle);
@@ -186,9 +185,8 @@ impl Partners {
         // The neighbour runs along the edge the other way.
         let other = *self.by_edge.get(&[key(b), key(a)])?;
         let mesh = &scene.mesh;
-        let same =
-            |list: &[u32]| list.get(triangle as usize) == list.get(other as usize) && other != triangle;
-        if taken[other as usize] || !same(&mesh.material_of) || !same(&mesh.object_of) {
+        let of = |t: u32| (mesh.material(t), mesh.object(t));
+        if taken[other as usize] || other == triangle || of(other) != of(triangle) {
             return None;
         }
         let d = scene.corners(other).into_iter().find(|&p| p != a && p != b)?;

@@ -110,7 +110,7 @@ impl Reflections {
             }
             Surroundings::Capture => {
                 let mesh = &scene.mesh;
-                self.captured.get(&(mesh.object_of[triangle as usize], mesh.material_of[triangle as usize]))
+                self.captured.get(&(mesh.object(triangle), mesh.material(triangle)))
             }
         };
         own.map(|map| Mirrored::Around(map)).or(self.scene.as_deref().map(Mirrored::Scene))

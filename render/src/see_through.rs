@@ -61,6 +61,6 @@ pub(crate) fn shows_tint(scene: &Scene, tile: &Tile) -> bool {
         let passes = scene.materials[material as usize].details.passes_straight();
         passes != Vec3::splat(passes.x)
     };
-    let mut of_point = tile.points().iter().map(|m| tile.faces()[m.face as usize].id as usize);
-    of_point.any(|triangle| tinted(scene.mesh.material_of[triangle]))
+    let mut of_point = tile.points().iter().map(|m| tile.faces()[m.face as usize].id);
+    of_point.any(|triangle| tinted(scene.mesh.material(triangle)))
 }

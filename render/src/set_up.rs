@@ -72,7 +72,7 @@ impl Shader<'_> {
         if self.economy.is_none() {
             material = self.widened_by_curvature(face, material, &mut outlines);
         }
-        if !self.scene.mesh.colors.is_empty() {
+        if self.scene.mesh.has_colors() {
             material = material.colored(self.vertex_color(face.id, barycentric));
         }
         let normal = match look.varies_by_corner {
@@ -138,8 +138,7 @@ impl Shader<'_> {
     }
 
     fn vertex_color(&self, triangle: u32, barycentric: Vec3) -> Vec3 {
-        let mesh = &self.scene.mesh;
-        interpolate_color(mesh.triangles[triangle as usize].map(|v| mesh.colors[v as usize]), barycentric)
+        interpolate_color(self.scene.mesh.corner_colors(triangle), barycentric)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::cryptomatte::MatteIds;
 use crate::lights::SceneLights;
 use crate::prepared::Prepared;
 use crate::reflections::Reflections;
-use crate::scene::{NONE, Scene};
+use crate::scene::Scene;
 use crate::see_through::Sight;
 use crate::shaft::Box3;
 use crate::surfaces::Surfaces;
@@ -178,19 +178,18 @@ impl<'a> Shader<'a> {
 
     /// Unit normals of a face's corners, if it has them, on the side that is seen.
     pub(crate) fn corner_normals(&self, face: &Face) -> Option<[Vec3; 3]> {
-        let mesh = &self.scene.mesh;
         let (triangle, corners) = match self.surfaces.other_side(face.id) {
-            Some(side) if !face.front => (side.triangle, side.corners),
+            Some(side) if !face.front => (face.id + side.ahead, side.corners),
             _ => (face.id, [0, 1, 2]),
         };
-        let of = mesh.normal_of.get(triangle as usize)?;
-        (!of.contains(&NONE)).then(|| corners.map(|k| mesh.normals[of[k] as usize]))
+        let normals = self.scene.mesh.corner_normals(triangle)?;
+        Some(corners.map(|k| normals[k]))
     }
 
     /// The triangle whose front or back is seen: of two that coincide, the one that is turned this way.
     pub(crate) fn seen_triangle(&self, face: &Face) -> u32 {
         match self.surfaces.other_side(face.id) {
-            Some(side) if !face.front => side.triangle,
+            Some(side) if !face.front => face.id + side.ahead,
             _ => face.id,
         }
     }

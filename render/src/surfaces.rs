@@ -2,12 +2,13 @@
 
 use crate::copies::{MaskedCopy, OtherSide, masked_copies, other_sides};
 use crate::detail_maps::{DetailMaps, DetailTable};
-use crate::scene::{Details, MapPlace, Material, Scene, Texture};
+use crate::scene::{Details, MapPlace, Material, Mesh, Scene, Storage, Texture};
 use crate::texel_sums::{Lazy, color_sums, opacity_sums, when_needed};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec3, Vec4};
 use pointillist_micropoint::{
-    Geometry, MaskSums, MicropointError, SurfaceOpacity, SurfacePoint, TexelSums, TexelWrap, TexturedOpacity,
+    Geometry, MaskSums, MicropointError, Placement, Shape, SurfaceOpacity, SurfacePoint, TexelSums,
+    TexelWrap, TexturedOpacity,
 };
 use pointillist_parallel as parallel;
 use pointillist_shade::Model;
@@ -106,8 +107,11 @@ struct Still {
     /// By material, as `textures`.
     places: Vec<Places>,
     uvs: Uvs,
+    storage: Storage,
+    /// By where triangles are stored.
     surface_of: Vec<u32>,
     surfaces: Vec<SurfaceOpacity>,
+    /// By where triangles are stored.
     material_of: Vec<u32>,
     /// For each material; `None` for one of colour and opacity alone.
     details: Vec<Option<DetailMaps>>,
@@ -116,9 +120,9 @@ struct Still {
 /// Materials ready to be looked up, and where their textures lie on the triangles.
 pub(crate) struct Surfaces {
     still: Arc<Still>,
-    /// Masked triangles that coincide with an earlier one.
-    copies: Vec<MaskedCopy>,
-    /// By the triangles that stand for both sides of a masked card.
+    /// Masked triangles that coincide with an earlier one, of the mesh itself and of each of its shapes.
+    copies: Vec<Vec<MaskedCopy>>,
+    /// By where the triangles are stored that stand for both sides of a masked card; those of shapes are numbered as these are.
     other_sides: HashMap<u32, OtherSide>,
 }
 
@@ -131,9 +135,10 @@ impl Surfaces {
         let any_detail = details.iter().flatten().any(DetailMaps::any);
         let any_texture = any_detail || textures.iter().any(|t| !matches!(**t, Textured::Nothing));
         let uvs = if any_texture { Uvs::new(&scene.mesh) } else { Uvs::default() };
-        let material_of = scene.mesh.material_of.clone();
+        let material_of = scene.mesh.stores().flat_map(|mesh| &mesh.material_of).copied().collect();
+        let storage = scene.mesh.storage();
         let places = scene.materials.iter().map(Places::of).collect();
-        let still = Still { textures, places, uvs, surface_of, surfaces, material_of, details };
+        let still = Still { textures, places, uvs, storage, surface_of, surfaces, material_of, details };
         Ok(Self::of_places(scene, Arc::new(still)))
     }
 
@@ -143,55 +148,76 @@ impl Surfaces {
     }
 
     fn of_places(scene: &Scene, still: Arc<Still>) -> Self {
-        let masked = |t: usize| {
-            let surface = &still.surfaces[still.surface_of[t] as usize];
-            (surface.textured_opacity && surface.two_sided).then_some(still.surface_of[t])
-        };
-        let copies = masked_copies(&scene.mesh, &still.uvs, masked);
-        let other_sides = other_sides(&scene.mesh, &copies);
-        Self { still, copies, other_sides }
+        let (mut copies, mut sides, mut first) = (vec![], HashMap::new(), 0);
+        for mesh in scene.mesh.stores() {
+            let masked = |t: usize| {
+                let number = still.surface_of[first + t];
+                let surface = &still.surfaces[number as usize];
+                (surface.textured_opacity && surface.two_sided).then_some(number)
+            };
+            let own = masked_copies(mesh, |t| still.uvs.stored(first + t), masked);
+            let stored = other_sides(mesh, &own).into_iter().map(|(t, side)| (t + first as u32, side));
+            sides.extend(stored);
+            copies.push(own);
+            first += mesh.triangles.len();
+        }
+        Self { still, copies, other_sides: sides }
     }
 
     /// The triangle in the place of this one that is turned the other way, if it is a card of two sides.
-    pub(crate) fn other_side(&self, triangle: u32) -> Option<&OtherSide> {
-        self.other_sides.get(&triangle)
+    pub(crate) fn other_side(&self, triangle: u32) -> Option<OtherSide> {
+        if self.other_sides.is_empty() {
+            return None;
+        }
+        let (index, order) = self.still.storage.find(triangle);
+        let side = self.other_sides.get(&(index as u32))?;
+        // `order` is its own inverse.
+        let corners = order.map(|k| order[side.corners[k]]);
+        Some(OtherSide { ahead: side.ahead, corners })
     }
 
     pub(crate) fn geometry(&self, scene: &Scene) -> Result<Geometry, MicropointError> {
-        self.geometry_of(scene, |_| true)
+        self.geometry_of(scene, None)
     }
 
     /// Everything but one object. Triangles keep their numbers.
     pub(crate) fn geometry_without(&self, scene: &Scene, object: u32) -> Result<Geometry, MicropointError> {
-        self.geometry_of(scene, |t| scene.mesh.object_of[t] != object)
+        self.geometry_of(scene, Some(object))
     }
 
-    /// Of masked triangles that coincide, all but the first that is shown.
-    fn hidden_copies(&self, shown: impl Fn(usize) -> bool) -> impl Iterator<Item = u32> {
-        let mut standing = HashSet::new();
-        let hides = move |copy: &&MaskedCopy| {
-            shown(copy.triangle as usize)
-                && (shown(copy.original as usize) || !standing.insert(copy.original))
-        };
-        self.copies.iter().filter(hides).map(|copy| copy.triangle)
-    }
-
-    /// The triangles that are shown, less copies of masked ones.
-    fn geometry_of(&self, scene: &Scene, shown: impl Fn(usize) -> bool) -> Result<Geometry, MicropointError> {
+    /// The triangles of all objects but one, less copies of masked ones.
+    fn geometry_of(&self, scene: &Scene, without: Option<u32>) -> Result<Geometry, MicropointError> {
         let mesh = &scene.mesh;
-        let mut triangles = Cow::Borrowed(&mesh.triangles);
-        let hidden = (0..triangles.len()).filter(|&t| !shown(t)).map(|t| t as u32);
-        for t in hidden.chain(self.hidden_copies(&shown)) {
-            // A triangle without area is never seen, and the others keep their numbers.
-            let triangle = &mut triangles.to_mut()[t as usize];
-            *triangle = [triangle[0]; 3];
+        let own = triangles_shown(mesh, &self.copies[0], |t| Some(mesh.object_of[t]) != without);
+        let (own_surfaces, mut surface_of) = self.still.surface_of.split_at(mesh.triangles.len());
+        let mut places = vec![vec![]; mesh.shapes().len()];
+        for (number, instance) in mesh.instances().iter().enumerate() {
+            if Some(instance.object) != without {
+                let world_from_shape = instance.world_from_shape;
+                let place = Placement { world_from_shape, first_id: mesh.first_of(number) };
+                places[instance.shape as usize].push(place);
+            }
         }
-        Geometry::new(&mesh.positions, &triangles, &self.still.surface_of, &self.still.surfaces)
+        let shown = mesh.shapes().iter().zip(&self.copies[1..]);
+        let shown: Vec<_> = shown.map(|(shape, copies)| triangles_shown(shape, copies, |_| true)).collect();
+        let shapes = mesh.shapes().iter().zip(&shown).zip(&places).map(|((shape, triangles), places)| {
+            let (own, others) = surface_of.split_at(triangles.len());
+            surface_of = others;
+            Shape { positions: &shape.positions, triangles, surface_of: own, places }
+        });
+        let shapes: Vec<_> = shapes.collect();
+        let world =
+            Shape { positions: &mesh.positions, triangles: &own, surface_of: own_surfaces, places: &[] };
+        Geometry::with_instances(&world, &self.still.surfaces, &shapes)
+    }
+
+    fn material(&self, triangle: u32) -> usize {
+        self.still.material_of[self.still.storage.index(triangle)] as usize
     }
 
     /// The maps of a triangle's material beyond colour and opacity; `None` if it has nothing beyond them.
     pub(crate) fn details(&self, triangle: u32) -> Option<&DetailMaps> {
-        self.still.details[self.still.material_of[triangle as usize] as usize].as_ref()
+        self.still.details[self.material(triangle)].as_ref()
     }
 
     /// Where textures lie on the triangles.
@@ -200,11 +226,11 @@ impl Surfaces {
     }
 
     fn textured(&self, triangle: u32) -> &Textured {
-        &self.still.textures[self.still.material_of[triangle as usize] as usize]
+        &self.still.textures[self.material(triangle)]
     }
 
     fn places(&self, triangle: u32) -> &Places {
-        &self.still.places[self.still.material_of[triangle as usize] as usize]
+        &self.still.places[self.material(triangle)]
     }
 
     /// Whether the colour of a triangle varies.
@@ -280,13 +306,37 @@ fn surfaces_by_material(scene: &Scene, textures: &[Arc<Textured>]) -> (Vec<Surfa
         surfaces.push(SurfaceOpacity { opacity, textured_opacity, two_sided: true });
         surfaces.push(SurfaceOpacity { opacity, textured_opacity, two_sided: false });
     }
-    let mesh = &scene.mesh;
-    let two_sided = |t: usize, m: u32| {
+    let two_sided = |mesh: &Mesh, t: usize, m: u32| {
         let object = mesh.objects.get(mesh.object_of[t] as usize);
         object.is_none_or(|o| o.two_sided) && !scene.materials[m as usize].details.one_sided
     };
-    let surface = |(t, &m): (usize, &u32)| 2 * m + u32::from(!two_sided(t, m));
-    (surfaces, mesh.material_of.iter().enumerate().map(surface).collect())
+    let mut surface_of = vec![];
+    for mesh in scene.mesh.stores() {
+        let surface = |(t, &m): (usize, &u32)| 2 * m + u32::from(!two_sided(mesh, t, m));
+        surface_of.extend(mesh.material_of.iter().enumerate().map(surface));
+    }
+    (surfaces, surface_of)
+}
+
+/// A mesh's own triangles: those that are shown, less copies of masked ones. The others have no area: they are never seen, and the rest keeps
+/// its numbers.
+fn triangles_shown<'a>(
+    mesh: &'a Mesh,
+    copies: &[MaskedCopy],
+    shown: impl Fn(usize) -> bool,
+) -> Cow<'a, [[u32; 3]]> {
+    let mut triangles = Cow::Borrowed(&mesh.triangles[..]);
+    // Of masked triangles that coincide, the first that is shown stays.
+    let mut standing = HashSet::new();
+    let hides = |copy: &&MaskedCopy| {
+        shown(copy.triangle as usize) && (shown(copy.original as usize) || !standing.insert(copy.original))
+    };
+    let hidden = (0..mesh.triangles.len()).filter(|&t| !shown(t)).map(|t| t as u32);
+    for t in hidden.chain(copies.iter().filter(hides).map(|copy| copy.triangle)) {
+        let triangle = &mut triangles.to_mut()[t as usize];
+        *triangle = [triangle[0]; 3];
+    }
+    triangles
 }
 
 fn textured_by_material(scene: &Scene) -> Result<Vec<Arc<Textured>>, MicropointError> {

@@ -1,6 +1,6 @@
 //! Where textures lie on triangles, and means of texels over what is seen of them.
 
-use crate::scene::{MapPlace, Mesh, UvSet};
+use crate::scene::{MapPlace, Mesh, Storage, UvSet};
 use glam::{DVec2, DVec3};
 use pointillist_micropoint::{MaskSums, SurfacePoint, TexelCorner, TexelSums, TexelWrap};
 use pointillist_shade::Wrap;
@@ -8,6 +8,8 @@ use pointillist_shade::Wrap;
 /// Texture coordinates of the corners of all triangles; nothing for a scene without textures.
 #[derive(Default)]
 pub(crate) struct Uvs {
+    storage: Storage,
+    /// By where triangles are stored.
     first: Vec<[DVec2; 3]>,
     /// Empty if no triangle has other coordinates than those of the first set.
     second: Vec<[DVec2; 3]>,
@@ -18,22 +20,33 @@ impl Uvs {
     pub(crate) fn new(mesh: &Mesh) -> Self {
         let set = |set: UvSet| -> Vec<[DVec2; 3]> {
             let place = MapPlace { set, ..MapPlace::default() };
-            (0..mesh.triangles.len()).map(|t| mesh.map_corners(t, &place).unwrap_or_default()).collect()
+            let of = |mesh: &Mesh, t: usize| mesh.own_map_corners(t, &place).unwrap_or_default();
+            mesh.stores().flat_map(|mesh| (0..mesh.triangles.len()).map(move |t| of(mesh, t))).collect()
         };
-        let second = if mesh.second_uv_of.is_empty() { vec![] } else { set(UvSet::Second) };
-        Self { first: set(UvSet::First), second }
+        let has_second = mesh.stores().any(|mesh| !mesh.second_uv_of.is_empty());
+        let second = if has_second { set(UvSet::Second) } else { vec![] };
+        Self { storage: mesh.storage(), first: set(UvSet::First), second }
     }
 
-    /// A triangle's coordinates in both sets.
-    pub(crate) fn both(&self, triangle: u32) -> [[DVec2; 3]; 2] {
-        [UvSet::First, UvSet::Second].map(|set| self.of(triangle, &MapPlace { set, ..MapPlace::default() }))
+    /// The coordinates of a triangle in both sets, by where it is stored.
+    pub(crate) fn stored(&self, index: usize) -> [[DVec2; 3]; 2] {
+        [UvSet::First, UvSet::Second].map(|set| self.set(set).get(index).copied().unwrap_or_default())
+    }
+
+    fn set(&self, set: UvSet) -> &[[DVec2; 3]] {
+        let has_own = set == UvSet::Second && !self.second.is_empty();
+        if has_own { &self.second } else { &self.first }
     }
 
     /// Coordinates of a triangle's corners on a map.
     pub(crate) fn of(&self, triangle: u32, place: &MapPlace) -> [DVec2; 3] {
-        let has_own = place.set == UvSet::Second && !self.second.is_empty();
-        let set = if has_own { &self.second } else { &self.first };
-        place.of(set.get(triangle as usize).copied().unwrap_or_default())
+        let set = self.set(place.set);
+        if set.is_empty() {
+            return place.of(<[DVec2; 3]>::default());
+        }
+        let (index, order) = self.storage.find(triangle);
+        let stored = set.get(index).copied().unwrap_or_default();
+        place.of(order.map(|k| stored[k]))
     }
 
     /// Mean of a map over a polygon of a triangle.
@@ -145,7 +158,8 @@ mod tests {
     #[test]
     fn what_runs_along_the_top_of_a_texture_sees_its_top_row() -> Result<(), MicropointError> {
         let rows = TexelSums::<1>::new(4, 3, TexelWrap::Repeat, |_, y| [y as f32])?;
-        let uvs = Uvs { first: vec![[dvec2(0.1, 1.0), dvec2(0.7, 1.0), dvec2(0.3, 1.0)]], second: vec![] };
+        let first = vec![[dvec2(0.1, 1.0), dvec2(0.7, 1.0), dvec2(0.3, 1.0)]];
+        let uvs = Uvs { storage: Storage::of_own(1), first, second: vec![] };
         let plain = MapPlace::default();
         for k in 1..100 {
             let (y, z) = (f64::from(k) / 301.0, f64::from(k) / 207.0);

@@ -2,7 +2,7 @@
 
 mod scenes;
 
-use glam::Vec3;
+use glam::{DAffine3, DQuat, Vec3, dvec3};
 use pointillist_render::{DrawOptions, PixelRect, invariants, render};
 use proptest::prelude::*;
 use scenes::scene;
@@ -16,6 +16,17 @@ fn window() -> impl Strategy<Value = PixelRect> {
         x1: x0 + w,
         y1: y0 + h,
     })
+}
+
+/// Moved, turned, scaled or mirrored, so that nothing comes to lie where it was or touches what it touched.
+fn place() -> impl Strategy<Value = DAffine3> {
+    let factor = prop_oneof![3 => 0.2..1.5f64, 1 => -1.5..-0.2f64];
+    ([factor.clone(), factor.clone(), factor], 0.1..3.0f64, [-1.5..1.5f64, -1.5..1.5, -1.5..1.5]).prop_map(
+        |(scale, angle, to)| {
+            let turn = DQuat::from_axis_angle(dvec3(0.48, 0.6, 0.64), angle);
+            DAffine3::from_scale_rotation_translation(scale.into(), turn, to.into())
+        },
+    )
 }
 
 /// One thread and three.
@@ -46,6 +57,13 @@ proptest! {
     }
 
     #[test]
+    fn instances_are_drawn_as_their_triangles(s in scene(), places in prop::collection::vec(place(), 1..4)) {
+        if let Some(s) = invariants::with_instances(&s, &places) {
+            holds!(invariants::instances_are_drawn_as_their_triangles(&s));
+        }
+    }
+
+    #[test]
     fn pictures_do_not_depend_on_those_before(s in scene()) {
         holds!(invariants::pictures_do_not_depend_on_those_before(&s));
     }
@@ -68,6 +86,18 @@ fn most_scenes_of_these_tests_can_be_drawn_and_show_something() {
     let shown = (0..50).filter(|_| {
         let scene = scene().new_tree(&mut runner).expect("a scene").current();
         invariants::picture(&scene).is_some_and(|f| f.color.iter().any(|c| c[3] > 0.0))
+    });
+    assert!(shown.count() > 25);
+}
+
+#[test]
+fn most_scenes_of_these_tests_can_stand_in_several_places() {
+    use proptest::strategy::ValueTree as _;
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let shown = (0..50).filter(|_| {
+        let scene = scene().new_tree(&mut runner).expect("a scene").current();
+        let place = place().new_tree(&mut runner).expect("a place").current();
+        invariants::with_instances(&scene, &[place]).is_some_and(|s| invariants::picture(&s).is_some())
     });
     assert!(shown.count() > 25);
 }

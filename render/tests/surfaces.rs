@@ -1,6 +1,6 @@
 //! What materials come to: in pictures, and as surfaces of radiosity.
 
-use glam::{DVec3, Vec3, Vec4, dvec2, dvec3, vec3};
+use glam::{DAffine3, DVec3, Vec3, Vec4, dvec2, dvec3, vec3};
 use pointillist_render::radiosity::{Baked, BakedTriangle};
 use pointillist_render::shade::{self, Light, MerlTable};
 use pointillist_render::{
@@ -209,4 +209,42 @@ fn slopes_that_do_not_vary_change_no_highlight() {
     let [many, one] = [4, 1].map(|size| with_normals(Some((size, [150, 120, 250]))));
     assert!(many.iter().zip(&one).all(|(a, b)| (a[0] - b[0]).abs() < 1e-5 * b[0]), "{many:?} {one:?}");
     assert_ne!(many, none);
+}
+
+#[test]
+fn layers_tell_instances_apart() {
+    let mut scene = Scene::new(Camera::perspective(DVec3::Z * 4.0, DVec3::ZERO, 1.0), [16, 8]);
+    let shape = {
+        let mut mesh = pointillist_render::Mesh::default();
+        mesh.add(&Part::new("", &CORNERS, &[[0, 1, 2], [0, 2, 3]]).with_two_sided(false)).unwrap();
+        mesh
+    };
+    scene.add_material(grey(0.5));
+    assert!(matches!(
+        scene.mesh.clone().add_shape(Default::default()),
+        Err(SceneError::Shape { objects: 0, .. })
+    ));
+    let shape = scene.mesh.add_shape(shape).unwrap();
+    let at = |x: f64| DAffine3::from_translation(DVec3::X * x);
+    assert!(matches!(scene.mesh.add_instance(7, "none", at(0.0)), Err(SceneError::Index { index: 7, .. })));
+    let nowhere = scene.mesh.add_instance(shape, "nowhere", at(f64::NAN));
+    assert!(matches!(nowhere, Err(SceneError::NotFinite { .. })));
+    scene.mesh.add_instance(shape, "left", at(-1.5)).unwrap();
+    // Mirrored, it still shows its front.
+    scene.mesh.add_instance(shape, "right", at(1.5) * DAffine3::from_scale(dvec3(-1.0, 1.0, 1.0))).unwrap();
+    assert_eq!((scene.mesh.triangle_count(), scene.mesh.object(1), scene.mesh.object(2)), (4, 0, 1));
+    let kinds = vec![LayerKind::Id, LayerKind::Normal, LayerKind::Back];
+    let draw = |scene: &Scene| render(scene, &DrawOptions::DEFAULT.with_layers(kinds.clone()), &()).unwrap();
+    let frame = draw(&scene);
+    let [left, right] = [4 * 16 + 4, 4 * 16 + 11];
+    assert_eq!([left, right].map(|i| frame.layers[0].planes[0][i]), [1.0, 2.0]);
+    assert_eq!([left, right].map(|i| frame.layers[1].planes[2][i]), [1.0, 1.0]);
+    let mut expanded = scene.clone();
+    expanded.mesh = scene.mesh.expanded().unwrap().into_owned();
+    assert!(expanded.mesh.instances().is_empty() && expanded.mesh.triangles.len() == 4);
+    assert_eq!(frame.layers, draw(&expanded).layers);
+    // What is baked triangle by triangle is not light of the same triangles elsewhere.
+    let mut moved = scene.mesh.clone();
+    moved.add_instance(shape, "third", at(9.0)).unwrap();
+    assert_ne!(fingerprint::of_geometry(&moved), fingerprint::of_geometry(&scene.mesh));
 }

@@ -22,6 +22,7 @@ mod speed;
 mod stress;
 mod surfel;
 
+use common::machine::results_folder;
 use common::report::{Outcome, trial_folder};
 use common::timing::take_one_run_each;
 
@@ -114,7 +115,7 @@ fn run_quick(studies: &[Study]) -> Outcome {
 }
 
 fn usage() -> String {
-    let mut text = "usage: studies NAME\n\nWrites studies/results/NAME.*; NAME is one of\n".to_owned();
+    let mut text = "usage: studies NAME\n\nWrites studies/results/NAME.*, or into a folder there on another machine than that of studies/results/machine.txt; NAME is one of\n".to_owned();
     for Study { name, what, .. } in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
@@ -124,7 +125,11 @@ fn usage() -> String {
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let out_dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results");
+    let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("results");
+    let out_dir = match results_folder(&results) {
+        Ok(folder) => folder,
+        Err(error) => return code(Err(error.into())),
+    };
     let name = match arguments[..] {
         ["--help" | "-h"] => {
             print!("{}", usage());
@@ -144,8 +149,8 @@ fn main() -> ExitCode {
         ["clouds", largest] if largest.parse::<f64>().is_ok() => {
             return code(clouds::run_up_to(&out_dir, largest));
         }
-        ["quote"] => return code(quote::run(&out_dir, false)),
-        ["quote", "--check"] => return code(quote::run(&out_dir, true)),
+        ["quote"] => return code(quote::run(&results, false)),
+        ["quote", "--check"] => return code(quote::run(&results, true)),
         ["mutants"] => return code(mutants::run(&out_dir)),
         ["quick"] => return code(run_quick(&STUDIES)),
         [name, "quick"] if name != "shprobe" => match STUDIES.iter().find(|s| s.name == name) {

@@ -24,12 +24,12 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
     (0..=loaded.motion.last_frame())
         .try_for_each(|frame| loaded.motion.camera(&scene.camera, frame).map(drop))?;
     weight::heavy(scene).iter().for_each(|text| report.note(&format!("note: {text}")));
-    report.stats.count("triangles", scene.mesh.triangles.len() as u64);
+    report.stats.count("triangles", scene.mesh.triangle_count() as u64);
     report.stats.count("lights", scene.lights.len() as u64);
     let text = format!(
         "{}: fine; {} triangles in {} objects, {} materials, {} textures, {} lights, {}×{} pixels",
         name_of(&options.scene),
-        scene.mesh.triangles.len(),
+        scene.mesh.triangle_count(),
         scene.mesh.objects.len(),
         scene.materials.len(),
         scene.textures.len(),

@@ -8,7 +8,7 @@ use crate::input::{is_standard, kind_of, name_of};
 use crate::input_error::InputError;
 use crate::memory;
 use crate::options::SampleOptions;
-use crate::scene::{self, NONE, Overrides, Scene, srgb_from_linear};
+use crate::scene::{self, Overrides, Scene, srgb_from_linear};
 use glam::{DVec3, Vec3};
 use pointillist_surfel::{Amount, Method, SurfacePoint, SurfelError, sample_with};
 use rayon::prelude::*;
@@ -26,9 +26,12 @@ pub(super) fn run(options: &SampleOptions) -> Result<(), CliError> {
     check_memory(options)?;
     let loaded = report.stats.stage("load", || scene::load(&options.model, &overrides(options)?))?;
     loaded.warnings.iter().for_each(|warning| report.warn(warning));
-    let scene = loaded.scene;
+    let mut scene = loaded.scene;
     if scene.materials.iter().any(|m| m.opacity_map.is_some() || m.surface.opacity < 1.0) {
         report.warn("opacity has no place in the cloud: what can be seen through becomes solid");
+    }
+    if !scene.mesh.instances().is_empty() {
+        scene.mesh = scene.mesh.expanded().map_err(|error| CliError::Failed(error.to_string()))?.into_owned();
     }
     let progress = report.progress();
     progress.begin("sample", PROGRESS_STEPS);
@@ -123,19 +126,14 @@ fn with_attributes(scene: &Scene, point: &SurfacePoint) -> CloudPoint {
 
 /// The interpolated normal, or the triangle's own where there is none.
 fn normal(scene: &Scene, point: &SurfacePoint) -> DVec3 {
-    let corners = scene.mesh.normal_of[point.triangle as usize];
-    if corners.contains(&NONE) {
-        return point.normal;
-    }
-    let normals = corners.map(|n| scene.mesh.normals[n as usize].as_dvec3());
-    point.interpolate(normals).try_normalize().unwrap_or(point.normal)
+    let interpolated = |normals: [Vec3; 3]| point.interpolate(normals.map(Vec3::as_dvec3)).try_normalize();
+    scene.mesh.corner_normals(point.triangle).and_then(interpolated).unwrap_or(point.normal)
 }
 
 /// Linear diffuse colour: the material's, times its map's where it has one.
 fn color(scene: &Scene, point: &SurfacePoint) -> Vec3 {
-    let triangle = point.triangle as usize;
-    let material = &scene.materials[scene.mesh.material_of[triangle] as usize];
-    match (material.diffuse_map, scene.mesh.map_corners(triangle, &material.diffuse_place)) {
+    let material = &scene.materials[scene.mesh.material(point.triangle) as usize];
+    match (material.diffuse_map, scene.mesh.map_corners(point.triangle, &material.diffuse_place)) {
         (Some(map), Some(corners)) => {
             let uv = point.interpolate(corners);
             material.surface.diffuse * scene.textures[map].lookup(material.wrap, uv).truncate()

@@ -1,7 +1,7 @@
 //! Where the copies of an object stand, and how much they may take.
 
 use super::description::{Copies, Description, ObjectDescription, affine_of, placed};
-use super::weight::TRIANGLE_BYTES;
+use super::weight::{INSTANCE_BYTES, INSTANCE_TRIANGLE_BYTES, TRIANGLE_BYTES};
 use crate::input;
 use crate::input_error::InputError;
 use crate::{memory, number_lines};
@@ -56,14 +56,18 @@ fn placement(numbers: &[f64]) -> Result<DAffine3, String> {
     }
 }
 
-/// Whether so many copies of a mesh fit into memory.
+/// Whether so many copies of a mesh fit into memory: some with triangles of their own, the others stored once.
 pub(super) fn check_memory(
     object: &ObjectDescription,
     description: &Description,
     triangles: usize,
-    copies: usize,
+    [by_themselves, instances]: [usize; 2],
 ) -> Result<(), InputError> {
-    let needed = triangles as u128 * copies as u128 * u128::from(TRIANGLE_BYTES);
+    let copies = by_themselves + instances;
+    let triangles_of = |places: usize, bytes: u64| triangles as u128 * places as u128 * u128::from(bytes);
+    let needed = triangles_of(by_themselves, TRIANGLE_BYTES)
+        + triangles_of(instances, INSTANCE_TRIANGLE_BYTES)
+        + instances as u128 * u128::from(INSTANCE_BYTES);
     // One object is looked at where its file is read.
     if copies < 2 {
         return Ok(());

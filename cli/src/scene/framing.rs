@@ -23,8 +23,8 @@ pub(super) fn place(
     aspect: f64,
 ) -> Result<Camera, InputError> {
     // Where up is another axis, nothing is known about fronts.
-    let turned =
-        if given.up == DVec3::Y && leans_back(mesh) { DVec3::new(-1.0, 1.0, -1.0) } else { DVec3::ONE };
+    let is_turned = given.eye.is_none() && given.up == DVec3::Y && leans_back(mesh);
+    let turned = if is_turned { DVec3::new(-1.0, 1.0, -1.0) } else { DVec3::ONE };
     around_from(given, || corners(mesh), aspect, TOWARDS_EYE * turned).map_err(|fault| {
         let error = InputError::of_file(description.document.name(), format!("camera: {fault}"));
         error.with_help("give camera.eye and camera.target")
@@ -74,7 +74,7 @@ pub(crate) fn distance_to(camera: &Camera, mesh: &Mesh, aspect: f64) -> f64 {
 }
 
 fn corners(mesh: &Mesh) -> impl Iterator<Item = DVec3> + '_ {
-    mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize])
+    mesh.world_triangles().flat_map(|(_, corners)| corners)
 }
 
 /// Whether a model's upper part lies towards −Z, so that +Z sees its back.
@@ -83,8 +83,7 @@ fn leans_back(mesh: &Mesh) -> bool {
     let size = high - low;
     let from = high.y - size.y / 3.0;
     let (mut area, mut moment) = (0.0, 0.0);
-    for triangle in &mesh.triangles {
-        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
+    for (_, [a, b, c]) in mesh.world_triangles() {
         let centre = (a + b + c) / 3.0;
         if centre.y >= from {
             let twice = (b - a).cross(c - a).length();

@@ -18,6 +18,7 @@ mod motion;
 mod mtl_library;
 mod mtl_materials;
 mod no_effect;
+mod objects;
 mod plain_model;
 mod resolve;
 mod smooth;

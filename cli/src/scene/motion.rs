@@ -1,11 +1,11 @@
 //! What moves in a scene from frame to frame.
 
 use super::description::{CameraPath, Description, ObjectPath, view_fault};
-use super::resolve::normal_matrix;
 use super::{Camera, Mesh, Scene};
 use crate::coordinate::{LARGEST, is_usable};
 use crate::input_error::InputError;
 use glam::{DAffine3, DQuat, DVec3, Vec3};
+use pointillist_render::normal_matrix;
 use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;

@@ -3,6 +3,7 @@
 //! Keys that never do anything where they stand (a `roughness` of a Lambert surface) are errors of their readers. These here depend on
 //! other keys, or on what files hold; they are warnings.
 
+use super::Mesh;
 use super::description::{Description, LightDescription, MaterialDescription, SurroundingsDescription};
 use super::text::{Node, Value};
 use crate::input_error::InputError;
@@ -23,8 +24,8 @@ pub(super) fn keys(description: &Description, has_made_normals: bool) -> Vec<Inp
     finder.found
 }
 
-/// Lights with an area that shine on one side, with all of `positions` on the other.
-pub(super) fn turned_away(description: &Description, positions: &[DVec3]) -> Vec<InputError> {
+/// Lights with an area that shine on one side, with all of the mesh on the other.
+pub(super) fn turned_away(description: &Description, mesh: &Mesh) -> Vec<InputError> {
     let document = &description.document;
     let mut found = vec![];
     for (index, light) in description.lights.iter().enumerate() {
@@ -37,7 +38,7 @@ pub(super) fn turned_away(description: &Description, positions: &[DVec3]) -> Vec
             _ => continue,
         };
         let Some(node) = find(document.root(), &["light", &index.to_string(), key]) else { continue };
-        if light.light.outline().is_some_and(|outline| is_behind(&outline, positions)) {
+        if light.light.outline().is_some_and(|outline| is_behind(&outline, mesh)) {
             let message = format!("`light[{index}]` lights nothing: all of the scene is behind it");
             found.push(document.error(node.span, message).with_help(way_out));
         }
@@ -46,10 +47,10 @@ pub(super) fn turned_away(description: &Description, positions: &[DVec3]) -> Vec
 }
 
 /// Whether nothing is in front of an outline's plane by more than rounding.
-fn is_behind(outline: &LightOutline, positions: &[DVec3]) -> bool {
+fn is_behind(outline: &LightOutline, mesh: &Mesh) -> bool {
     let (corner, normal) = (outline.vertices()[0], outline.area_vector().normalize_or_zero());
     let rounding = |p: DVec3| 1e-9 * (p.abs().max_element() + corner.abs().max_element());
-    positions.iter().all(|&p| (p - corner).dot(normal) <= rounding(p))
+    mesh.world_positions().all(|p| (p - corner).dot(normal) <= rounding(p))
 }
 
 struct Finder<'a> {

@@ -1,6 +1,6 @@
 //! What of a scene takes long or takes memory, told without drawing it.
 
-use super::{Projection, Scene, Surroundings, Texels};
+use super::{Mesh, Projection, Scene, Surroundings, Texels};
 use glam::DVec3;
 use pointillist_shade::Light;
 
@@ -10,6 +10,10 @@ const BASE_BYTES: u64 = 8 << 20;
 const THREAD_BYTES: u64 = 6 << 20;
 /// Bytes of a triangle and its share of the vertices, at the peak while the text of its file is still there: measured, 400 to 900.
 pub(super) const TRIANGLE_BYTES: u64 = 600;
+/// Bytes of a triangle that is stored once, in one more place: its share of a cluster's bounds.
+pub(super) const INSTANCE_TRIANGLE_BYTES: u64 = 4;
+/// Bytes of a further place of what is stored once, without its triangles.
+pub(super) const INSTANCE_BYTES: u64 = 600;
 /// Bytes of a texel beside itself, for sums over regions: measured, 3 to 11, because only maps that are asked for are summed up.
 const SUMMED_TEXEL_BYTES: u64 = 7;
 /// Textures with more texels are called huge: 4096².
@@ -49,10 +53,10 @@ pub fn unseen(scene: &Scene) -> Vec<Unseen> {
     };
     let mut all_outside = vec![[true; 5]; scene.mesh.objects.len()];
     let mut triangles = vec![0; scene.mesh.objects.len()];
-    for (corners, &object) in scene.mesh.triangles.iter().zip(&scene.mesh.object_of) {
+    for (object, corners) in scene.mesh.world_triangles() {
         triangles[object as usize] += 1;
-        for &corner in corners {
-            let flags = outside(scene.mesh.positions[corner as usize]);
+        for corner in corners {
+            let flags = outside(corner);
             all_outside[object as usize].iter_mut().zip(flags).for_each(|(all, flag)| *all &= flag);
         }
     }
@@ -79,15 +83,22 @@ pub fn memory_bytes(scene: &Scene, pixels: u64, planes: u64, threads: usize) -> 
     });
     // Once as computed, and once more as it is written.
     let frame = pixels * planes * 4 * 2;
-    let triangles = scene.mesh.triangles.len() as u64 * TRIANGLE_BYTES;
-    BASE_BYTES + threads as u64 * THREAD_BYTES + triangles + texels.sum::<u64>() + frame
+    BASE_BYTES + threads as u64 * THREAD_BYTES + mesh_bytes(&scene.mesh) + texels.sum::<u64>() + frame
+}
+
+fn mesh_bytes(mesh: &Mesh) -> u64 {
+    let own = mesh.triangles.len();
+    let stored = own + mesh.shapes().iter().map(|shape| shape.triangles.len()).sum::<usize>();
+    let placed = mesh.triangle_count() - own;
+    let instances = mesh.instances().len() as u64 * INSTANCE_BYTES;
+    stored as u64 * TRIANGLE_BYTES + placed as u64 * INSTANCE_TRIANGLE_BYTES + instances
 }
 
 /// What will be slow or heavy, in sentences.
 #[must_use]
 pub fn heavy(scene: &Scene) -> Vec<String> {
     let mut heavy = vec![];
-    let triangles = scene.mesh.triangles.len();
+    let triangles = scene.mesh.triangle_count();
     let pixels = f64::from(scene.image.width) * f64::from(scene.image.height);
     let hidden: usize = unseen(scene).iter().map(|object| object.triangles).sum();
     if hidden * 3 > triangles {
@@ -104,7 +115,7 @@ pub fn heavy(scene: &Scene) -> Vec<String> {
     }
     let count = |is: &dyn Fn(&super::Material) -> bool| {
         let of: Vec<bool> = scene.materials.iter().map(is).collect();
-        scene.mesh.material_of.iter().filter(|&&m| of.get(m as usize) == Some(&true)).count()
+        of_materials(&scene.mesh, &of)
     };
     let masked = count(&|m| m.opacity_map.is_some());
     if masked >= FOLIAGE {
@@ -134,8 +145,15 @@ pub fn heavy(scene: &Scene) -> Vec<String> {
     heavy
 }
 
+/// How many triangles have one of the materials for which `of` holds.
+fn of_materials(mesh: &Mesh, of: &[bool]) -> usize {
+    let own = |mesh: &Mesh| mesh.material_of.iter().filter(|&&m| of.get(m as usize) == Some(&true)).count();
+    let of_shapes: Vec<usize> = mesh.shapes().iter().map(own).collect();
+    own(mesh) + mesh.instances().iter().map(|i| of_shapes[i.shape as usize]).sum::<usize>()
+}
+
 fn lights(scene: &Scene, heavy: &mut Vec<String>) {
-    let triangles = scene.mesh.triangles.len();
+    let triangles = scene.mesh.triangle_count();
     for source in scene.lights.iter().filter(|light| light.shadow) {
         let (Light::Rect { samples, .. } | Light::Polygon { samples, .. } | Light::Line { samples, .. }) =
             &source.light

@@ -49,7 +49,10 @@ fn copies_are_objects_that_are_placed_once_more() {
     let object = |(linear, [x, y, z]): (glam::DMat3, [f64; 3])| {
         let m = (linear * own).to_cols_array_2d();
         let columns: Vec<String> = m.iter().map(|[a, b, c]| format!("{a}, {b}, {c}, 0")).collect();
-        format!("[[object]]\nmesh = \"card.obj\"\nmatrix = [{}, {x}, {y}, {z}, 1]\n", columns.join(", "))
+        // A file of its own, so that it is stored by itself.
+        let file = format!("card{}.obj", y * 10.0);
+        folder.write(&file, CARD);
+        format!("[[object]]\nmesh = \"{file}\"\nmatrix = [{}, {x}, {y}, {z}, 1]\n", columns.join(", "))
     };
     folder.write("objects.toml", scene_of(&placed.map(object).concat()));
     assert!(rmse(&folder, ["copies.toml", "objects.toml"], &[]) < 1e-6);
@@ -84,8 +87,40 @@ fn copies_share_what_is_the_same_for_all() {
     let objects = "[[object]]\nmesh = \"card.obj\"\ncopies = [{}, { translate = [1, 0, 0] }]\n[[object]]\nmesh = \"card.obj\"\n";
     folder.write("scene.toml", scene_of(objects));
     let mesh = load(&folder.path("scene.toml"), &Overrides::default()).unwrap().scene.mesh;
-    assert_eq!((mesh.triangles.len(), mesh.positions.len(), mesh.uvs.len()), (3, 9, 3));
-    assert!(mesh.uv_of.iter().all(|corners| *corners == mesh.uv_of[0]));
+    assert_eq!((mesh.triangle_count(), mesh.triangles.len(), mesh.instances().len()), (3, 0, 3));
+    let [shape] = mesh.shapes() else { panic!("{} shapes", mesh.shapes().len()) };
+    assert_eq!((shape.triangles.len(), shape.positions.len(), shape.uvs.len()), (1, 3, 3));
+    // What has another material, stands in one place or moves is stored where it stands.
+    let path = "path = { times = [0, 10], translate = [[0, 0, 0], [1, 0, 0]] }";
+    let red = "[material.red]\nmodel = \"lambert\"\ndiffuse = [1, 0, 0]\n";
+    for (line, triangles, shapes) in [
+        ("material = \"red\"".to_owned(), 1, 1),
+        ("material = \"red\"\ncopies = [{}, {}]".to_owned(), 0, 2),
+        (format!("{path}\ncopies = [{{}}, {{}}]"), 2, 1),
+    ] {
+        let text = scene_of(&format!("{objects}[[object]]\nmesh = \"card.obj\"\n{line}\n"));
+        folder.write("scene.toml", text + red);
+        let mesh = load(&folder.path("scene.toml"), &Overrides::default()).unwrap().scene.mesh;
+        assert_eq!((mesh.triangles.len(), mesh.shapes().len()), (triangles, shapes), "{line}");
+    }
+}
+
+#[test]
+fn a_further_copy_takes_next_to_no_memory() {
+    let folder = Folder::new();
+    let vertices: String = (0..1000).map(|i| format!("v {i} {} 0\n", i % 2)).collect();
+    let faces: String = (1..=998).map(|i| format!("f {i} {} {}\n", i + 1, i + 2)).collect();
+    folder.write("strip.obj", vertices + &faces);
+    let bytes = |copies: usize| {
+        let places: Vec<String> = (0..copies).map(|i| format!("{{ translate = [0, {i}, 0] }}")).collect();
+        let object = format!("[[object]]\nmesh = \"strip.obj\"\ncopies = [{}]\n", places.join(", "));
+        folder.write("scene.toml", scene_of(&object));
+        let info: Value = serde_json::from_str(&folder.prints(&["info", "scene.toml"])).unwrap();
+        assert_eq!(info["triangles"], 998 * copies);
+        info["memory_bytes"].as_u64().unwrap()
+    };
+    let further = (bytes(300) - bytes(100)) / (200 * 998);
+    assert!(further < 10, "{further} bytes a triangle");
 }
 
 #[test]

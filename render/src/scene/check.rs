@@ -70,7 +70,8 @@ impl Mesh {
         };
         all_finite("normals", self.normals.iter().position(|n| !n.is_finite()))?;
         all_finite("uvs", self.uvs.iter().position(|uv| !uv.is_finite()))?;
-        all_finite("colors", self.colors.iter().position(|c| !c.is_finite()))
+        all_finite("colors", self.colors.iter().position(|c| !c.is_finite()))?;
+        self.shapes().iter().try_for_each(|shape| shape.check(materials))
     }
 }
 

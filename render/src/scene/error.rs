@@ -25,17 +25,27 @@ pub enum SceneError {
         /// Entries there are.
         count: usize,
     },
-    /// A triangle refers to a material or an object that does not exist.
+    /// A triangle refers to a material or an object that does not exist, or an instance to a shape.
     #[error("`{list}[{triangle}]` is {index}, but there are {count}")]
     Index {
-        /// The list of indices: `material_of` or `object_of`.
+        /// The list of indices: `material_of`, `object_of` or `instances`.
         list: &'static str,
-        /// Which triangle.
+        /// Which triangle, or which instance.
         triangle: usize,
         /// What it refers to.
         index: u32,
         /// Entries there are.
         count: usize,
+    },
+    /// A shape that is to stand in several places has not exactly one object, or instances of its own.
+    #[error(
+        "a shape of {objects} objects and {instances} instances; it must have one object, and no instances"
+    )]
+    Shape {
+        /// Its objects.
+        objects: usize,
+        /// Its instances.
+        instances: usize,
     },
     /// A material, or the environment, refers to a texture that does not exist.
     #[error("{user}: texture {texture} is asked for, but there are {count}")]

@@ -35,9 +35,8 @@ impl MapPlace {
 }
 
 impl Mesh {
-    /// Coordinates of a map at the corners of a triangle; `None` where the mesh has none.
-    #[must_use]
-    pub fn map_corners(&self, triangle: usize, place: &MapPlace) -> Option<[DVec2; 3]> {
+    /// Coordinates of a map at the corners of one of the mesh's own triangles; `None` where it has none.
+    pub(crate) fn own_map_corners(&self, triangle: usize, place: &MapPlace) -> Option<[DVec2; 3]> {
         let second = self.second_uv_of.get(triangle).filter(|_| place.set == UvSet::Second);
         let found = |of: &&[u32; 3]| !of.contains(&NONE);
         let of = second.filter(found).or_else(|| self.uv_of.get(triangle).filter(found))?;

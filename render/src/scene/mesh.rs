@@ -1,12 +1,15 @@
 //! The triangles of a scene.
 
 use super::error::SceneError;
+use super::instances::Instances;
 use glam::{DVec2, DVec3, Vec3};
 
 /// No normal, no texture coordinate: the value of an index that refers to nothing.
 pub const NONE: u32 = u32::MAX;
 
-/// Triangles of all objects, concatenated, in world space. [`Mesh::add`] puts one together part by part.
+/// Triangles of all objects, concatenated, in world space. [`Mesh::add`] puts one together part by part. What stands in several places can be
+/// stored once ([`Mesh::add_shape`], [`Mesh::add_instance`]): the lists below then hold the other triangles only, and [`Mesh::corners`],
+/// [`Mesh::material`] and the like answer for all.
 ///
 /// `material_of` and `object_of` are as long as `triangles`; `normal_of`, `uv_of` and `second_uv_of` too, or empty. The latter three
 /// hold [`NONE`] at all three corners of a triangle that has no normals or coordinates.
@@ -35,6 +38,7 @@ pub struct Mesh {
     pub object_of: Vec<u32>,
     /// What each object is called and how it is treated.
     pub objects: Vec<Object>,
+    pub(super) instances: Instances,
 }
 
 /// What is said of one object as a whole.

@@ -5,6 +5,7 @@ mod camera;
 mod check;
 mod details;
 mod error;
+mod instances;
 mod light;
 mod map_place;
 mod material;
@@ -15,6 +16,8 @@ pub use ambient::{AmbientLight, SkyLight};
 pub use camera::Camera;
 pub use details::{Bump, BumpHeight, Channel, Details, Map, MeasuredBrdf, Surroundings, Transmission};
 pub use error::SceneError;
+pub(crate) use instances::Storage;
+pub use instances::{Instance, normal_matrix};
 pub use light::LightSource;
 pub use map_place::{MapPlace, UvSet};
 pub use material::Material;
@@ -137,6 +140,6 @@ impl Scene {
 
     /// World positions of a triangle's corners.
     pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.mesh.triangles[triangle as usize].map(|v| self.mesh.positions[v as usize])
+        self.mesh.corners(triangle)
     }
 }

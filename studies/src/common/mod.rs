@@ -12,6 +12,7 @@ pub(crate) mod kept;
 pub(crate) mod layers;
 pub(crate) mod line_reference;
 pub(crate) mod loop_subdivision;
+pub(crate) mod machine;
 pub(crate) mod opacities;
 pub(crate) mod paths;
 pub(crate) mod peer_scene;

@@ -45,7 +45,7 @@ fn compiled_for() -> String {
 }
 
 /// Cores and processor.
-fn processor() -> String {
+pub(crate) fn processor() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = info.lines().find_map(|l| l.strip_prefix("model name")?.split_once(':'));

@@ -34,7 +34,7 @@ pub(super) fn of_probes(file: &ProbeFile) -> Value {
         "far": file.far,
         "fit": file.fit,
         "part": file.part,
-        "bounds": bounds(&file.positions()),
+        "bounds": bounds(file.positions().into_iter()),
         "units": { "bounds": "as the scene", "sh": "radiance, linear RGB, real orthonormal basis" },
         "fingerprint": file.fingerprint,
     })
@@ -49,7 +49,7 @@ pub(super) fn of_radiosity(file: &BakedFile) -> Value {
         "vertices": file.positions.len(),
         "triangles": file.triangles.len(),
         "error_bound": file.bound,
-        "bounds": bounds(&positions),
+        "bounds": bounds(positions.iter().copied()),
         "units": { "bounds": "as the scene", "irradiance, radiosity, error_bound": "power per area, linear RGB" },
         "geometry": file.geometry,
         "light": file.light,
@@ -84,7 +84,7 @@ pub(super) fn of_captures(list: &CaptureList) -> Value {
         "kind": "captures",
         "pictures": list.captures.len(),
         "positions": list.brackets().len(),
-        "bounds": bounds(&positions),
+        "bounds": bounds(positions.iter().copied()),
         "units": { "bounds": "as the scene", "rotate": "degrees about x, then y, then z", "exposure": "stops" },
     })
 }

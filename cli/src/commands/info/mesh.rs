@@ -22,7 +22,7 @@ pub(super) fn of_mesh(format: &str, mesh: &FileMesh) -> Value {
         "texture_coordinates": mesh.uvs.len(),
         "materials": mesh.material_names.iter().filter(|name| !name.is_empty()).collect::<Vec<_>>(),
         "material_files": mesh.material_files,
-        "bounds": bounds(&mesh.positions),
+        "bounds": bounds(mesh.positions.iter().copied()),
     })
 }
 

@@ -89,8 +89,7 @@ fn of_json(path: &Path, text: &[u8]) -> Result<Value, InputError> {
 }
 
 /// Lowest and highest coordinates; `null` for nothing.
-fn bounds(positions: &[DVec3]) -> Value {
-    let low = positions.iter().copied().reduce(DVec3::min);
-    let high = positions.iter().copied().reduce(DVec3::max);
-    json!(low.zip(high).map(|(low, high)| [low.to_array(), high.to_array()]))
+fn bounds(positions: impl Iterator<Item = DVec3>) -> Value {
+    let box_of = positions.map(|p| (p, p)).reduce(|(low, high), (p, _)| (low.min(p), high.max(p)));
+    json!(box_of.map(|(low, high)| [low.to_array(), high.to_array()]))
 }

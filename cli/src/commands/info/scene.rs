@@ -24,9 +24,9 @@ pub(super) fn of_scene(loaded: &LoadedScene) -> Value {
         "size": [scene.image.width, scene.image.height],
         "camera": view,
         "objects": scene.mesh.objects.iter().map(|object| &object.name).collect::<Vec<_>>(),
-        "triangles": scene.mesh.triangles.len(),
-        "vertices": scene.mesh.positions.len(),
-        "bounds": bounds(&scene.mesh.positions),
+        "triangles": scene.mesh.triangle_count(),
+        "vertices": scene.mesh.world_positions().count(),
+        "bounds": bounds(scene.mesh.world_positions()),
         "materials": scene.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
         "surfaces": scene.materials.iter().map(of_material).collect::<Vec<_>>(),
         "textures": scene.textures.iter()

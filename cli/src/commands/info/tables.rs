@@ -51,7 +51,7 @@ pub(super) fn of_raw(name: &str, bytes: &[u8]) -> Result<Value, InputError> {
             "kind": "points",
             "format": "raw doubles",
             "points": positions.len(),
-            "bounds": bounds(&positions),
+            "bounds": bounds(positions.iter().copied()),
         }));
     }
     if bytes.len().is_multiple_of(16) {

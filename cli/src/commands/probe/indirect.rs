@@ -73,7 +73,7 @@ fn read(path: &Path, scene: &Scene) -> Result<KnownLight, InputError> {
     if baked.light != format!("{:016x}", fingerprint::of_sources(scene)) {
         return Err(other("lights or materials"));
     }
-    let light = baked.lightmap(&name, scene.mesh.triangles.len())?;
+    let light = baked.lightmap(&name, scene.mesh.triangle_count())?;
     let hash = XxHash3_64::oneshot(&input::read(path)?);
     Ok(KnownLight { light, name: format!("{hash:016x}") })
 }

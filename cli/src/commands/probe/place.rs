@@ -11,7 +11,7 @@ use crate::job::Watch;
 use crate::memory;
 use crate::options::{Inside, PlaceOptions, Strategy};
 use crate::probe_io::ProbeFile;
-use crate::scene::{self, NONE, Scene};
+use crate::scene::{self, Mesh, NONE, Scene};
 use glam::DVec3;
 use pointillist_render::{ChooseOptions, Prepared, Solids, choose_places};
 use pointillist_shade::face_normal;
@@ -30,7 +30,7 @@ pub(in crate::commands) fn run(options: &PlaceOptions) -> Result<(), CliError> {
     let loaded = report.stats.stage("load", || scene::load(&options.scene, &overrides(&options.set)))?;
     loaded.warnings.iter().for_each(|warning| report.warn(warning));
     let scene = loaded.scene;
-    if scene.mesh.positions.is_empty() && options.low.is_none() {
+    if scene.mesh.triangle_count() == 0 && options.low.is_none() {
         let error = InputError::of_file(name_of(&options.scene), "the scene is empty");
         return Err(error.with_help("say which box to fill with --low and --high").into());
     }
@@ -97,7 +97,8 @@ fn above_vertices(
     report: &Report<'_>,
 ) -> Result<Vec<DVec3>, CliError> {
     let (low, high) = region(scene, options);
-    let lifted = lifted_vertices(scene, LIFT * (high - low).length());
+    let mesh = scene.mesh.expanded().map_err(|error| CliError::Failed(error.to_string()))?;
+    let lifted = lifted_vertices(&mesh, LIFT * (high - low).length());
     let count = options.count as usize;
     let mut tried = count;
     loop {
@@ -141,7 +142,7 @@ fn region(scene: &Scene, options: &PlaceOptions) -> (DVec3, DVec3) {
         return (a.min(b), a.max(b));
     }
     let infinite = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    scene.mesh.positions.iter().fold(infinite, |(l, h), &p| (l.min(p), h.max(p)))
+    scene.mesh.world_positions().fold(infinite, |(l, h), p| (l.min(p), h.max(p)))
 }
 
 /// About `count` probes in boxes as near to cubes as may be; at least two along an axis with any extent to speak of.
@@ -157,8 +158,7 @@ fn even_grid(extent: DVec3, count: usize) -> [usize; 3] {
 }
 
 /// Every used vertex, lifted off the first of its triangles that has an area.
-fn lifted_vertices(scene: &Scene, height: f64) -> Vec<DVec3> {
-    let mesh = &scene.mesh;
+fn lifted_vertices(mesh: &Mesh, height: f64) -> Vec<DVec3> {
     let mut lifted = vec![None; mesh.positions.len()];
     for (triangle, normals) in
         mesh.triangles.iter().zip(mesh.normal_of.iter().map(Some).chain(std::iter::repeat(None)))

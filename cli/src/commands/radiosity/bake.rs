@@ -319,9 +319,9 @@ impl Bake<'_> {
             _ => return CliError::Failed(error.to_string()),
         };
         let mesh = &self.scene.mesh;
-        let face = self.surfaces.faces[surface][0] as usize;
-        let object = &mesh.objects[mesh.object_of[face] as usize].name;
-        let material = &self.scene.materials[mesh.material_of[face] as usize].name;
+        let face = self.surfaces.faces[surface][0];
+        let object = &mesh.objects[mesh.object(face) as usize].name;
+        let material = &self.scene.materials[mesh.material(face) as usize].name;
         let name = self.options.scene.as_deref().map(name_of).unwrap_or_default();
         let message = format!("triangle {face} (of `{object}`, material `{material}`): {error}");
         CliError::Input(InputError::of_file(name, message))
