@@ -456,6 +456,27 @@ fn probes_behind_a_surface_do_not_light_it() {
     }
 }
 
+/// A probe close to a wall lit a disc of it: by the cosine of its way to the wall it faded out a few times its distance from the wall away, and probes farther off took over
+/// within that, as scallops.
+#[test]
+fn a_probe_close_to_a_wall_is_in_front_of_all_of_it() {
+    let far = place::grid(dvec3(-1.0, 1.0, -1.0), dvec3(1.0, 2.0, 1.0), [3, 2, 3]);
+    let positions = [vec![dvec3(0.0, 0.05, 0.0)], far].concat();
+    let field = Field::new(&positions, &constant(&vec![1.0; positions.len()])).unwrap();
+    let field = field.with_distances(vec![DistanceMap::open(9.0).unwrap(); positions.len()]).unwrap();
+    for x in [0.0, 0.1, 0.3, 0.6, 1.0, 1.5] {
+        let at = dvec3(x, 0.0, 0.2);
+        let on_the_wall = field.surface_shares(at, Vec3::Y, &mut Hint::default()).unwrap();
+        assert_eq!(on_the_wall, field.shares(at, &mut Hint::default()).unwrap(), "at {x}");
+        assert!(on_the_wall.iter().any(|s| s.0 == 0), "at {x}");
+    }
+    // Behind it and in its plane it gives nothing.
+    for height in [0.05, 0.2] {
+        let shares = field.surface_shares(dvec3(0.3, height, 0.2), Vec3::Y, &mut Hint::default()).unwrap();
+        assert!(shares.iter().all(|s| s.0 != 0 || s.1 < 1e-4), "{height}: {shares:?}");
+    }
+}
+
 /// On a surface all whose probes are behind it, the nearest give light: it is never black.
 #[test]
 fn a_surface_without_probes_in_front_is_lit_by_the_nearest() {

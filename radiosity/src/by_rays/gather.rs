@@ -66,6 +66,17 @@ impl Gathered {
         if self.near > 0.0 { 1.0 / self.near } else { 1.0 }
     }
 
+    /// What this many rays brought, all of the same light from the same distance.
+    #[cfg(test)]
+    pub(crate) fn of(rays: u32, light: Rgb, distance: f64) -> Self {
+        Self { light, near: 1.0 / distance, precision: 1.0, rays, ..Self::default() }
+    }
+
+    /// Whether the place is behind or inside of something: surfaces are around it, and all of them are black, as nothing is where light is reflected.
+    pub(crate) fn is_covered(&self) -> bool {
+        self.near > 0.0 && self.light() == [0.0; 3]
+    }
+
     /// Sets the precision of the first round of rays, which were spread evenly.
     pub(crate) fn weigh_first(&mut self, precision: f64) {
         if self.precision == 0.0 {

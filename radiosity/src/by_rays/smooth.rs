@@ -1,4 +1,5 @@
 //! Averages over neighbouring places where light comes from far away: their rays count for one another (\[8\]'s test for interpolation).
+//! Places behind a wall and places in front of it are no neighbours, however close they are: a surface that reaches into a wall has both.
 
 use glam::DVec3;
 
@@ -45,6 +46,9 @@ impl<'p> Places<'p> {
             self.within(at, APART * reach, near);
             for &(_, j) in &*near {
                 let (j, other) = (j as usize, &gathered[j as usize]);
+                if other.is_covered() != gathered[i].is_covered() {
+                    continue;
+                }
                 let turn = (1.0 - normals[i].dot(normals[j])).max(0.0).sqrt();
                 let apart = (at - self.positions[j]).length() / reach.min(other.reach()) + TURN * turn;
                 let weight = (1.0 - apart / APART).max(0.0) * f64::from(other.rays());
@@ -109,5 +113,26 @@ impl<'p> Places<'p> {
         let middle = from + (to - from) / 2;
         self.visit((2 * cell, from, middle), point, within2, near);
         self.visit((2 * cell + 1, middle, to), point, within2, near);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+
+    /// The foot of a wall that reaches into another one has vertices where its visible part has some: half of the light of both was a dark dash along the corner.
+    #[test]
+    fn covered_places_take_no_part_in_the_light_of_visible_ones() {
+        let positions = [DVec3::ZERO, DVec3::ZERO, dvec3(0.01, 0.0, 0.0)];
+        let places = Places::new(&positions);
+        let seen = |light: f64| Gathered::of(64, [light; 3], 1.0);
+        let smooth = |gathered: &[Gathered]| places.smooth(&[DVec3::Z; 3], gathered, &[0, 1, 2]);
+        let light = smooth(&[seen(2.0), seen(0.0), seen(1.0)]);
+        assert!(light[0].0[0] > 1.5 && light[2].0[0] > 1.0, "{light:?}");
+        assert_eq!(light[1].0, [0.0; 3]);
+        // Dim is not covered.
+        let light = smooth(&[seen(2.0), seen(1e-9), seen(1.0)]);
+        assert!(light[1].0[0] > 0.9, "{light:?}");
     }
 }

@@ -1,6 +1,7 @@
 //! Sections of a result that could not be measured again stay as they were: without the large data, or without a peer, a study would replace
 //! figures by the word that it skipped them.
 
+use super::provenance::provenance;
 use super::{data, peers};
 
 /// What stands under a section that was kept, before what is known of its making.
@@ -28,6 +29,22 @@ pub(crate) fn with_former(text: &str, former: &str) -> String {
         }
     });
     replaced.collect::<String>().trim_end().to_owned() + "\n"
+}
+
+/// A report with this head whose sections are those of the report before, but for those of `text`, which were measured now: each says on what it was.
+pub(crate) fn with_sections(head: &str, before: &str, text: &str) -> String {
+    let of = |text: &str| -> Vec<String> {
+        sections(text).filter(|s| heading(s).is_some()).map(str::to_owned).collect()
+    };
+    let mut all = of(before);
+    for section in of(text) {
+        let section = format!("{}\n\nMeasured on {}.\n", section.trim_end(), provenance());
+        match all.iter().position(|s| heading(s) == heading(&section)) {
+            Some(place) => all[place] = section,
+            None => all.push(section),
+        }
+    }
+    all.iter().fold(head.to_owned(), |whole, section| format!("{whole}\n{}\n", section.trim_end()))
 }
 
 /// A text before each heading of the second level; the first piece has none.
@@ -63,6 +80,14 @@ mod tests {
         format!(
             "# A study\n\nMade on commit abc, 2026-11-26, rustc 1.\n\n## Balls\n\n2 s\n\n## Buildings\n\n{SKIPPED}\n"
         )
+    }
+
+    #[test]
+    fn a_part_that_is_measured_alone_leaves_the_others_as_they_were() {
+        let text = with_sections("# A study\n", FORMER, "\n## Balls\n\n3 s\n\n## Cubes\n\n4 s\n");
+        assert!(text.starts_with("# A study\n\n## Balls\n\n3 s\n\nMeasured on "), "{text}");
+        assert!(text.contains("\n\n## Buildings\n\n57 s\n\n## Cubes\n\n4 s\n\nMeasured on "), "{text}");
+        assert!(!text.contains("\n1 s"), "{text}");
     }
 
     #[test]

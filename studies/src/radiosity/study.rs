@@ -4,12 +4,13 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
+use cpu_time::ThreadTime;
 use glam::{DQuat, DVec3, dvec3};
 use pointillist_radiosity::{
     FactorOptions, Hemicube, HemicubeKind, Polygon, Scene, SceneOptions, SolveOptions, form_factor,
 };
 
-use crate::common::provenance::provenance;
+use crate::common::kept::with_sections;
 use crate::common::report::{Outcome, write};
 use crate::common::timing::timed;
 use crate::radiosity::boxes::{cornell, quad, room};
@@ -60,46 +61,30 @@ pub(crate) fn run_parts(out_dir: &Path, names: &[&str]) -> Outcome {
     Ok(true)
 }
 
+const HEAD: &str = "# Radiosity: time against error\n\n`cargo run --release -p studies -- radiosity`; `radiosity PART…` runs some parts alone, and each section says on \
+     what it was measured. Times are wall-clock unless they are said to be the processor's, on a machine that does other things, too.\n";
+
 /// Runs a part, and puts its sections in the place of those of the same name.
 fn run_part(out_dir: &Path, name: &str, part: impl Fn(&mut String) -> Outcome) -> Outcome {
     eprintln!("radiosity: {name}");
     let mut text = String::new();
     part(&mut text)?;
     println!("{text}");
-    let file = out_dir.join("radiosity.md");
-    let before = std::fs::read_to_string(&file).unwrap_or_default();
-    let mut sections: Vec<String> = sections(&before).map(str::to_owned).collect();
-    let measured = format!("Measured on {}.", provenance());
-    for section in self::sections(&text) {
-        let section = format!("{}\n\n{measured}", section.trim_end());
-        let title = section.lines().next();
-        match sections.iter().position(|s| s.lines().next() == title) {
-            Some(place) => sections[place] = section,
-            None => sections.push(section),
-        }
-    }
-    let mut whole = "# Radiosity: time against error\n\n`cargo run --release -p studies -- radiosity`; `radiosity PART…` runs some parts alone, and each section says on \
-         what it was measured. Times are wall-clock unless they are said to be the processor's, on a machine that does other things, too.\n"
-        .to_owned();
-    sections.iter().for_each(|section| whole += &format!("\n## {}\n", section.trim_end()));
+    let before = std::fs::read_to_string(out_dir.join("radiosity.md")).unwrap_or_default();
+    let whole = with_sections(HEAD, &before, &text);
     write(out_dir, "radiosity.md", &whole)?;
     Ok(true)
-}
-
-/// What follows each heading, with its title.
-fn sections(text: &str) -> impl Iterator<Item = &str> {
-    text.split("\n## ").skip(1)
 }
 
 fn polygon(o: DVec3, u: DVec3, v: DVec3) -> Polygon {
     Polygon::new(&quad(o, u, v)).expect("a parallelogram")
 }
 
-/// Microseconds of one call, the least of five rounds.
+/// Microseconds of processor time of one call, the least of five rounds.
 fn microseconds(mut work: impl FnMut()) -> f64 {
     const CALLS: u32 = 50;
     let round = |work: &mut dyn FnMut()| {
-        let start = Instant::now();
+        let start = ThreadTime::now();
         (0..CALLS).for_each(|_| work());
         start.elapsed().as_secs_f64() * 1e6 / f64::from(CALLS)
     };
@@ -157,8 +142,12 @@ fn hidden_pairs(text: &mut String) -> Written {
         let (error, bound) = ((found.value / exact - 1.0).abs(), found.error / exact);
         writeln!(text, "| {asked:.0e} | {error:.1e} | {bound:.1e} | {time:.0} |")?;
     }
-    Ok(())
+    writeln!(text, "\n{WITHOUT_LINES}")
 }
+
+/// What was measured in one run with the algorithm before.
+const WITHOUT_LINES: &str = "Microseconds are of processor time. The algorithm that did not cut along lines took 76, 61, 195 and 1071 beside 149, 134, 222 and 619 of this \
+     one in the same run, at 1e-6 5831 beside 1821, at 1e-7 10605 beside 3109.";
 
 fn hemicubes(text: &mut String) -> Written {
     let squares: Vec<Polygon> = (0..8)

@@ -12,9 +12,9 @@ use pointillist_shprobe::place;
 
 use crate::common::data::SKIPPED;
 use crate::common::draw;
+use crate::common::kept::with_sections;
 use crate::common::paths;
 use crate::common::picture::Picture;
-use crate::common::provenance::provenance;
 use crate::common::ray_reference::Tree;
 use crate::common::report::{Outcome, write};
 use crate::radiosity::buildings::{SUN, Sizes, bake};
@@ -86,33 +86,33 @@ impl Reference {
     }
 }
 
-/// The buildings, and two rooms seen from the dark one.
-fn sites() -> Vec<Site> {
-    let mut rooms = Site::thin_wall();
-    (rooms.scene.camera.eye, rooms.scene.camera.target) = (dvec3(7.7, 2.0, 3.7), dvec3(4.1, 1.0, 1.0));
-    rooms.name = "two rooms, from the dark one";
-    let sponza = Site::sponza().and_then(|site| {
-        let camera = "eye = [-11, 2.2, -0.8]\ntarget = [5, 4, 1]";
-        let lamp = "[[light]]\ntype = \"point\"\nposition = [-9, 3, 0.5]\nintensity = [16, 13, 9]\n";
-        let scene = from_data("scenes/sponza-dabrovic/sponza.obj", 1.0, camera, &format!("{SUN}{lamp}"))?;
-        Some(Site { name: "Sponza", scene, candidates: [20, 8, 10], ..site })
-    });
-    let sibenik = Site::sibenik().and_then(|site| {
-        let camera = "eye = [30, 6, -3]\ntarget = [-5, 4.5, 1]";
-        let lights = "[[light]]\ntype = \"directional\"\ndirection = [-0.35, -1, 0.6]\nirradiance = [3.2, 2.9, 2.4]\n\
-                      [[light]]\ntype = \"point\"\nposition = [12.5, 8, 2.5]\nintensity = [150, 125, 100]\n";
-        let scene = from_data("scenes/sibenik/sibenik.obj", 0.05, camera, lights)?;
-        Some(Site { name: "Šibenik", scene, candidates: [20, 8, 10], ..site })
-    });
-    let mut sites = vec![rooms];
-    sites.extend(sponza);
-    sites.extend(sibenik);
-    for site in &mut sites {
-        [site.scene.image.width, site.scene.image.height] = SIZE;
-        site.probe_px = 24;
-        without_maps(&mut site.scene);
-    }
-    sites
+/// One of [`PARTS`]: two rooms seen from the dark one, or a building, if the data are there.
+fn site(part: &str) -> Option<Site> {
+    let mut site = match part {
+        "rooms" => {
+            let mut rooms = Site::thin_wall();
+            (rooms.scene.camera.eye, rooms.scene.camera.target) =
+                (dvec3(7.7, 2.0, 3.7), dvec3(4.1, 1.0, 1.0));
+            Site { name: "Two rooms, from the dark one", ..rooms }
+        }
+        "sponza" => {
+            let camera = "eye = [-11, 2.2, -0.8]\ntarget = [5, 4, 1]";
+            let lamp = "[[light]]\ntype = \"point\"\nposition = [-9, 3, 0.5]\nintensity = [16, 13, 9]\n";
+            let scene = from_data("scenes/sponza-dabrovic/sponza.obj", 1.0, camera, &format!("{SUN}{lamp}"))?;
+            Site { name: "Sponza", scene, candidates: [20, 8, 10], ..Site::sponza()? }
+        }
+        _ => {
+            let camera = "eye = [30, 6, -3]\ntarget = [-5, 4.5, 1]";
+            let lights = "[[light]]\ntype = \"directional\"\ndirection = [-0.35, -1, 0.6]\nirradiance = [3.2, 2.9, 2.4]\n\
+                 [[light]]\ntype = \"point\"\nposition = [12.5, 8, 2.5]\nintensity = [150, 125, 100]\n";
+            let scene = from_data("scenes/sibenik/sibenik.obj", 0.05, camera, lights)?;
+            Site { name: "Šibenik", scene, candidates: [20, 8, 10], ..Site::sibenik()? }
+        }
+    };
+    [site.scene.image.width, site.scene.image.height] = SIZE;
+    site.probe_px = 24;
+    without_maps(&mut site.scene);
+    Some(site)
 }
 
 /// Leaves diffuse colours alone: the paths know nothing else.
@@ -124,41 +124,50 @@ fn without_maps(scene: &mut Scene) {
     scene.render.shading = shade::Interpolation::Flat;
 }
 
-/// Measures all, and draws them to `folder`, if one is given.
-fn measure(folder: Option<&Path>) -> Result<String, Fault> {
-    let mut text = format!(
-        "## Whole pictures, by radiosity and by probes\n\n{} × {} pixels, direct light by `render` in all of them. *Radiosity*: patches of a {}nd of the longest side, \
+/// What is the same in all sections.
+fn head() -> String {
+    format!(
+        "# Light between surfaces, in whole pictures\n\n`cargo run --release -p studies -- together`; `together DIR` draws, too, and `together DIR PART…` does some of `rooms`, `sponza` and `sibenik` \
+         alone. Each section says on what it was measured.\n\n\
+         {} × {} pixels, direct light by `render` in all of them. *Radiosity*: patches of a {}nd of the longest side, \
          divided down to a {}th of that for drawing. Probes know what they see, are chosen among a grid, places about openings, and fitted to free places and surfaces; what they see is lit by that solution. \
-         The reference is two pictures of {PATHS} paths a pixel each, drawn apart: the mean of the product of the differences from either, over the mean of the picture. Materials are diffuse and without maps.\n\n\
-         | scene | light by | error % | brighter % | processor seconds |\n| --- | --- | ---: | ---: | ---: |\n",
+         The reference is two pictures of {PATHS} paths a pixel each, drawn apart: the mean of the product of the differences from either, over the mean of the picture. Materials are diffuse and without maps.\n\n{SEEN}",
         SIZE[0], SIZE[1], PATCHES.0, PATCHES.1
-    );
-    for site in sites() {
-        eprintln!("together: {}", site.name);
-        building(&site, folder, &mut text)?;
-    }
-    if Site::sponza().is_none() {
-        text += &format!("\n{SKIPPED}\n");
-    }
-    Ok(text)
+    )
 }
 
-/// Measures and writes `together.md`.
+/// Names of the sites on the command line.
+const PARTS: [&str; 3] = ["rooms", "sponza", "sibenik"];
+
+/// Measures all and writes `together.md`.
 pub(crate) fn run(out_dir: &Path) -> Outcome {
-    run_with(out_dir, None)
+    run_parts(out_dir, None, &PARTS)
 }
 
-/// The same; draws the pictures to `folder`, too, if one is given.
-pub(crate) fn run_with(out_dir: &Path, folder: Option<&Path>) -> Outcome {
+/// Measures some sites, and puts their sections in the place of those of the same name; draws the pictures to `folder`, too, if one is given.
+pub(crate) fn run_parts(out_dir: &Path, folder: Option<&Path>, parts: &[&str]) -> Outcome {
+    if let Some(unknown) = parts.iter().find(|part| !PARTS.contains(part)) {
+        return Err(format!("no part `{unknown}`: there are {}", PARTS.join(", ")).into());
+    }
     if let Some(folder) = folder {
         std::fs::create_dir_all(folder)?;
     }
-    let table = measure(folder)?;
-    let text = format!(
-        "# Light between surfaces, in whole pictures\n\n`cargo run --release -p studies -- together` made this ({}); `together DIR` draws, too.\n\n{table}\n{SEEN}",
-        provenance()
-    );
-    write(out_dir, "together.md", &text)?;
+    let before = std::fs::read_to_string(out_dir.join("together.md")).unwrap_or_default();
+    let mut whole = with_sections(&head(), &before, "");
+    for part in if parts.is_empty() { &PARTS } else { parts } {
+        let Some(site) = site(part) else {
+            eprintln!("{SKIPPED}");
+            continue;
+        };
+        eprintln!("together: {}", site.name);
+        let mut text = format!(
+            "\n## {}\n\n| light by | error % | brighter % | processor seconds |\n| --- | ---: | ---: | ---: |\n",
+            site.name
+        );
+        building(&site, folder, &mut text)?;
+        whole = with_sections(&head(), &whole, &text);
+        write(out_dir, "together.md", &whole)?;
+    }
     Ok(true)
 }
 
@@ -166,21 +175,14 @@ pub(crate) fn run_with(out_dir: &Path, folder: Option<&Path>) -> Outcome {
 const SEEN: &str = "\
      The pictures: [two rooms](../../docs/together-rooms.jpg), [Sponza](../../docs/together-sponza.jpg), \
      [Šibenik](../../docs/together-sibenik.jpg), each by paths, by radiosity, by 86 and by 192 probes. What is to be seen in them at full size, \
-     plain and brightened by two stops: by radiosity, two dark dashes of a pixel's width in the corner between the dividing wall and the front \
-     wall of the two rooms; by probes, scallops on walls and ceiling beside the corners of the dark room, where one probe takes over from \
-     another, a bright dash under the foremost capital of Sponza (192 probes), and bright specks at a moulding of Šibenik, where probes are too \
-     dark as a whole.\n";
+     plain and brightened by two stops: in the two rooms, by probes, nothing but soft brighter and darker places beside the foot of the doorway; by 192 probes a bright dash under the foremost capital of Sponza, \
+     which no probe sees: one that sees it by a fifth, from behind a column, has four fifths of the say there; and in Šibenik probes are too dark as a whole.\n";
 
 fn building(site: &Site, folder: Option<&Path>, text: &mut String) -> Result<(), Fault> {
     let reference = Reference::new(&site.scene, PATHS);
     let mut row = |name: &str, error: &Error, seconds: f64| -> Result<(), Fault> {
         let Error { relative, bias } = *error;
-        let line = format!(
-            "| {} | {name} | {:.1} | {:+.1} | {seconds:.0} |",
-            site.name,
-            100.0 * relative,
-            100.0 * bias
-        );
+        let line = format!("| {name} | {:.1} | {:+.1} | {seconds:.0} |", 100.0 * relative, 100.0 * bias);
         eprintln!("    {line}");
         Ok(writeln!(text, "{line}")?)
     };
@@ -213,7 +215,7 @@ fn building(site: &Site, folder: Option<&Path>, text: &mut String) -> Result<(),
         shown.push(picture);
     }
     if let Some(folder) = folder {
-        let name = site.name.split(',').next().unwrap_or(site.name).replace(' ', "-");
+        let name = site.name.split(',').next().unwrap_or(site.name).to_lowercase().replace(' ', "-");
         let gain = SHOWN / reference.mean;
         for (word, gain) in [("", gain), ("-bright", BRIGHTENED * gain)] {
             save(&sheet(&shown, 2), gain, &folder.join(format!("together-{name}{word}.png")))?;
