@@ -69,10 +69,10 @@ fn cell(level: u32, link: &Link) -> [u32; 3] {
 
 /// The links in a cell and in the 26 around it.
 fn nearby(places: &[Place], level: u32, [x, y, z]: [u32; 3]) -> impl Iterator<Item = &Place> {
-    let span = |v: u32| v.saturating_sub(1)..=v + 1;
+    let span = |v: u32| v.saturating_sub(1)..=v.saturating_add(1);
     let rows = span(x).flat_map(move |x| span(y).map(move |y| (x, y)));
     rows.flat_map(move |(x, y)| {
-        let (first, last) = ((level, [x, y, z.saturating_sub(1)]), (level, [x, y, z + 1]));
+        let (first, last) = ((level, [x, y, z.saturating_sub(1)]), (level, [x, y, z.saturating_add(1)]));
         let start = places.partition_point(|p| (p.level, p.cell) < first);
         places[start..].iter().take_while(move |p| (p.level, p.cell) <= last)
     })
