@@ -12,7 +12,7 @@ type Fault = Box<dyn std::error::Error + Send + Sync>;
 const DEFAULTS: [(&str, &str, &str); 7] = [
     ("micropoint", "correlated", "1×1 cells"),
     ("shadow", "correlated", "auto"),
-    ("surfel", "blended", "level 1.4"),
+    ("surfel", "blended", "level 1.27"),
     ("surfel", "blended", "radii × 1 "),
     ("ibpr", "default", "default"),
     ("ibpr-depth", "default", "default"),
