@@ -12,8 +12,10 @@ use pointillist_view::morton_code;
 /// saves real work. 64 triangles have at most 192 vertices, so that a corner fits in a byte.
 const CLUSTER_SIZE: usize = 64;
 
-/// Coordinates whose squares and products of three do not overflow.
-const LARGEST: f64 = 1e90;
+/// Whether the squares of coordinates, and products of three, do not overflow.
+fn is_usable(p: DVec3) -> bool {
+    p.is_finite() && p.abs().max_element() < 1e90
+}
 
 impl Geometry {
     /// Prepares triangles: checks them, finds closed components, sorts along a space-filling curve
@@ -112,21 +114,18 @@ impl Geometry {
             let (first_solid, placed) = (self.solids.len() as u32, self.places.len() as u32);
             self.places.push(Placed::new(place, first_solid));
             self.solids.extend(solids.iter().map(|solid| solid.moved(&place.world_from_shape, placed)));
-            for &run in &runs {
-                let bounds = self.push_cluster(run, placed);
-                // A coordinate that is not a number is in no box.
-                let usable = place.world_from_shape.is_finite()
-                    && bounds.low.abs().max(bounds.high.abs()).max_element() < LARGEST;
-                if !usable {
-                    return Err(MicropointError::BadPlacement { shape: number, place: index });
-                }
+            let first = self.clusters.len() as u32;
+            runs.iter().for_each(|&run| self.push_cluster(run, placed));
+            let mut vertices = (first..self.clusters.len() as u32).flat_map(|c| self.cluster(c).vertices());
+            if !place.world_from_shape.is_finite() || !vertices.all(is_usable) {
+                return Err(MicropointError::BadPlacement { shape: number, place: index });
             }
         }
         Ok(())
     }
 
-    /// Adds a stored run of triangles in one of its places; its bounds come back.
-    fn push_cluster(&mut self, run: Run, place: u32) -> Bounds {
+    /// Adds a stored run of triangles in one of its places.
+    fn push_cluster(&mut self, run: Run, place: u32) {
         let index = self.clusters.len() as u32;
         self.clusters.push(Cluster { bounds: Bounds::EMPTY, run, place, facing: None });
         let mut bounds = Bounds::EMPTY;
@@ -135,7 +134,6 @@ impl Geometry {
         let cluster = &mut self.clusters[index as usize];
         (cluster.bounds, cluster.facing) = (bounds, facing);
         self.bounds = self.bounds.union(bounds);
-        bounds
     }
 
     fn facing(&self, cluster: u32) -> Option<Facing> {
@@ -180,8 +178,7 @@ fn check(shape: &Shape<'_>, surfaces: usize) -> Result<(), MicropointError> {
         let (surfaces, triangles) = (surface_of.len(), triangles.len());
         return Err(MicropointError::LengthMismatch { surfaces, triangles });
     }
-    let usable = |p: &DVec3| p.is_finite() && p.abs().max_element() < LARGEST;
-    if let Some(index) = positions.iter().position(|p| !usable(p)) {
+    if let Some(index) = positions.iter().position(|&p| !is_usable(p)) {
         return Err(MicropointError::VertexNotFinite { index, value: positions[index].to_array() });
     }
     for (triangle, t) in triangles.iter().enumerate() {

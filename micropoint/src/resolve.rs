@@ -88,14 +88,14 @@ pub(crate) fn resolve_exactly(
         if order.len() >= neighbours::WORTH_IT {
             dicer.bring_together(&mut order);
         }
+        let mut emit = |dicer: &Dicer, visible: Visible<'_>| {
+            emit(dicer, visible);
+            ControlFlow::Continue(())
+        };
         let compared = if job.squares_per_side > 1 && shows_mask(dicer, scratch, job, corner, &order) {
             resolve_divided(dicer, scratch, job, corner, &order, &mut emit)
         } else {
-            let emit = &mut |dicer: &Dicer, visible: Visible<'_>| {
-                emit(dicer, visible);
-                ControlFlow::Continue(())
-            };
-            resolve_square(dicer, scratch, job, (corner, 1.0), &order, emit)
+            resolve_square(dicer, scratch, job, (corner, 1.0), &order, &mut emit)
         };
         dicer.forget_since(stored);
         dicer.counts.cells_single += u64::from(!compared && order.len() == 1);
@@ -132,17 +132,14 @@ fn resolve_divided(
     job: &DiceJob<'_>,
     corner: DVec2,
     order: &[u32],
-    emit: &mut impl FnMut(&Dicer, Visible<'_>),
+    emit: &mut impl FnMut(&Dicer, Visible<'_>) -> ControlFlow<()>,
 ) -> bool {
     let mut squares = std::mem::take(&mut scratch.squares);
     squares.divide(dicer, job, corner, order);
     let area = 1.0 / f64::from(job.squares_per_side * job.squares_per_side);
     let mut compared = false;
     for order in squares.iter() {
-        compared |= resolve_square(dicer, scratch, job, (corner, area), order, &mut |dicer, visible| {
-            emit(dicer, visible);
-            ControlFlow::Continue(())
-        });
+        compared |= resolve_square(dicer, scratch, job, (corner, area), order, emit);
     }
     scratch.squares = squares;
     compared

@@ -94,13 +94,8 @@ impl Geometry {
                 counts.triangles_culled += 1;
                 continue;
             }
-            match set_up_face(
-                setup,
-                &triangle,
-                ClusterTriangle { cluster, index: i as u32 },
-                corners,
-                surface,
-            ) {
+            let source = ClusterTriangle { cluster, index: i as u32 };
+            match set_up_face(setup, &triangle, source, corners, surface) {
                 None => counts.triangles_culled += 1,
                 Some((face, outline)) => {
                     let opacity = if surface.textured_opacity { None } else { Some(surface.opacity) };

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use cpu_time::ThreadTime;
-use glam::{DVec3, Vec3, dvec3};
+use glam::{DAffine3, DVec3, Vec3, dvec3};
 use pointillist_delaunay::Delaunay;
 use pointillist_ibpr as ibpr;
 use pointillist_render::{DrawOptions, Scene, render};
@@ -38,7 +38,7 @@ const STEEP: f64 = 1.2;
 /// Sizes below which a row says little of growth: what a frame costs whatever is in it.
 const FROM_SECONDS: f64 = 0.02;
 
-const STAGES: [Stage; 9] = [
+const STAGES: [Stage; 10] = [
     Stage {
         name: "terrain, under the sun with shadows",
         of: "triangles",
@@ -56,6 +56,12 @@ const STAGES: [Stage; 9] = [
         of: "triangles",
         sizes: &[4_096, 40_960, 409_600, 4_096_000],
         prepare: small_balls,
+    },
+    Stage {
+        name: "the same spheres as instances of one",
+        of: "triangles",
+        sizes: &[4_096, 40_960, 409_600, 4_096_000],
+        prepare: instances,
     },
     Stage {
         name: "twelve spheres",
@@ -238,17 +244,37 @@ fn balls(count: usize) -> Work {
     draw(s.scene)
 }
 
+/// Of 512 triangles.
+const SMALL_BALL: u32 = 3;
+
 /// Copies of one mesh about a pixel large, all over a cube: up to a thousand triangles a pixel.
 fn small_balls(count: usize) -> Work {
-    const LEVEL: u32 = 3;
+    let (mut s, material, places) = small_places(count);
+    for place in places {
+        s.sphere(place, 1.0, SMALL_BALL, material);
+    }
+    draw(s.scene)
+}
+
+fn instances(count: usize) -> Work {
+    let (mut s, material, places) = small_places(count);
+    let (mut one, ..) = small_places(0);
+    one.sphere(DVec3::ZERO, 1.0, SMALL_BALL, material);
+    let mesh = &mut s.scene.mesh;
+    let shape = mesh.add_shape(one.scene.mesh).expect("it is one object");
+    for place in places {
+        mesh.add_instance(shape, "ball", DAffine3::from_translation(place)).expect("the place is finite");
+    }
+    draw(s.scene)
+}
+
+/// A sunlit scene without anything, a material, and where to put as many triangles.
+fn small_places(count: usize) -> (Sketch, u32, Vec<DVec3>) {
     let mut s = Sketch::new(dvec3(0.0, 0.0, 140.0), DVec3::ZERO, 40.0, 64);
     let material = s.matt(0.7, 1.0);
-    let (low, high) = (DVec3::splat(-40.0), DVec3::splat(40.0));
-    for place in place::random(low, high, count / (8 << (2 * LEVEL)), 5) {
-        s.sphere(place, 1.0, LEVEL, material);
-    }
     s.sun(DVec3::splat(-1.0));
-    draw(s.scene)
+    let (low, high) = (DVec3::splat(-40.0), DVec3::splat(40.0));
+    (s, material, place::random(low, high, count / (8 << (2 * SMALL_BALL)), 5))
 }
 
 fn pixels(count: usize) -> Work {

@@ -131,9 +131,8 @@ impl<'a> Assembly<'a> {
     /// Stores a mesh that stands in several places.
     fn store(&mut self, read: &ReadObject<'_>) -> Result<u32, InputError> {
         let mut shape = Mesh::default();
-        let first_uv = 0;
         shape.uvs.extend_from_slice(&read.file.uvs);
-        self.fill(&mut shape, read, DAffine3::IDENTITY, first_uv, true);
+        self.fill(&mut shape, read, DAffine3::IDENTITY, 0, true);
         shape.objects.push(Object { name: String::new(), two_sided: read.object.two_sided });
         self.mesh.add_shape(shape).map_err(|error| self.refuse(read, error.to_string()))
     }

@@ -42,6 +42,17 @@ struct Numbers {
     first_stored: Vec<u32>,
 }
 
+/// The instance that a number belongs to, if those of each end at `ends`, and where its own begin.
+#[inline]
+fn instance_of(ends: &[u32], number: u32) -> (usize, u32) {
+    let instance = ends.partition_point(|&end| end <= number);
+    (instance, first_of(ends, instance))
+}
+
+fn first_of(ends: &[u32], instance: usize) -> u32 {
+    if instance == 0 { 0 } else { ends[instance - 1] }
+}
+
 /// Where the triangles of a mesh are stored, by their numbers: in lists that begin with its own triangles and go on with those of its shapes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Storage {
@@ -70,8 +81,7 @@ impl Storage {
             return (triangle as usize, order(false));
         }
         let number = triangle - self.own;
-        let instance = self.ends.partition_point(|&end| end <= number);
-        let first = if instance == 0 { 0 } else { self.ends[instance - 1] };
+        let (instance, first) = instance_of(&self.ends, number);
         let (stored, mirrors) = self.placed[instance];
         ((stored + number - first) as usize, order(mirrors))
     }
@@ -193,8 +203,7 @@ impl Mesh {
 
     /// The number of the first triangle of an instance.
     pub(crate) fn first_of(&self, instance: usize) -> u32 {
-        let before = if instance == 0 { 0 } else { self.instances.numbers.ends[instance - 1] };
-        self.triangles.len() as u32 + before
+        self.triangles.len() as u32 + first_of(&self.instances.numbers.ends, instance)
     }
 
     /// What stores triangles: the mesh itself, and its shapes.
@@ -218,8 +227,7 @@ impl Mesh {
         }
         let Instances { shapes, list, numbers } = &self.instances;
         let number = triangle - own;
-        let instance = numbers.ends.partition_point(|&end| end <= number);
-        let first = if instance == 0 { 0 } else { numbers.ends[instance - 1] };
+        let (instance, first) = instance_of(&numbers.ends, number);
         let instance = &list[instance];
         let mesh = &shapes[instance.shape as usize];
         Stored { mesh, index: (number - first) as usize, instance: Some(instance) }
