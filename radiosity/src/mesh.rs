@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::bake::{Baked, BakedTriangle, BakedVertex};
+use crate::bake::{Baked, BakedTriangle, BakedVertex, INWARD};
+use crate::by_rays::surroundings::Surroundings;
 use crate::rgb::{Rgb, add, times};
 use crate::scene::Scene;
 use crate::tree::ElementId;
@@ -15,14 +16,16 @@ const BURIED: f64 = 1e-9;
 const NORMAL_STEPS: f64 = 1e6;
 /// Cosine of the angle up to which facets of a curved surface share vertices: 35 degrees, which smooths columns of 12 sides.
 const SMOOTH: f64 = 0.819;
+/// Patches lie in one plane if the cosine of the angle between them is above this.
+const FLAT: f64 = 1.0 - 1e-9;
 
 /// Whether patches that meet at a small angle share vertices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Facets {
-    /// Only patches of one plane do.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Facets<'a> {
+    /// Only patches of one part of a plane do.
     Apart,
-    /// Those of a curved surface do, too, at a vertex with the mean of their normals.
-    Joined,
+    /// Those of a curved surface do, too, at a vertex with the mean of their normals, and parts of a plane unless something stands between them.
+    Joined(&'a Surroundings),
 }
 
 /// Number of a combination of normal, material and part of a surface; vertices are shared within one.
@@ -34,13 +37,21 @@ pub(crate) struct Place {
     pub(crate) position: DVec3,
     /// Leaves that have this vertex on their outline.
     pub(crate) leaves: Vec<ElementId>,
+    /// Whether something stands there between these and others in the same plane, which have a vertex of their own at this position.
+    pub(crate) parted: bool,
+}
+
+impl Place {
+    const fn new(position: DVec3, leaves: Vec<ElementId>) -> Self {
+        Self { position, leaves, parted: false }
+    }
 }
 
 /// The mesh between the leaves' vertices.
 pub(crate) struct Mesh<'t> {
     scene: &'t Scene,
     leaves: &'t [ElementId],
-    facets: Facets,
+    facets: Facets<'t>,
     groups: Vec<Group>,
     keys: HashMap<(u32, Group), u32>,
     pub(crate) places: Vec<Place>,
@@ -49,7 +60,7 @@ pub(crate) struct Mesh<'t> {
 }
 
 impl<'t> Mesh<'t> {
-    pub(crate) fn new(scene: &'t Scene, leaves: &'t [ElementId], facets: Facets) -> Self {
+    pub(crate) fn new(scene: &'t Scene, leaves: &'t [ElementId], facets: Facets<'t>) -> Self {
         let mut known = HashMap::new();
         let mut of_side = vec![0; scene.sides.len()];
         for &leaf in leaves {
@@ -71,8 +82,8 @@ impl<'t> Mesh<'t> {
             rings: vec![],
         };
         mesh.collect();
-        if facets == Facets::Joined {
-            mesh.join();
+        if let Facets::Joined(around) = facets {
+            mesh.join(around);
         }
         mesh.outline();
         mesh
@@ -98,15 +109,15 @@ impl<'t> Mesh<'t> {
                 let next = self.places.len() as u32;
                 let place = *self.keys.entry((corner, group)).or_insert(next);
                 if place == next {
-                    self.places.push(Place { position: tree.vertices[corner as usize], leaves: vec![] });
+                    self.places.push(Place::new(tree.vertices[corner as usize], vec![]));
                 }
                 self.places[place as usize].leaves.push(leaf);
             }
         }
     }
 
-    /// Groups of one material that meet at a corner at a small angle get one place there.
-    fn join(&mut self) {
+    /// Groups of one material that meet at a corner at a small angle get one place there, unless something stands between them.
+    fn join(&mut self, around: &Surroundings) {
         let mut corners: Vec<(u32, Group, u32)> = self.keys.iter().map(|(&(c, g), &p)| (c, g, p)).collect();
         corners.sort_unstable();
         let mut moved: Vec<u32> = (0..self.places.len() as u32).collect();
@@ -117,10 +128,16 @@ impl<'t> Mesh<'t> {
                 let element = &self.scene.tree.elements[self.places[place as usize].leaves[0] as usize];
                 let side = &self.scene.sides[element.side as usize];
                 let (normal, material) = (element.polygon.normal(), [side.reflectance, side.emission]);
-                let near = kept.iter().find(|k| k.1.dot(normal) > SMOOTH && k.2 == material);
-                match near {
-                    Some(&(other, ..)) => moved[place as usize] = other,
-                    None => kept.push((place, normal, material)),
+                let near = kept.iter().filter(|k| k.1.dot(normal) > SMOOTH && k.2 == material);
+                let parted: Vec<u32> =
+                    near.clone().map(|k| k.0).filter(|&k| self.is_parted(k, place, around)).collect();
+                match near.map(|k| k.0).find(|k| !parted.contains(k)) {
+                    Some(other) => moved[place as usize] = other,
+                    None => {
+                        kept.push((place, normal, material));
+                        let all = parted.iter().chain(parted.first().map(|_| &place));
+                        all.for_each(|&p| self.places[p as usize].parted = true);
+                    }
                 }
             }
         }
@@ -132,6 +149,25 @@ impl<'t> Mesh<'t> {
             }
         }
         self.pack();
+    }
+
+    /// Whether something stands between the patches of two places at one corner, which lie in one plane: a little above them, the way from a place within the ones to
+    /// one within the others is blocked.
+    fn is_parted(&self, a: u32, b: u32, around: &Surroundings) -> bool {
+        let of = |leaf: &ElementId| &self.scene.tree.elements[*leaf as usize].polygon;
+        let [a, b] = [a, b].map(|place| &self.places[place as usize]);
+        let normal = of(&a.leaves[0]).normal();
+        if of(&b.leaves[0]).normal().dot(normal) < FLAT {
+            return false;
+        }
+        let inward = |place: &Place| {
+            let centre =
+                place.leaves.iter().map(|l| of(l).centre()).sum::<DVec3>() / place.leaves.len() as f64;
+            (centre - place.position) * INWARD
+        };
+        let ways = [inward(a), inward(b)];
+        let above = normal * (0.5 * ways[0].length().min(ways[1].length()));
+        around.is_blocked(a.position + ways[0] + above, b.position + ways[1] + above)
     }
 
     /// Leaves out places that no patch has any more.
@@ -158,7 +194,7 @@ impl<'t> Mesh<'t> {
                 self.between(corner, corners[(i + 1) % corners.len()], group, leaf, &mut ring);
             }
             let middle = (ring.len() > corners.len()).then(|| {
-                self.places.push(Place { position: element.polygon.centre(), leaves: vec![leaf] });
+                self.places.push(Place::new(element.polygon.centre(), vec![leaf]));
                 self.places.len() as u32 - 1
             });
             self.rings.push((leaf, ring, middle));
@@ -221,7 +257,7 @@ impl<'t> Mesh<'t> {
             let position = scene.outward(place.position);
             let normal = match self.facets {
                 Facets::Apart => element.polygon.normal(),
-                Facets::Joined => self.normal(place),
+                Facets::Joined(_) => self.normal(place),
             };
             BakedVertex { position, normal, irradiance, radiosity }
         };

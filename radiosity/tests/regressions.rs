@@ -6,8 +6,8 @@ use common::{cornell, quad, room};
 use glam::{DQuat, DVec3, dvec3};
 use pointillist_dice::lambert;
 use pointillist_radiosity::{
-    FactorOptions, HemicubeKind, Lamp, RadiosityError, RayOptions, Scene, SceneOptions, SolveOptions,
-    Surface, Transport, form_factor,
+    BakedVertex, FactorOptions, HemicubeKind, Lamp, RadiosityError, RayOptions, Scene, SceneOptions,
+    SolveOptions, Surface, Transport, form_factor,
 };
 
 /// Height and Jacobian alone need a point each: with the kernel's own order, far triangles were off by a thousandth.
@@ -444,4 +444,39 @@ fn past_sphere(patch: &[DVec3], lamp: &[DVec3], centre: DVec3, radius: f64) -> (
     }
     let scale = area / (std::f64::consts::PI * (N * N * N * N) as f64);
     (all * scale, open * scale)
+}
+
+/// A screen stands on a floor between two walls that shine. By rays the floor had one vertex on either side of the screen's foot, which saw both walls, and took
+/// light of the one to the floor behind the screen.
+#[test]
+fn the_foot_of_a_screen_is_lit_on_its_own_side() {
+    let quad = |o: DVec3, u: DVec3, v: DVec3| [o, o + u, o + u + v, o + v];
+    let floor = Surface::new(&quad(dvec3(-2.0, -2.0, 0.0), DVec3::X * 4.0, DVec3::Y * 4.0), [0.0; 3]);
+    let screen = Surface::new(&quad(DVec3::Y * -2.0, DVec3::Y * 4.0, DVec3::Z), [0.0; 3]).two_sided();
+    let left = Surface::new(&quad(dvec3(-2.0, -2.0, 0.0), DVec3::Y * 4.0, DVec3::Z), [0.0; 3]);
+    let right = Surface::new(&quad(dvec3(2.0, 2.0, 0.0), DVec3::Y * -4.0, DVec3::Z), [0.0; 3]);
+    // Irradiance at the vertices of the foot's middle, and of the floor half a metre from it, by rising x.
+    let light = |right: Surface| {
+        let surfaces = [floor.clone(), screen.clone(), left.clone().emitting([1.0; 3]), right];
+        let mut scene = Scene::new(&surfaces, &SceneOptions::for_rays(0.5)).unwrap();
+        let direct = scene.direct(&[]).unwrap();
+        let transport = scene.transport_by_rays(&direct, &RayOptions::DEFAULT, &|_| ()).unwrap();
+        let baked = transport.solve(&SolveOptions::DEFAULT).unwrap().bake();
+        let near = |p: DVec3| p.y.abs() < 1e-9 && p.x.abs() < 0.51;
+        let is_asked = |v: &&BakedVertex| v.normal.z > 0.5 && near(v.position);
+        let mut found: Vec<(f64, f64)> =
+            baked.vertices.iter().filter(is_asked).map(|v| (v.position.x, v.irradiance[0])).collect();
+        found.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        found
+    };
+    // Of a strip as wide as the wall, seen from its distance: a half of 1 - cos(atan(1/2)) if it were infinitely long.
+    let infinite = 0.5 * (1.0 - (0.5_f64).atan().cos());
+    let one = light(right.clone());
+    let foot: Vec<f64> = one.iter().filter(|v| v.0 == 0.0).map(|v| v.1).collect();
+    assert!(foot.len() == 2 && foot[0] == 0.0, "{one:?}");
+    assert!((0.6..1.0).contains(&(foot[1] / infinite)), "{one:?}");
+    assert!(one.iter().all(|v| v.0 <= 0.0 || v.1 == 0.0), "{one:?}");
+    let both = light(right.emitting([1.0; 3]));
+    let foot: Vec<f64> = both.iter().filter(|v| v.0 == 0.0).map(|v| v.1).collect();
+    assert!(foot.len() == 2 && foot.iter().all(|e| (0.6..1.0).contains(&(e / infinite))), "{both:?}");
 }

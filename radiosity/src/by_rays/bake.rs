@@ -45,8 +45,8 @@ const AMPLE: f64 = 1.1;
 /// At least this share of a place's rays is added, at most as many as it has.
 const LEAST_MORE: f64 = 0.125;
 
-/// Where a place is and which way it faces, as far as rays are concerned.
-type Key = [u64; 6];
+/// Where a place is and which way it faces, as far as rays are concerned, and on which side of what stands there.
+type Key = [u64; 7];
 
 impl RaySolution<'_> {
     /// Irradiance and radiosity at every vertex. Patches are divided down to
@@ -59,7 +59,7 @@ impl RaySolution<'_> {
         let mut known = Known::default();
         for round in 0..=ROUNDS {
             let leaves = scene.tree.leaves();
-            let mesh = Mesh::new(&scene, &leaves, Facets::Joined);
+            let mesh = Mesh::new(&scene, &leaves, Facets::Joined(&self.transport.around));
             let shares = |share: f64| done((round as f64 + share) / (ROUNDS + 1) as f64);
             let lights = self.lights(&scene, &mesh, &gatherer, &mut known, &shares);
             let uneven =
@@ -99,18 +99,19 @@ impl RaySolution<'_> {
         known: &mut Known,
         done: &dyn Fn(f64),
     ) -> Vec<Light> {
-        let keys: Vec<Key> = mesh.places.iter().map(|p| key(mesh, p)).collect();
+        let keys: Vec<Key> = mesh.places.iter().map(|p| key(scene, mesh, p)).collect();
         let starts: Vec<(DVec3, DVec3, u64)> =
             (0..keys.len()).map(|i| start(scene, mesh, &mesh.places[i], &keys[i])).collect();
         let positions: Vec<DVec3> = mesh.places.iter().map(|p| p.position).collect();
         let normals: Vec<DVec3> = starts.iter().map(|s| s.1).collect();
+        let sides: Vec<u64> = keys.iter().map(|k| k[6]).collect();
         let mut gathered: Vec<Gathered> = keys.iter().map(|k| known.of(k)).collect();
         *known = Known::default();
         let mut open: Vec<(usize, Plan, f64)> = (0..keys.len())
             .filter(|&i| gathered[i].rays() == 0)
             .map(|i| (i, parts::even(FIRST), 0.0))
             .collect();
-        let (places, around) = (Places::new(&positions), Neighbours::new(scene, mesh));
+        let (places, around) = (Places::new(&positions, &sides), Neighbours::new(scene, mesh));
         while !open.is_empty() {
             for (number, block) in open.chunks(BLOCK).enumerate() {
                 let more = parallel::map_heavy(block.len(), |k| {
@@ -218,12 +219,14 @@ fn sizes_around(scene: &Scene, place: &Place) -> impl Iterator<Item = f64> {
     place.leaves.iter().map(|&leaf| scene.tree.elements[leaf as usize].polygon.area().sqrt())
 }
 
-fn key(mesh: &Mesh<'_>, place: &Place) -> Key {
+fn key(scene: &Scene, mesh: &Mesh<'_>, place: &Place) -> Key {
     // Patches are added to places in another order after a division, which rounds the sum of normals differently.
     let normal = (mesh.normal(place) * 1e6).round();
     let [x, y, z] = (place.position + 0.0).to_array().map(f64::to_bits);
     let [u, v, w] = (normal + 0.0).to_array().map(f64::to_bits);
-    [x, y, z, u, v, w]
+    let side = |leaf: &ElementId| u64::from(scene.tree.elements[*leaf as usize].side) + 1;
+    let side = if place.parted { place.leaves.iter().map(side).min().unwrap_or_default() } else { 0 };
+    [x, y, z, u, v, w, side]
 }
 
 /// Where the rays of a place start: towards the middle of its patches, and off them.
@@ -235,5 +238,9 @@ fn start(scene: &Scene, mesh: &Mesh<'_>, place: &Place, key: &Key) -> (DVec3, DV
     let shift = way - normal * normal.dot(way);
     let curved = place.leaves.iter().any(|l| of(l).normal().dot(normal) < 1.0 - 1e-9);
     let lift = LIFT + if curved { HOLLOW * shift.length() } else { 0.0 };
-    (place.position + shift + normal * lift, normal, key.iter().fold(0, |m, bits| mix(m ^ bits)))
+    (
+        place.position + shift + normal * lift,
+        normal,
+        key[..6].iter().fold(0, |m, bits| mix(m ^ bits)) ^ key[6],
+    )
 }

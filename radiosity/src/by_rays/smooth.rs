@@ -19,13 +19,16 @@ const LEAF: usize = 8;
 /// Places by position, halved along the longest axis.
 pub(crate) struct Places<'p> {
     positions: &'p [DVec3],
+    /// Different above 0 for places at one position between which something stands.
+    sides: &'p [u64],
     order: Vec<u32>,
     cells: Vec<(DVec3, DVec3)>,
 }
 
 impl<'p> Places<'p> {
-    pub(crate) fn new(positions: &'p [DVec3]) -> Self {
-        let mut places = Self { positions, order: (0..positions.len() as u32).collect(), cells: vec![] };
+    pub(crate) fn new(positions: &'p [DVec3], sides: &'p [u64]) -> Self {
+        let order = (0..positions.len() as u32).collect();
+        let mut places = Self { positions, sides, order, cells: vec![] };
         let depth = (positions.len() / LEAF).max(1).next_power_of_two();
         places.cells = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); 2 * depth];
         places.build(1, 0, positions.len());
@@ -44,9 +47,11 @@ impl<'p> Places<'p> {
             let (at, reach) = (self.positions[i], gathered[i].reach());
             let (mut sum, mut weights, mut errors) = ([0.0; 3], 0.0, 0.0);
             self.within(at, APART * reach, near);
-            for &(_, j) in &*near {
+            for &(distance2, j) in &*near {
                 let (j, other) = (j as usize, &gathered[j as usize]);
-                if other.is_covered() != gathered[i].is_covered() {
+                if other.is_covered() != gathered[i].is_covered()
+                    || (distance2 == 0.0 && self.are_parted(i, j))
+                {
                     continue;
                 }
                 let turn = (1.0 - normals[i].dot(normals[j])).max(0.0).sqrt();
@@ -61,6 +66,11 @@ impl<'p> Places<'p> {
             let whole = weights.max(f64::MIN_POSITIVE);
             (sum.map(|s| s / whole), errors.sqrt() / whole)
         })
+    }
+
+    /// Whether something stands between two places at one position.
+    const fn are_parted(&self, i: usize, j: usize) -> bool {
+        self.sides[i] != self.sides[j] && self.sides[i] != 0 && self.sides[j] != 0
     }
 
     /// Cell `n` has the cells 2n and 2n + 1 for its halves.
@@ -125,7 +135,7 @@ mod tests {
     #[test]
     fn covered_places_take_no_part_in_the_light_of_visible_ones() {
         let positions = [DVec3::ZERO, DVec3::ZERO, dvec3(0.01, 0.0, 0.0)];
-        let places = Places::new(&positions);
+        let places = Places::new(&positions, &[0; 3]);
         let seen = |light: f64| Gathered::of(64, [light; 3], 1.0);
         let smooth = |gathered: &[Gathered]| places.smooth(&[DVec3::Z; 3], gathered, &[0, 1, 2]);
         let light = smooth(&[seen(2.0), seen(0.0), seen(1.0)]);
