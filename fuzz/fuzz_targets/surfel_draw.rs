@@ -20,6 +20,8 @@ enum Shape {
 #[derive(Arbitrary, Debug)]
 struct Attributes {
     normals: Option<Vec<[i8; 3]>>,
+    /// What light sees in their place.
+    shading_normals: Option<Vec<[i8; 3]>>,
     two_sided: bool,
     radii: Option<Vec<u8>>,
     raw_radius: Option<f32>,
@@ -87,6 +89,10 @@ fn points(shapes: &[Shape], attributes: &Attributes) -> OwnedPoints {
     }
     if attributes.two_sided {
         all.normals = None;
+    }
+    if let Some(normals) = attributes.shading_normals.as_ref().filter(|some| !some.is_empty()) {
+        let normal = |n: &[i8; 3]| Vec3::from_array(n.map(f32::from));
+        all.shading_normals = Some(normals.iter().map(normal).cycle().take(n).collect());
     }
     if let Some(radii) = attributes.radii.as_ref().filter(|some| !some.is_empty()) {
         let radius = |r: &u8| attributes.raw_radius.unwrap_or(f32::from(*r) / 256.0);
@@ -165,6 +171,7 @@ fuzz_target!(|input: (Vec<Shape>, Attributes, Picture, Rules, u64)| {
     let facts = invariants::octrees_are_sound(&points)
         .and_then(|()| invariants::frames_are_sound(&points, &view, &options))
         .and_then(|()| invariants::opaque_points_need_no_opacities(&points, &view, &options))
+        .and_then(|()| invariants::shading_normals_only_shade(&points, &view, &options))
         .and_then(|()| invariants::order_does_not_matter(&points, &view, &options, seed))
         .and_then(|()| invariants::culling_changes_nothing(&points, &view, &options))
         .and_then(|()| invariants::one_color_stays_one_color(&points, &view, &options, [0.25, 1.0, 0.7]))
