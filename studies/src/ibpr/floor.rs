@@ -51,7 +51,7 @@ fn settings() -> [(&'static str, Options); 4] {
 }
 
 /// The section of the report.
-pub(super) fn section(subject: &Subject<'_>) -> Result<String, Box<dyn std::error::Error>> {
+pub(super) fn section(subject: &Subject<'_>) -> Result<String, Box<dyn std::error::Error + Send + Sync>> {
     let mut text = "\n## Beside a plain C program\n\n".to_owned();
     let Some(program) = peers::find(FLOOR, "points_floor") else {
         return Ok(text + &peers::skipped("The floor", FLOOR) + "\n");

@@ -122,7 +122,7 @@ impl Bench {
     }
 
     /// The section about the floor.
-    fn beside_the_floor(&self) -> Result<String, Box<dyn std::error::Error>> {
+    fn beside_the_floor(&self) -> Result<String, Box<dyn std::error::Error + Send + Sync>> {
         eprintln!("ibpr: the floor");
         let scans = self.survey.measured(Faults::default(), SEEDS[0]);
         let spacing = self.survey.spacing;
