@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3, Vec3, dvec3};
 use pointillist_surfel::invariants::{self, Estimates, estimates};
-use pointillist_surfel::{Method, SampleOptions, SurfacePoint, sample};
+use pointillist_surfel::{Method, SampleOptions, SurfacePoint, SurfelError, estimate_normals, sample};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
