@@ -192,7 +192,7 @@ impl Facets<'_> {
         let [a, b, c] = corners.map(|i| self.vertices.at(i));
         let inward = self.vertices.at(inner) - a;
         let outward = match corners {
-            [i, j, k] if i == j && j == k => -inward,
+            // 0 where all three are the end of a line: no other facet meets it, so nobody asks for its side.
             [_, j, k] if j == k => (b - a).cross(inward).cross(b - a),
             _ => (b - a).cross(c - a),
         };

@@ -50,11 +50,17 @@ impl Placed {
 
     #[inline]
     pub(crate) fn point(&self, stored: DVec3) -> DVec3 {
-        self.world_from_shape.map_or(stored, |world| world.transform_point3(stored))
+        match &self.world_from_shape {
+            None => stored,
+            Some(world) => world.transform_point3(stored),
+        }
     }
 
     #[inline]
     pub(crate) fn triangle(&self, stored: &Triangle) -> Triangle {
+        if self.world_from_shape.is_none() {
+            return *stored;
+        }
         let [a, b, c] = stored.corners;
         Triangle {
             corners: if self.mirrors { [a, c, b] } else { [a, b, c] },

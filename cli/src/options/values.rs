@@ -233,7 +233,10 @@ pub(super) fn window(text: &str) -> Result<PixelRect, String> {
     let numbers: Vec<u32> = list(text, ',', "four pixel numbers X0,Y0,X1,Y1")?;
     match numbers[..] {
         [x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Ok(PixelRect { x0, y0, x1, y1 }),
-        [_, _, _, _] => Err("the window is empty: X0 < X1 and Y0 < Y1 are needed".to_owned()),
+        [_, _, _, _] => {
+            Err("the window is empty: two corners are needed, X0 < X1 and Y0 < Y1, not a corner and a size"
+                .to_owned())
+        }
         _ => Err("must be four pixel numbers X0,Y0,X1,Y1".to_owned()),
     }
 }
