@@ -95,3 +95,31 @@ fn edges(edges: [DVec3; 3]) -> ([DVec3; 3], f64) {
     let scale = crate::scale::power_of_two_to_one(longest);
     (edges.map(|e| e * scale), scale)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A corner over the middle of the other three: its height is the least, a third of theirs.
+    #[test]
+    fn a_cell_is_flat_if_any_one_height_is() {
+        let flat = |middle: usize, height: f64| {
+            let (x, y) = (-0.5, 0.75_f64.sqrt());
+            let mut corners = vec![[1.0, 0.0], [x, y], [x, -y]].into_iter();
+            let position = |k| {
+                if k == middle {
+                    DVec3::Z * height
+                } else {
+                    corners.next().map_or(DVec3::NAN, |[x, y]| DVec3::new(x, y, 0.0))
+                }
+            };
+            let positions: Vec<DVec3> = (0..4).map(position).collect();
+            Simplex::tetrahedron(&Vertices::new(&positions, DVec3::ZERO, 1.0), [0, 1, 2, 3], [HULL; 4])
+                .is_flat()
+        };
+        for middle in 0..4 {
+            assert!(flat(middle, 0.6e-9) && flat(middle, -0.6e-9), "{middle}");
+            assert!(!flat(middle, 2.4e-9) && !flat(middle, -2.4e-9), "{middle}");
+        }
+    }
+}

@@ -76,14 +76,27 @@ fn shape(shape: &Shape) -> OwnedPoints {
     }
 }
 
+fn repeated(normals: &[[i8; 3]], count: usize) -> Vec<Vec3> {
+    normals.iter().map(|n| Vec3::from_array(n.map(f32::from))).cycle().take(count).collect()
+}
+
+/// Points of which parts are made: each of the eight octants of all of them is prepared among all the others.
+const MOST_IN_PARTS: usize = 100;
+
+/// Some from all over.
+fn few(points: &OwnedPoints) -> OwnedPoints {
+    let count = points.positions.len();
+    let numbers: Vec<usize> = (0..count).step_by(count.div_ceil(MOST_IN_PARTS).max(1)).collect();
+    points.chosen(&numbers)
+}
+
 fn points(shapes: &[Shape], attributes: &Attributes) -> OwnedPoints {
     let mut shapes = shapes.iter().take(3).map(shape);
     let first = shapes.next().unwrap_or_default();
     let mut all = shapes.fold(first, |all, next| all.and(&next));
     let n = all.positions.len();
     if let Some(normals) = attributes.normals.as_ref().filter(|some| !some.is_empty()) {
-        let normal = |n: &[i8; 3]| Vec3::from_array(n.map(f32::from));
-        all.normals = Some(normals.iter().map(normal).cycle().take(n).collect());
+        all.normals = Some(repeated(normals, n));
     }
     if attributes.two_sided {
         all.normals = None;
@@ -153,25 +166,28 @@ fn division(picture: &Picture, k: f64) -> Division {
     }
 }
 
-fuzz_target!(|input: (Vec<Shape>, Attributes, Picture, Rules, u64)| {
-    let (shapes, attributes, picture, rules, seed) = input;
+// The last are normals for light.
+fuzz_target!(|input: (Vec<Shape>, Attributes, Picture, Rules, u64, Option<Vec<[i8; 3]>>)| {
+    let (shapes, attributes, picture, rules, seed, lit) = input;
     let k = f64::from(picture.power).exp2();
     // The paper's filter takes thousands of steps per pixel where discs are large, and a thousand discs of any radius may each cover all pixels in every
     // layer: 5 s of processor time for one input.
     let most = if rules.paper || attributes.raw_radius.is_some() { [40, 30] } else { [150, 80] };
     let Some(view) = view(&picture, k, most) else { return };
-    let points = points(&shapes, &attributes).resized(k);
+    let mut points = points(&shapes, &attributes).resized(k);
+    let lit = lit.filter(|some| !some.is_empty() && points.normals.is_some());
+    points.shading_normals = lit.map(|some| repeated(&some, points.positions.len()));
+    let few = few(&points);
     let options = options(&rules, k);
     let facts = invariants::octrees_are_sound(&points)
         .and_then(|()| invariants::frames_are_sound(&points, &view, &options))
         .and_then(|()| invariants::opaque_points_need_no_opacities(&points, &view, &options))
+        .and_then(|()| invariants::shading_normals_only_shade(&points, &view, &options))
         .and_then(|()| invariants::order_does_not_matter(&points, &view, &options, seed))
         .and_then(|()| invariants::culling_changes_nothing(&points, &view, &options))
         .and_then(|()| invariants::one_color_stays_one_color(&points, &view, &options, [0.25, 1.0, 0.7]))
-        .and_then(|()| invariants::parts_are_the_whole(&points))
-        .and_then(|()| {
-            invariants::parts_are_sound(&points, &part_numbers(&points, seed), &division(&picture, k))
-        });
+        .and_then(|()| invariants::parts_are_the_whole(&few))
+        .and_then(|()| invariants::parts_are_sound(&few, &part_numbers(&few, seed), &division(&picture, k)));
     if let Err(broken) = facts {
         panic!("{broken}");
     }

@@ -12,8 +12,13 @@ pub(crate) struct BlockView {
     start: usize,
     end: usize,
     /// First row that its points may fall into, and the first below it.
-    top: usize,
-    bottom: usize,
+    pub(crate) top: usize,
+    pub(crate) bottom: usize,
+    /// The same of columns.
+    pub(crate) left: usize,
+    pub(crate) right: usize,
+    /// No point has a smaller depth.
+    pub(crate) nearest: f32,
 }
 
 /// Projects the boxes of the visible blocks.
@@ -22,13 +27,25 @@ pub(crate) fn view_blocks(cloud: &Cloud, visible: &[u32], map: &BufferMap, views
     views.extend(visible.iter().map(|&i| {
         let block = &cloud.blocks[i as usize];
         let rows = map.rows(block.origin, block.unit);
-        let (top, bottom) = row_range(&rows, block.half.to_array(), map);
-        BlockView { rows, start: block.points.start, end: block.points.end, top, bottom }
+        let half = block.half.to_array();
+        let (left, right) = range(&rows, 0, half, map);
+        let (top, bottom) = range(&rows, 4, half, map);
+        let (start, end) = (block.points.start, block.points.end);
+        BlockView { rows, start, end, top, bottom, left, right, nearest: nearest(&rows, half) }
     }));
 }
 
-/// Rows of the buffer that a box may touch; all if a corner is at the eye or behind it.
-fn row_range(rows: &[f32; 12], half: [f32; 3], map: &BufferMap) -> (usize, usize) {
+/// A bound of the depths in a box.
+fn nearest(rows: &[f32; 12], half: [f32; 3]) -> f32 {
+    /// Each depth is a sum of four rounded terms.
+    const ROUNDING: f32 = 8.0 * f32::EPSILON;
+    let reach: f32 = (0..3).map(|axis| rows[8 + axis].abs() * half[axis]).sum();
+    rows[11] - reach - (rows[11].abs() + reach) * ROUNDING
+}
+
+/// Columns (`axis` 0) or rows (4) of the buffer that a box may touch; all if a corner is at the eye or behind it.
+fn range(rows: &[f32; 12], axis: usize, half: [f32; 3], map: &BufferMap) -> (usize, usize) {
+    let size = if axis == 0 { map.width } else { map.height };
     let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
     for corner in 0..8 {
         let side = |axis: usize| if corner >> axis & 1 == 0 { -half[axis] } else { half[axis] };
@@ -36,28 +53,30 @@ fn row_range(rows: &[f32; 12], half: [f32; 3], map: &BufferMap) -> (usize, usize
         let depth = row(8) + map.reference as f32;
         let w = if map.is_perspective() { depth } else { 1.0 };
         if w <= 0.0 {
-            return (0, map.height);
+            return (0, size);
         }
-        let y = row(4) / w;
+        let y = row(axis) / w;
         (low, high) = (low.min(y), high.max(y));
     }
     // One row more than rounding can move a point by.
-    ((low - 1.0).max(0.0) as usize, ((high + 2.0).max(0.0) as usize).min(map.height))
+    ((low - 1.0).max(0.0) as usize, ((high + 2.0).max(0.0) as usize).min(size))
 }
 
-/// Calls `each` for the points of `views` in `band`: number in the projected lanes, pixel in the band,
-/// number in the cloud.
+/// Calls `each` for the points in `band` of those `views` that are not `hidden`: number in the projected lanes, pixel in
+/// the band, number in the cloud.
 pub(crate) fn walk(
     cloud: &Cloud,
     views: &[BlockView],
     band: &Band,
+    hidden: impl Fn(&BlockView) -> bool,
     mut each: impl FnMut(&Projected, usize, usize, usize),
 ) {
     let mut projected = Projected::new();
     let arch = Arch::new();
     let [x, y, z] = &cloud.offsets;
     let end_row = band.first_row + band.rows;
-    for view in views.iter().filter(|v| v.top < end_row && v.bottom > band.first_row) {
+    let meets = |v: &&BlockView| v.top < end_row && v.bottom > band.first_row;
+    for view in views.iter().filter(meets).filter(|v| !hidden(v)) {
         for start in (view.start..view.end).step_by(BATCH) {
             let lanes = start..(start + BATCH).min(view.end);
             let points = [&x[lanes.clone()], &y[lanes.clone()], &z[lanes]];

@@ -68,6 +68,32 @@ pub(crate) fn quads_about(picture: &Range<usize>, pixel: f32, size: usize) -> Ra
     (first - reach - 1.0).max(-1.0) as isize..(last + reach).min(size as f32) as isize
 }
 
+/// Columns of the picture that faces in these of its rows may touch, within `columns`.
+pub(crate) fn columns_touched(
+    buffer: &Buffer,
+    pixel: f32,
+    rows: &Range<usize>,
+    columns: &Range<usize>,
+) -> Range<usize> {
+    let (mut first, mut last) = (usize::MAX, 0);
+    for row in quads_about(rows, pixel, buffer.height) {
+        let upper = buffer.at(0, 0).wrapping_add_signed(row * buffer.pitch as isize - 1);
+        let quads = occupied(buffer, upper);
+        if !quads.is_empty() {
+            // Of the picture, whose first pixel lies at 1 here.
+            (first, last) = (first.min(quads.start - upper), last.max(quads.end - upper));
+        }
+    }
+    if first > last {
+        return columns.start..columns.start;
+    }
+    // A quad ends one pixel after its own, in which its right corners may lie anywhere.
+    let start = ((first as f32 - 1.0 - UNDER) * pixel).max(0.0) as usize;
+    let end = ((last as f32 + 1.0 + UNDER) * pixel).ceil() as usize;
+    let start = start.clamp(columns.start, columns.end);
+    start..end.clamp(start, columns.end)
+}
+
 /// Draws all faces of `buffer` that touch `strip`.
 pub(crate) fn draw<P: Pixels>(
     buffer: &Buffer,

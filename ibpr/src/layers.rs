@@ -58,11 +58,17 @@ fn sort_by_pixel(cloud: &Cloud, views: &[BlockView], band: &Band, scratch: &mut 
     found.clear();
     starts.clear();
     starts.resize(band.width * band.rows + 1, 0);
-    walk(cloud, views, band, |p, k, pixel, point| {
-        let member = Member { depth: p.depth[k], x: p.x[k], y: p.y[k], point: point as u32 };
-        found.push((pixel as u32, member));
-        starts[pixel] += 1;
-    });
+    walk(
+        cloud,
+        views,
+        band,
+        |_| false,
+        |p, k, pixel, point| {
+            let member = Member { depth: p.depth[k], x: p.x[k], y: p.y[k], point: point as u32 };
+            found.push((pixel as u32, member));
+            starts[pixel] += 1;
+        },
+    );
     let mut sum = 0;
     for start in starts.iter_mut() {
         sum += *start;

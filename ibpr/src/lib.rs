@@ -61,6 +61,7 @@ mod faces;
 mod fill;
 mod fit;
 mod frame;
+mod hidden;
 #[cfg(feature = "invariants")]
 pub mod invariants;
 mod layers;

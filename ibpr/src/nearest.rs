@@ -3,6 +3,7 @@
 use crate::block_view::{BlockView, walk};
 use crate::buffer::{BufferBand, DepthScale, PAD};
 use crate::cloud::Cloud;
+use crate::hidden::Limits;
 use crate::options::Weighting;
 use crate::project::{Band, Projected};
 use crate::rules::Rules;
@@ -27,6 +28,7 @@ pub(crate) struct NearestScratch {
     /// Mean depth of each pixel, for [`Weighting::Symmetric`].
     mean: Vec<f32>,
     sums: Vec<Sums>,
+    limits: Limits,
 }
 
 /// Averages the points of each pixel of a band that are within γ of the nearest one.
@@ -44,10 +46,14 @@ pub(crate) fn fill_band(
 
 fn sum_band(cloud: &Cloud, views: &[BlockView], band: &Band, rules: Rules, scratch: &mut NearestScratch) {
     let pixels = band.width * band.rows;
-    let NearestScratch { near, mean, sums } = scratch;
+    let NearestScratch { near, mean, sums, limits } = scratch;
     near.clear();
     near.resize(pixels, f32::INFINITY);
-    walk(cloud, views, band, |p, k, pixel, _| near[pixel] = near[pixel].min(p.depth[k]));
+    walk(cloud, views, band, |_| false, |p, k, pixel, _| near[pixel] = near[pixel].min(p.depth[k]));
+    // A little more than γ, by which points are told from those that do not count: both are rounded.
+    let rounding = |near: f32| 4.0 * f32::EPSILON * near.abs();
+    let slab = |near: f32| 1.001 * rules.gamma * rules.scale.unit(near);
+    limits.find(near, band, |near| near + slab(near) + rounding(near));
     sums.clear();
     sums.resize(pixels, [0.0; 8]);
     let behind =
@@ -55,7 +61,7 @@ fn sum_band(cloud: &Cloud, views: &[BlockView], band: &Band, rules: Rules, scrat
     if rules.weighting == Weighting::Symmetric {
         let all = |_: &Projected, _: usize, _: usize, u: f32| if u <= 1.0 { 1.0 } else { 0.0 };
         let weight = |p: &Projected, k: usize, pixel: usize| all(p, k, pixel, behind(p, k, near[pixel]));
-        add(cloud, views, band, near, sums, weight);
+        add(cloud, views, band, (near, limits), sums, weight);
         mean.clear();
         mean.extend(sums.iter().zip(near.iter()).map(|(s, near)| near + s[DEPTH] / s[WEIGHT].max(1.0)));
         sums.fill([0.0; 8]);
@@ -77,19 +83,20 @@ fn sum_band(cloud: &Cloud, views: &[BlockView], band: &Band, rules: Rules, scrat
             }
         }
     };
-    add(cloud, views, band, near, sums, weight);
+    add(cloud, views, band, (near, limits), sums, weight);
 }
 
 fn add(
     cloud: &Cloud,
     views: &[BlockView],
     band: &Band,
-    near: &[f32],
+    (near, limits): (&[f32], &Limits),
     sums: &mut [Sums],
     weight: impl Fn(&Projected, usize, usize) -> f32,
 ) {
     let colored = cloud.has_colors();
-    walk(cloud, views, band, |p, k, pixel, point| {
+    let hidden = |view: &BlockView| limits.hide(view, band);
+    walk(cloud, views, band, hidden, |p, k, pixel, point| {
         let w = weight(p, k, pixel);
         if w <= 0.0 {
             return;

@@ -3,6 +3,7 @@
 use crate::buffer::DepthScale;
 use crate::options::Translucency;
 use crate::raster::{Paint, Pixels};
+use std::ops::Range;
 
 /// Stands for no surface.
 const FAR: [f32; 4] = [f32::INFINITY, 0.0, 0.0, 0.0];
@@ -24,13 +25,13 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
-    /// Empties `n` pixels.
-    pub(crate) fn begin(&mut self, n: usize, painted: bool) {
-        self.solid.clear();
+    /// Makes room for `n` pixels, in rows of so many, and empties these columns.
+    pub(crate) fn begin(&mut self, n: usize, width: usize, columns: &Range<usize>, painted: bool) {
         self.solid.resize(n, FAR);
         self.rim.resize(n, FAR);
-        self.rim_cover.clear();
         self.rim_cover.resize(n, 0.0);
+        self.solid.chunks_mut(width).for_each(|row| row[columns.clone()].fill(FAR));
+        self.rim_cover.chunks_mut(width).for_each(|row| row[columns.clone()].fill(0.0));
         let painted = if painted { n } else { 0 };
         self.solid_paint.resize(painted, Paint::NONE);
         self.rim_paint.resize(painted, Paint::NONE);
@@ -41,9 +42,16 @@ impl Nearest {
         self.solid[at][0] < f32::INFINITY || self.rim_cover[at] > 0.0
     }
 
-    /// Puts a coarser pass over this one, except where this shows another surface in front.
-    pub(crate) fn draw_over(&mut self, coarse: &Self, scale: &DepthScale, steps: f32) {
-        for (i, (under, over)) in self.solid.iter_mut().zip(&coarse.solid).enumerate() {
+    /// Puts a coarser pass over this one at these pixels, except where this shows another surface in front.
+    pub(crate) fn draw_over(
+        &mut self,
+        coarse: &Self,
+        pixels: impl Iterator<Item = usize>,
+        scale: &DepthScale,
+        steps: f32,
+    ) {
+        for i in pixels {
+            let (under, over) = (&mut self.solid[i], &coarse.solid[i]);
             if over[0] < f32::INFINITY && over[0] < under[0] + scale.bent_step(over[0], steps) {
                 *under = *over;
                 if let Some(paint) = self.solid_paint.get_mut(i) {
@@ -93,11 +101,11 @@ pub(crate) struct Stack {
 }
 
 impl Stack {
-    /// Empties `n` pixels.
-    pub(crate) fn begin(&mut self, n: usize) {
+    /// Makes room for `n` pixels, in rows of so many, and empties these columns.
+    pub(crate) fn begin(&mut self, n: usize, width: usize, columns: &Range<usize>) {
         self.fragments.resize(n * MOST_FRAGMENTS, Fragment { surface: FAR, cover: 0.0, paint: Paint::NONE });
-        self.counts.clear();
         self.counts.resize(n, 0);
+        self.counts.chunks_mut(width).for_each(|row| row[columns.clone()].fill(0));
     }
 
     /// The surfaces of a pixel, nearest first.
@@ -105,9 +113,15 @@ impl Stack {
         &self.fragments[at * MOST_FRAGMENTS..][..usize::from(self.counts[at])]
     }
 
-    /// Puts a coarser pass over this one: where both have a surface, the coarser one stays.
-    pub(crate) fn draw_over(&mut self, coarse: &Self, scale: &DepthScale, steps: f32) {
-        for at in 0..self.counts.len() {
+    /// Puts a coarser pass over this one at these pixels: where both have a surface, the coarser one stays.
+    pub(crate) fn draw_over(
+        &mut self,
+        coarse: &Self,
+        pixels: impl Iterator<Item = usize>,
+        scale: &DepthScale,
+        steps: f32,
+    ) {
+        for at in pixels {
             let over = coarse.of(at);
             if over.is_empty() {
                 continue;

@@ -216,63 +216,93 @@ impl Drawing<'_> {
     fn strip(&self, scratch: &mut StripScratch, first_row: usize, out: &mut RowsOut<'_>) {
         let painted = self.colored || out.surface.is_some();
         let n = out.depth.len();
+        let columns = self.columns_touched(first_row, n / self.width);
+        let part = Part { first_row, rows: n / self.width, columns };
+        let pixels = || part.pixels(self.width);
         if let Some(alpha) = self.alpha {
             let [first, second] = &mut scratch.stacks;
-            self.draw_passes([&mut *first, &mut *second], first_row, n, |s| s.begin(n));
+            self.draw_passes([&mut *first, &mut *second], &part, |s| {
+                s.begin(n, self.width, &part.columns);
+            });
             if let Some(rules) = &self.rules[1] {
-                first.pixels.draw_over(&second.pixels, &rules.scale, STEP);
+                first.pixels.draw_over(&second.pixels, pixels(), &rules.scale, STEP);
             }
             let scale = self.rules[0].as_ref().map(|r| r.scale);
             let together = |q: f32| scale.map_or(0.0, |s| s.bent_step(q, 1.0));
-            self.finish(first_row, out, |i, place| {
+            self.finish(&part, out, |i, place| {
                 let fragments = first.pixels.of(i);
                 (!fragments.is_empty())
                     .then(|| self.shader.through(fragments, place, alpha, self.colored, together))
             });
         } else {
             let [first, second] = &mut scratch.nearest;
-            self.draw_passes([&mut *first, &mut *second], first_row, n, |s| s.begin(n, painted));
+            self.draw_passes([&mut *first, &mut *second], &part, |s| {
+                s.begin(n, self.width, &part.columns, painted);
+            });
             if let Some(rules) = &self.rules[1] {
-                first.pixels.draw_over(&second.pixels, &rules.scale, STEP);
+                first.pixels.draw_over(&second.pixels, pixels(), &rules.scale, STEP);
             }
             let pixels = &first.pixels;
-            self.finish(first_row, out, |i, place| {
+            self.finish(&part, out, |i, place| {
                 pixels.is_covered(i).then(|| self.shader.nearest(pixels, i, place, self.colored))
             });
         }
     }
 
-    /// Writes what `shade` says about each pixel of a strip, given its index there and its place in the
-    /// picture.
+    /// The columns in which anything may be drawn in these rows.
+    fn columns_touched(&self, first_row: usize, rows: usize) -> Range<usize> {
+        let rows = first_row..first_row + rows;
+        let of_pass = |(pass, rules): (&Pass, &Option<FaceRules>)| {
+            rules.as_ref().map(|r| faces::columns_touched(&pass.buffer, r.pixel, &rows, &self.columns))
+        };
+        let all = self.passes.iter().zip(&self.rules).filter_map(of_pass).filter(|c| !c.is_empty());
+        all.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end))
+            .unwrap_or(self.columns.start..self.columns.start)
+    }
+
+    /// Writes what `shade` says about each pixel of a part, given its index there and its place in the
+    /// picture, and that there is nothing beside it.
     fn finish(
         &self,
-        first_row: usize,
+        part: &Part,
         out: &mut RowsOut<'_>,
         shade: impl Fn(usize, (usize, usize)) -> Option<Shaded>,
     ) {
-        for row in 0..out.depth.len() / self.width {
-            for column in self.columns.clone() {
+        for row in 0..part.rows {
+            let at = |columns: Range<usize>| row * self.width + columns.start..row * self.width + columns.end;
+            out.clear(at(self.columns.start..part.columns.start));
+            out.clear(at(part.columns.end..self.columns.end));
+            for column in part.columns.clone() {
                 let i = row * self.width + column;
-                let shaded = shade(i, (column, first_row + row)).unwrap_or(Shaded::NOTHING);
+                let shaded = shade(i, (column, part.first_row + row)).unwrap_or(Shaded::NOTHING);
                 self.shader.write(&shaded, out, i);
             }
         }
     }
 
-    fn draw_passes<P: Pixels>(
-        &self,
-        strips: [&mut Strip<P>; 2],
-        first_row: usize,
-        n: usize,
-        begin: impl Fn(&mut P),
-    ) {
+    fn draw_passes<P: Pixels>(&self, strips: [&mut Strip<P>; 2], part: &Part, begin: impl Fn(&mut P)) {
         for (k, strip) in strips.into_iter().enumerate() {
             if let Some(rules) = &self.rules[k] {
-                strip.set_rows(self.width, first_row, n / self.width, self.columns.clone());
+                strip.set_rows(self.width, part.first_row, part.rows, part.columns.clone());
                 begin(&mut strip.pixels);
                 faces::draw(&self.passes[k].buffer, &self.passes[k].outlines.list, rules, strip);
             }
         }
+    }
+}
+
+/// The part of a strip in which something may be drawn.
+struct Part {
+    first_row: usize,
+    rows: usize,
+    columns: Range<usize>,
+}
+
+impl Part {
+    /// Numbers of its pixels in a strip of this width.
+    fn pixels(&self, width: usize) -> impl Iterator<Item = usize> {
+        let columns = self.columns.clone();
+        (0..self.rows).flat_map(move |row| row * width + columns.start..row * width + columns.end)
     }
 }
 

@@ -7,6 +7,7 @@ use crate::raster::Paint;
 use crate::scan::unit;
 use glam::{DVec3, Vec3};
 use pointillist_view::Light;
+use std::ops::Range;
 
 /// Shading and output of a frame: everything in the camera's frame (right, up, back).
 pub(crate) struct Shader {
@@ -158,6 +159,18 @@ pub(crate) struct RowsOut<'a> {
     pub(crate) depth: &'a mut [f32],
     /// Normals and counts, if asked for.
     pub(crate) surface: Option<(&'a mut [[f32; 3]], &'a mut [f32])>,
+}
+
+impl RowsOut<'_> {
+    /// Says that there is nothing at these pixels.
+    pub(crate) fn clear(&mut self, pixels: Range<usize>) {
+        self.color[pixels.clone()].fill([0.0; 4]);
+        self.depth[pixels.clone()].fill(f32::INFINITY);
+        if let Some((normal, count)) = &mut self.surface {
+            normal[pixels.clone()].fill([0.0; 3]);
+            count[pixels].fill(0.0);
+        }
+    }
 }
 
 /// A pixel: its color, and the surface that is shown there.

@@ -6,7 +6,17 @@ use crate::scene::Scene;
 use pointillist_view::{PixelRect, View};
 
 /// Pixels on a side of a tile: about a thousand cells, whose state stays in the second-level cache.
-const TILE_SIZE: u32 = 16;
+const TILE_SIDE: u32 = 16;
+
+/// So many triangles a pixel halve the side of tiles, and so many more halve it again. A tile holds all that is visible in it at once: with
+/// triangles so small, smaller tiles draw at the same pace in less memory, and leave fewer threads idle at the end.
+const CROWDED: [u64; 2] = [32, 256];
+
+/// Pixels on a side of a tile of a picture with so many triangles.
+fn tile_side(triangles: u64, pixels: u64) -> u32 {
+    let is_above = |&&limit: &&u64| triangles / limit > pixels;
+    TILE_SIDE >> CROWDED.iter().filter(is_above).count()
+}
 
 /// What a tile's pixels hold: sums over their micropoints.
 #[derive(Debug, Default)]
@@ -25,6 +35,7 @@ pub struct PartialFrame {
     frame: Frame,
     view: View,
     layers: Vec<LayerKind>,
+    tile_side: u32,
     /// For each tile of the window, row by row.
     drawn: Vec<bool>,
 }
@@ -50,8 +61,9 @@ impl PartialFrame {
             depth: vec![f32::INFINITY; pixels],
             layers: options.layers.iter().map(layer).collect(),
         };
-        let drawn = vec![false; window.tiles(TILE_SIZE).count()];
-        Self { frame, view, layers: options.layers.clone(), drawn }
+        let tile_side = tile_side(scene.mesh.triangle_count() as u64, view.picture().pixels());
+        let drawn = vec![false; window.tiles(tile_side).count()];
+        Self { frame, view, layers: options.layers.clone(), tile_side, drawn }
     }
 
     /// The pixels. Those of tiles that are not drawn yet hold colour 0, depth +∞ and layers 0.
@@ -153,13 +165,13 @@ impl PartialFrame {
     }
 
     fn tiles(&self) -> impl Iterator<Item = PixelRect> + use<> {
-        self.frame.window.tiles(TILE_SIZE)
+        self.frame.window.tiles(self.tile_side)
     }
 
     /// The number of a tile in [`PartialFrame::tiles`]: tiles lie in the raster of the picture, whatever the window.
     fn index_of(&self, tile: PixelRect) -> usize {
         let window = self.frame.window;
-        let cell = |at: u32, from: u32| (at / TILE_SIZE - from / TILE_SIZE) as usize;
+        let cell = |at: u32, from: u32| (at / self.tile_side - from / self.tile_side) as usize;
         let columns = cell(window.x1 - 1, window.x0) + 1;
         cell(tile.y0, window.y0) * columns + cell(tile.x0, window.x0)
     }

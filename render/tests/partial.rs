@@ -1,9 +1,9 @@
 //! Pictures that are drawn in several goes are those that are drawn in one.
 
-use glam::{DVec3, Vec3, dvec3};
+use glam::{DAffine3, DVec3, Vec3, dvec3};
 use pointillist_render::shade::{self, Light};
 use pointillist_render::{
-    Camera, DrawOptions, LayerKind, LightSource, Material, Part, PartialFrame, PixelRect, Prepared,
+    Camera, DrawOptions, LayerKind, LightSource, Material, Mesh, Part, PartialFrame, PixelRect, Prepared,
     RenderError, Scene, Texels, Texture, Watch,
 };
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -138,4 +138,33 @@ fn a_frame_of_another_shape_is_not_taken_over() {
     assert!(picture.restore(&frame, &all) && picture.is_complete());
     prepared.continue_view(&mut picture, &()).unwrap();
     assert_eq!(picture.into_frame(), frame);
+}
+
+/// Many triangles a pixel divide the picture into smaller tiles. Here they lie behind the camera, so that the picture must stay as it is.
+#[test]
+fn smaller_tiles_for_many_triangles_have_the_same_pixels() {
+    let few = scene();
+    let mut many = scene();
+    let mut strip = Mesh::default();
+    let corners: Vec<_> = (0..1026).map(|i| dvec3(f64::from(i / 2), f64::from(i % 2), 50.0)).collect();
+    let triangles: Vec<_> = (0..1024).map(|i| [i, i + 1, i + 2]).collect();
+    strip.add(&Part::new("strip", &corners, &triangles)).unwrap();
+    let shape = many.mesh.add_shape(strip).unwrap();
+    let pixels = few.image.width * few.image.height;
+    let (mut tiles, mut added) = (vec![], 0);
+    for triangles_per_pixel in [0, 33, 260] {
+        while added * 1024 < triangles_per_pixel * pixels {
+            let place = DAffine3::from_translation(DVec3::Z * f64::from(added));
+            many.mesh.add_instance(shape, "strip", place).unwrap();
+            added += 1;
+        }
+        let prepared = Prepared::new(&many, &()).unwrap();
+        let plain = Prepared::new(&few, &()).unwrap();
+        for options in options() {
+            let picture = prepared.begin(&options).unwrap();
+            tiles.push(picture.tile_count());
+            assert_eq!(prepared.draw(&options, &()).unwrap(), plain.draw(&options, &()).unwrap());
+        }
+    }
+    assert_eq!(tiles, [5 * 4, 5 * 3, 10 * 7, 9 * 4, 19 * 14, 17 * 6]);
 }

@@ -2,6 +2,7 @@
 
 use crate::lattice::{Lattice, morton};
 use crate::neighbours::Places;
+use crate::packed;
 use crate::points::Points;
 use crate::{areas, normals, radius};
 use glam::{DVec3, Vec3};
@@ -17,6 +18,8 @@ pub(crate) struct Attributes {
     pub(crate) cells: [Vec<u32>; 3],
     /// Unit vectors.
     pub(crate) normals: [Vec<f32>; 3],
+    /// What light sees in their place, packed; none if it sees the normals.
+    pub(crate) shading_normals: Option<Vec<u32>>,
     /// Units.
     pub(crate) radii: Vec<f32>,
     /// Share of the surface, square units.
@@ -35,6 +38,11 @@ impl Attributes {
         Vec3::from_array([0, 1, 2].map(|axis| self.normals[axis][point]))
     }
 
+    /// What light sees in the place of a normal, if that is another one.
+    pub(crate) fn shading_normal(&self, point: usize) -> Option<Vec3> {
+        self.shading_normals.as_ref().map(|all| packed::unpack_way(all[point]).normalize())
+    }
+
     pub(crate) fn opacity(&self, point: usize) -> f32 {
         self.opacities.as_ref().map_or(1.0, |all| all[point])
     }
@@ -47,6 +55,7 @@ impl Attributes {
         Self {
             cells: self.cells.each_ref().map(|list| taken(list, places)),
             normals: self.normals.each_ref().map(|list| taken(list, places)),
+            shading_normals: self.shading_normals.as_ref().map(|list| taken(list, places)),
             radii: taken(&self.radii, places),
             areas: taken(&self.areas, places),
             colors: self.colors.as_ref().map(|list| taken(list, places)),
@@ -95,6 +104,9 @@ pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice, usual: Option<f64
     let attributes = Attributes {
         cells: [0, 1, 2].map(|axis| keys.iter().map(|&(_, i)| cells[i as usize][axis]).collect()),
         normals: [0, 1, 2].map(|axis| normals.iter().map(|n| n[axis]).collect()),
+        shading_normals: points.shading_normals.map(|given| {
+            keys.iter().map(|&(_, i)| packed::pack_direction(unit(given[i as usize]))).collect()
+        }),
         radii,
         areas: areas.into_iter().map(|a| a.clamp(SMALLEST * SMALLEST, 1e12)).collect(),
         colors: points.colors.map(|given| keys.iter().map(|&(_, i)| given[i as usize]).collect()),
@@ -108,6 +120,7 @@ pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice, usual: Option<f64
 fn compare(points: &Points<'_>, cells: &[[u32; 3]], a: usize, b: usize) -> Ordering {
     let exact = |i: usize| points.positions[i].to_array();
     let normal = |i: usize| points.normals.map_or([0.0; 3], |all| all[i].to_array());
+    let shading = |i: usize| points.shading_normals.map_or([0.0; 3], |all| all[i].to_array());
     let color = |i: usize| points.colors.map_or([0.0; 3], |all| all[i]);
     let radius = |i: usize| points.radii.map_or(0.0, |all| all[i]);
     let opacity = |i: usize| points.opacities.map_or(1.0, |all| all[i]);
@@ -129,4 +142,6 @@ fn compare(points: &Points<'_>, cells: &[[u32; 3]], a: usize, b: usize) -> Order
         .then_with(|| by(color(a), color(b)))
         .then_with(|| radius(a).total_cmp(&radius(b)))
         .then_with(|| opacity(a).total_cmp(&opacity(b)))
+        // Last, so that they change the order of none that differ otherwise.
+        .then_with(|| by(shading(a), shading(b)))
 }

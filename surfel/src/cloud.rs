@@ -28,7 +28,7 @@ impl Cloud {
     /// # Errors
     /// [`SurfelError::NoPoints`], [`SurfelError::TooManyPoints`], [`SurfelError::LengthMismatch`],
     /// [`SurfelError::PointNotFinite`], [`SurfelError::PointTooFar`], [`SurfelError::BadNormal`],
-    /// [`SurfelError::BadColor`], [`SurfelError::BadRadius`], [`SurfelError::BadOpacity`].
+    /// [`SurfelError::OnlyShadingNormals`], [`SurfelError::BadColor`], [`SurfelError::BadRadius`], [`SurfelError::BadOpacity`].
     pub fn new(points: &Points<'_>) -> Result<Self, SurfelError> {
         points.check()?;
         let lattice = Lattice::around(points.positions);
@@ -74,6 +74,12 @@ impl Cloud {
         self.points.opacities.is_some()
     }
 
+    /// Whether light sees other normals than those of the discs.
+    #[must_use]
+    pub fn has_shading_normals(&self) -> bool {
+        self.points.shading_normals.is_some()
+    }
+
     /// Whether normals were estimated; such a cloud is seen from both sides.
     #[must_use]
     pub fn has_estimated_normals(&self) -> bool {
@@ -97,7 +103,8 @@ impl Cloud {
     pub fn bytes(&self) -> usize {
         let of_point = 8 * size_of::<f32>()
             + if self.has_colors() { size_of::<[f32; 3]>() } else { 0 }
-            + if self.has_opacities() { size_of::<f32>() } else { 0 };
+            + if self.has_opacities() { size_of::<f32>() } else { 0 }
+            + if self.has_shading_normals() { size_of::<u32>() } else { 0 };
         self.links.bytes() + size_of::<Node>() * self.nodes.len() + of_point * self.len()
     }
 

@@ -165,7 +165,7 @@ pub(crate) fn project<S: Simd>(
     out: &mut Projected,
     place: usize,
 ) {
-    let Placed { x, y, depth, inverse, scale, normal: [a, b, c], facing, .. } = *placed;
+    let Placed { x, y, depth, inverse, scale, facing, .. } = *placed;
     let constant = |value: f32| Vector::all(simd, value);
     // 3, 4, 5
     let covariance = Covariance::new(placed, disc_radius, camera, shape);
@@ -195,9 +195,6 @@ pub(crate) fn project<S: Simd>(
         (Value::Thickness, plane.thickness),
         (Value::Flat, constant(1.0).if_set(kernel.is_flat, 0.0)),
         (Value::Sharpness, sharpness),
-        (Value::NormalX, a),
-        (Value::NormalY, b),
-        (Value::NormalZ, c),
         (Value::Left, left),
         (Value::Right, right),
         (Value::Top, top),

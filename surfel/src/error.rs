@@ -22,6 +22,9 @@ pub enum SurfelError {
         /// How many vertices there are.
         count: usize,
     },
+    /// Points have normals for light, but none of their own.
+    #[error("shading normals without normals; give the normals of the discs, too")]
+    OnlyShadingNormals,
     /// A point of the cloud is NaN or infinite.
     #[error("point {index} is not finite: {value:?}")]
     PointNotFinite {

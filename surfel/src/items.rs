@@ -18,6 +18,8 @@ pub(crate) type Values = [f32; 2 * BATCH];
 pub(crate) struct Items {
     pub(crate) offsets: [Values; 3],
     pub(crate) normals: [Values; 3],
+    /// What light sees in their place, if points have such normals.
+    pub(crate) shading_normals: [Values; 3],
     pub(crate) radii: Values,
     pub(crate) areas: Values,
     /// The way between the places of a pair, times their standard deviation in shares of it; 0 for one item.
@@ -32,6 +34,7 @@ impl Items {
     pub(crate) const NOTHING: Self = Self {
         offsets: [[0.0; 2 * BATCH]; 3],
         normals: [[0.0; 2 * BATCH]; 3],
+        shading_normals: [[0.0; 2 * BATCH]; 3],
         radii: [0.0; 2 * BATCH],
         areas: [0.0; 2 * BATCH],
         spreads: [[0.0; 2 * BATCH]; 3],
@@ -94,7 +97,7 @@ impl NullaryFnOnce for Take<'_> {
             discs.opacities.fill(1.0);
         }
         if run.in_pairs {
-            discs.unite();
+            discs.unite(cloud.has_shading_normals());
         } else {
             discs.spreads.iter_mut().for_each(|s| s[..BATCH].fill(0.0));
         }
@@ -112,6 +115,9 @@ impl Items {
             }
             self.normals[axis][..count].copy_from_slice(&points.normals[axis][items.clone()]);
         }
+        if let Some(normals) = &points.shading_normals {
+            unpack(&normals[items.clone()], &mut self.shading_normals);
+        }
         self.radii[..count].copy_from_slice(&points.radii[items.clone()]);
         self.areas[..count].copy_from_slice(&points.areas[items.clone()]);
         if let Some(colors) = &points.colors {
@@ -124,17 +130,15 @@ impl Items {
 
     #[inline(always)]
     fn take_links(&mut self, links: &PackedLinks, node: &Node, items: Range<usize>) {
-        let count = items.len();
         for axis in 0..3 {
             for (to, &place) in self.offsets[axis].iter_mut().zip(&links.places[axis][items.clone()]) {
                 *to = node.offset(axis, place);
             }
         }
-        for (lane, &normal) in links.normals[items.clone()].iter().enumerate() {
-            let way = packed::unpack_way(normal);
-            (self.normals[0][lane], self.normals[1][lane], self.normals[2][lane]) = (way.x, way.y, way.z);
+        unpack(&links.normals[items.clone()], &mut self.normals);
+        if let Some(normals) = &links.shading_normals {
+            unpack(&normals[items.clone()], &mut self.shading_normals);
         }
-        normalise(&mut self.normals, count);
         let areas = &links.areas[items.clone()];
         for ((radius, to), &share) in self.radii.iter_mut().zip(&mut self.areas).zip(areas) {
             let area = node.area(share);
@@ -171,7 +175,7 @@ impl Items {
     /// the covariance of both together. It computes the whole capacity, because the compiler vectorises loops of
     /// constant length.
     #[inline(always)]
-    fn unite(&mut self) {
+    fn unite(&mut self, has_shading_normals: bool) {
         let (mut shares, mut deviations) = ([0.0; BATCH], [0.0; BATCH]);
         for i in 0..BATCH {
             let (first, second) = (self.areas[2 * i], self.areas[2 * i + 1]);
@@ -186,7 +190,8 @@ impl Items {
                 spreads[i] = (offsets[2 * i + 1] - offsets[2 * i]) * deviations[i];
             }
         }
-        let others = [&mut self.opacities].into_iter().chain(&mut self.paint);
+        let shading = if has_shading_normals { &mut self.shading_normals[..] } else { &mut [] };
+        let others = [&mut self.opacities].into_iter().chain(&mut self.paint).chain(shading);
         for values in self.offsets.iter_mut().chain(&mut self.normals).chain(others) {
             for i in 0..BATCH {
                 let (first, second) = (values[2 * i], values[2 * i + 1]);
@@ -194,7 +199,20 @@ impl Items {
             }
         }
         normalise(&mut self.normals, BATCH);
+        if has_shading_normals {
+            normalise(&mut self.shading_normals, BATCH);
+        }
     }
+}
+
+/// Unit vectors from their packed form.
+#[inline(always)]
+fn unpack(directions: &[u32], to: &mut [Values; 3]) {
+    for (lane, &direction) in directions.iter().enumerate() {
+        let way = packed::unpack_way(direction);
+        (to[0][lane], to[1][lane], to[2][lane]) = (way.x, way.y, way.z);
+    }
+    normalise(to, directions.len());
 }
 
 /// Normalises vectors. The square roots are computed for a whole vector of items at once.

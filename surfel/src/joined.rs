@@ -7,12 +7,13 @@ use crate::node::{self, Node};
 use crate::packed;
 use crate::packed_links::PackedLinks;
 use crate::points::Points;
+use std::borrow::Cow;
 use std::ops::Range;
 
 impl Cloud {
     /// Puts parts together that [`Cloud::parts`] made within one cube. Costs a copy of them.
     ///
-    /// Colors are there if all parts have some; parts without opacities are opaque.
+    /// Colors are there if all parts have some; parts without opacities are opaque, and those without normals for light show it their own.
     ///
     /// # Errors
     /// [`SurfelError::NoPoints`] without parts, [`SurfelError::NotOfOneKind`], [`SurfelError::TooManyPoints`].
@@ -72,10 +73,20 @@ fn concat_any<'a, S, T: Copy + 'a>(
 }
 
 impl Attributes {
+    /// Normals for light, packed: the points' own where there are no others.
+    fn seen_by_light(&self) -> Cow<'_, [u32]> {
+        let own = || (0..self.radii.len()).map(|i| packed::pack_direction(self.normal(i))).collect();
+        self.shading_normals.as_deref().map_or_else(|| Cow::Owned(own()), Cow::Borrowed)
+    }
+
     fn joined(parts: &[&Self]) -> Self {
         Self {
             cells: [0, 1, 2].map(|axis| concat(parts, |part| &part.cells[axis])),
             normals: [0, 1, 2].map(|axis| concat(parts, |part| &part.normals[axis])),
+            shading_normals: parts
+                .iter()
+                .any(|part| part.shading_normals.is_some())
+                .then(|| parts.iter().flat_map(|part| part.seen_by_light().into_owned()).collect()),
             radii: concat(parts, |part| &part.radii),
             areas: concat(parts, |part| &part.areas),
             colors: concat_all(parts, |part| part.colors.as_ref()),
@@ -95,6 +106,10 @@ impl PackedLinks {
             places: [0, 1, 2].map(|axis| concat(parts, |part| &part.places[axis])),
             areas: concat(parts, |part| &part.areas),
             normals: concat(parts, |part| &part.normals),
+            shading_normals: parts.iter().any(|part| part.shading_normals.is_some()).then(|| {
+                let of = |part: &&Self| part.shading_normals.clone().unwrap_or_else(|| part.normals.clone());
+                parts.iter().flat_map(of).collect()
+            }),
             colors: concat_all(parts, |part| part.colors.as_ref()),
             opacities: concat_any(parts, |part| part.opacities.as_ref(), opaque),
         }

@@ -128,6 +128,7 @@ pub use cloud::Cloud;
 pub use error::SurfelError;
 pub use focus::{Focus, field_of_view_rad};
 pub use frame::{Frame, FrameCounts};
+pub use normals::estimate_normals;
 pub use options::{Options, Procedure};
 pub use parts::{Division, NO_PART};
 pub use point::SurfacePoint;

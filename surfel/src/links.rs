@@ -24,6 +24,8 @@ pub(crate) struct Link {
     /// Area of all points that it represents, square units.
     pub(crate) area: f32,
     pub(crate) normal: Vec3,
+    /// What light sees in its place, if points have such normals.
+    pub(crate) shading_normal: Option<Vec3>,
     /// Premultiplied by the opacity.
     pub(crate) color: Vec3,
     pub(crate) opacity: f32,
@@ -39,6 +41,7 @@ impl Link {
             cell: points.cell(point),
             area: points.areas[point],
             normal: points.normal(point),
+            shading_normal: points.shading_normal(point),
             color,
             opacity,
         }
@@ -151,6 +154,8 @@ fn merged(links: &[Link]) -> Link {
     let area: f32 = links.iter().map(|l| l.area).sum();
     let mean = links.iter().map(|l| place(l) * (l.area / area)).sum::<Vec3>();
     let normal = links.iter().map(|l| l.normal * (l.area / area)).sum::<Vec3>();
+    let shading = |l: &Link| l.shading_normal.map(|n| n * (l.area / area));
+    let shading_normal = links.iter().map(shading).sum::<Option<Vec3>>();
     let color = links.iter().map(|l| l.color * (l.area / area)).sum::<Vec3>();
     let opacity = links.iter().map(|l| l.opacity * (l.area / area)).sum::<f32>();
     let distance2 = |l: &Link| place(l).distance_squared(mean);
@@ -163,6 +168,7 @@ fn merged(links: &[Link]) -> Link {
         cell: moved(origin, mean),
         area,
         normal: normal.try_normalize().unwrap_or(nearest.normal),
+        shading_normal: shading_normal.map(|n| n.try_normalize().unwrap_or(nearest.normal)),
         color,
         opacity,
     }

@@ -4,7 +4,10 @@
 //! direction in which they vary least, the eigenvector of their covariance for its smallest eigenvalue (H. Hoppe et
 //! al., *Surface reconstruction from unorganized points*, SIGGRAPH 1992, §3.2).
 
+use crate::error::SurfelError;
+use crate::lattice::Lattice;
 use crate::neighbours::Places;
+use crate::points::Points;
 use glam::{DVec3, Vec3};
 use pointillist_parallel as parallel;
 
@@ -15,6 +18,19 @@ const FITTED: usize = 14;
 
 /// Most rotations of all three pairs of axes. Each squares what is left off the diagonal: about 5 are needed.
 const SWEEPS: usize = 8;
+
+/// The unit normal of every point as [`Cloud`](crate::Cloud) estimates it, in the caller's order, for those who know on which side of it the outside is.
+///
+/// Its largest component is positive, which says nothing about sides. Does not depend on the order of points.
+///
+/// # Errors
+/// [`SurfelError::NoPoints`], [`SurfelError::TooManyPoints`], [`SurfelError::PointNotFinite`], [`SurfelError::PointTooFar`].
+pub fn estimate_normals(positions: &[DVec3]) -> Result<Vec<Vec3>, SurfelError> {
+    Points::new(positions).check()?;
+    let lattice = Lattice::around(positions);
+    let places: Vec<DVec3> = positions.iter().map(|p| (*p - lattice.low) / lattice.side).collect();
+    Ok(estimate(&Places::new(&places)))
+}
 
 /// The unit normal of every point, in the caller's order; the side on which it stands is arbitrary: its largest
 /// component is positive. On a smooth surface the angle to the true one falls with the spacing, and with noise across

@@ -5,7 +5,7 @@ use crate::links::Link;
 use crate::node::Node;
 use crate::packed;
 
-/// The links of all cubes, packed: 12 bytes each, 4 more with color, 2 more with opacity.
+/// The links of all cubes, packed: 12 bytes each, 4 more with color, 4 with normals for light, 2 with opacity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PackedLinks {
     /// Where they are drawn in the boxes of their nodes, see [`Node::offset`].
@@ -13,6 +13,7 @@ pub(crate) struct PackedLinks {
     /// Shares of the largest area of their nodes, see [`Node::area`].
     pub(crate) areas: Vec<u16>,
     pub(crate) normals: Vec<u32>,
+    pub(crate) shading_normals: Option<Vec<u32>>,
     pub(crate) colors: Option<Vec<u32>>,
     pub(crate) opacities: Option<Vec<u16>>,
 }
@@ -32,6 +33,10 @@ impl PackedLinks {
             places: [0, 1, 2].map(place),
             areas: with_nodes().map(|(node, link)| node.share(link.area)).collect(),
             normals: all().map(|l| packed::pack_direction(l.normal)).collect(),
+            shading_normals: points
+                .shading_normals
+                .as_ref()
+                .map(|_| all().filter_map(|l| l.shading_normal).map(packed::pack_direction).collect()),
             colors: points.colors.as_ref().map(|_| all().map(|l| packed::pack_color(color_of(l))).collect()),
             opacities: points
                 .opacities
@@ -48,6 +53,7 @@ impl PackedLinks {
     pub(crate) fn bytes(&self) -> usize {
         (4 + 2 + 2 * 3) * self.len()
             + 4 * self.colors.as_ref().map_or(0, Vec::len)
+            + 4 * self.shading_normals.as_ref().map_or(0, Vec::len)
             + 2 * self.opacities.as_ref().map_or(0, Vec::len)
     }
 }

@@ -159,6 +159,6 @@ fn row<S: Simd>(v: [Vector<S>; 3], row: [f32; 3]) -> Vector<S> {
 }
 
 #[inline(always)]
-fn turned<S: Simd>(v: [Vector<S>; 3], [a, b, c]: &[Vec3; 3]) -> [Vector<S>; 3] {
+pub(crate) fn turned<S: Simd>(v: [Vector<S>; 3], [a, b, c]: &[Vec3; 3]) -> [Vector<S>; 3] {
     [row(v, a.to_array()), row(v, b.to_array()), row(v, c.to_array())]
 }

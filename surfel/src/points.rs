@@ -10,6 +10,8 @@ pub struct Points<'a> {
     pub(crate) positions: &'a [DVec3],
     /// Outward; of any length above 0. Without them planes are fitted, and the surface is seen from both sides.
     pub(crate) normals: Option<&'a [Vec3]>,
+    /// What light sees in the place of the normals; of any length above 0.
+    pub(crate) shading_normals: Option<&'a [Vec3]>,
     /// Linear RGB, from 0 to [`Points::BRIGHTEST`].
     pub(crate) colors: Option<&'a [[f32; 3]]>,
     /// Discs of these radii leave no gap; world units, above 0. Without them they are estimated.
@@ -22,13 +24,25 @@ impl<'a> Points<'a> {
     /// Points without attributes.
     #[must_use]
     pub const fn new(positions: &'a [DVec3]) -> Self {
-        Self { positions, normals: None, colors: None, radii: None, opacities: None }
+        Self { positions, normals: None, shading_normals: None, colors: None, radii: None, opacities: None }
     }
 
     /// Gives them normals.
+    ///
+    /// A disc lies across its normal, and covers as much of the picture as it faces the eye. Normals that are interpolated over a coarse mesh are
+    /// not those of the surface on which the points lie: see [`Points::with_shading_normals`].
     #[must_use]
     pub const fn with_normals(mut self, normals: &'a [Vec3]) -> Self {
         self.normals = Some(normals);
+        self
+    }
+
+    /// Gives them normals for light alone, beside those of the surface: interpolated ones, where the others are those of the triangles.
+    ///
+    /// With interpolated normals alone, discs next to the silhouette of a coarse mesh face away while the surface does not, and leave holes.
+    #[must_use]
+    pub const fn with_shading_normals(mut self, normals: &'a [Vec3]) -> Self {
+        self.shading_normals = Some(normals);
         self
     }
 
@@ -73,6 +87,7 @@ impl<'a> Points<'a> {
         }
         let lengths = [
             ("normals", self.normals.map(<[_]>::len)),
+            ("shading normals", self.shading_normals.map(<[_]>::len)),
             ("colors", self.colors.map(<[_]>::len)),
             ("radii", self.radii.map(<[_]>::len)),
             ("opacities", self.opacities.map(<[_]>::len)),
@@ -91,13 +106,18 @@ impl<'a> Points<'a> {
                 false => SurfelError::PointNotFinite { index, value },
             });
         }
+        if self.shading_normals.is_some() && self.normals.is_none() {
+            return Err(SurfelError::OnlyShadingNormals);
+        }
         self.check_attributes()
     }
 
     fn check_attributes(&self) -> Result<(), SurfelError> {
         let normal = |n: &Vec3| n.is_finite() && *n != Vec3::ZERO;
-        if let Some(index) = self.normals.and_then(|all| all.iter().position(|n| !normal(n))) {
-            return Err(SurfelError::BadNormal { index });
+        for normals in [self.normals, self.shading_normals].into_iter().flatten() {
+            if let Some(index) = normals.iter().position(|n| !normal(n)) {
+                return Err(SurfelError::BadNormal { index });
+            }
         }
         let channel = |c: &f32| (0.0..=Self::BRIGHTEST).contains(c);
         if let Some(index) = self.colors.and_then(|all| all.iter().position(|c| !c.iter().all(channel))) {

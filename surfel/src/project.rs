@@ -4,7 +4,7 @@ use crate::batch::{Projected, Value};
 use crate::ellipse::project;
 use crate::grid::TileRect;
 use crate::items::{Items, Run, Values};
-use crate::placed::{Map, Placed};
+use crate::placed::{Map, Placed, turned};
 use crate::scene::Scene;
 use crate::select::Selected;
 use crate::splat::Shape;
@@ -58,8 +58,9 @@ impl WithSimd for Project<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { lanes, scene, shape, map, count } = self;
-        let Projector { discs: Items { offsets, normals, radii, areas, spreads, paint, opacities }, out } =
-            lanes;
+        let Projector { discs, out } = lanes;
+        let Items { offsets, normals, shading_normals, radii, areas, spreads, paint, opacities } = discs;
+        let has_shading_normals = scene.cloud.has_shading_normals();
         let vector = |all: &Values, i: usize| Vector::new(simd, S::as_simd_f32s(all).0[i]);
         let vectors =
             |all: &[Values; 3], i: usize| [vector(&all[0], i), vector(&all[1], i), vector(&all[2], i)];
@@ -81,10 +82,20 @@ impl WithSimd for Project<'_> {
             project(simd, &placed, [vector(radii, i), vector(areas, i)], (&scene.camera, shape, map), out, i);
             let at = (placed.x + map.first[0], placed.y + map.first[1]);
             let opacity = vector(opacities, i);
-            let [red, green, blue] = scene.shader.lit((vectors(paint, i), opacity), placed.normal, at);
-            for (value, result) in
-                [(Value::Red, red), (Value::Green, green), (Value::Blue, blue), (Value::Opacity, opacity)]
-            {
+            let mut lit = placed.normal;
+            if has_shading_normals {
+                lit = turned(vectors(shading_normals, i), &scene.camera.axes);
+            }
+            let [red, green, blue] = scene.shader.lit((vectors(paint, i), opacity), lit, at);
+            for (value, result) in [
+                (Value::Red, red),
+                (Value::Green, green),
+                (Value::Blue, blue),
+                (Value::Opacity, opacity),
+                (Value::NormalX, lit[0]),
+                (Value::NormalY, lit[1]),
+                (Value::NormalZ, lit[2]),
+            ] {
                 out.set(i, value, result);
             }
         }

@@ -108,6 +108,9 @@ impl Around {
     /// The color of a link with these around it. Where they lie to one side of it, at a border of the surface or of a
     /// level, a slope of color would pass for a bend: the less they surround it the less is changed.
     fn sharpened(&self, link: &Link) -> Vec3 {
+        if self.weight < LEAST_AROUND * link.area {
+            return link.color;
+        }
         let mean = self.color / self.weight;
         let surrounded = 1.0 - self.way.length() / self.length;
         let amount = AMOUNT * 2.0 * VARIANCE * link.area * self.weight / self.length2;
@@ -117,6 +120,10 @@ impl Around {
         if change.is_finite() { link.color + change } else { link.color }
     }
 }
+
+/// Links around that count for less than this, in areas of the link, are left out: they are so far away that they would change its color by two
+/// hundredths of the difference, and the numbers of those that are farther have no digits left.
+const LEAST_AROUND: f32 = 1e-12;
 
 /// Most that differences from the mean around are enlarged by: links may lie as close together as they like.
 const MOST: f32 = 1.5;
@@ -133,6 +140,7 @@ mod tests {
             cell: [(i % 16 + 8) * step, (i / 16 + 8) * step, 1 << 31],
             area: (f64::from(step) / 4_294_967_296.0).powi(2) as f32,
             normal: Vec3::Z,
+            shading_normal: None,
             color: Vec3::splat(color(i % 16, i / 16)),
             opacity: 1.0,
         };

@@ -81,10 +81,11 @@ proptest! {
     #[test]
     fn points_become_a_cloud_or_are_refused(
         positions in prop::collection::vec(vector(number), 0..6), normals in prop::option::of(prop::collection::vec(normal(), 0..6)),
+        shading_normals in prop::option::of(prop::collection::vec(normal(), 0..6)),
         colors in prop::option::of(prop::collection::vec(any::<[f32; 3]>(), 0..6)), radii in prop::option::of(prop::collection::vec(positive(), 0..6)),
         opacities in prop::option::of(prop::collection::vec(share(), 0..6)),
     ) {
-        let points = OwnedPoints { positions, normals, colors, radii, opacities };
+        let points = OwnedPoints { positions, normals, shading_normals, colors, radii, opacities };
         match cloud(&points) {
             Ok(cloud) => {
                 prop_assert!(cloud.len() == points.positions.len());
@@ -113,13 +114,15 @@ proptest! {
 
     #[test]
     fn anything_that_is_accepted_can_be_drawn(
-        positions in prop::collection::vec(vector(finite), 1..12), normals in prop::option::of(prop::collection::vec(normal(), 12)),
+        positions in prop::collection::vec(vector(finite), 1..12),
+        [normals, shading_normals] in prop::array::uniform2(prop::option::of(prop::collection::vec(normal(), 12))),
         radii in prop::option::of(prop::collection::vec(positive(), 12)), colored: bool,
         opacities in prop::option::of(prop::collection::vec(0.0..=1.0f32, 12)),
         eye in vector(finite), target in vector(finite), p in projection(), w in 1..20u32, h in 1..20u32, o in options(),
     ) {
         let n = positions.len();
         let points = OwnedPoints {
+            shading_normals: shading_normals.filter(|_| normals.is_some()).map(|all| all[..n].to_vec()),
             normals: normals.map(|all| all[..n].to_vec()),
             radii: radii.map(|all| all[..n].to_vec()),
             colors: colored.then(|| (0..n).map(|i| [i as f32, 1e30, 0.0]).collect()),

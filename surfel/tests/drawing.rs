@@ -46,13 +46,17 @@ fn points() -> BoxedStrategy<OwnedPoints> {
         0.4,
         prop::collection::vec(prop_oneof![2 => 0.0..=1.0f32, 1 => Just(1.0), 1 => Just(0.0)], 1..5),
     );
-    (shape(), prop::option::of(shape()), any::<[bool; 2]>(), prop::option::weighted(0.3, radius), opacities)
-        .prop_map(|(first, second, [colored, two_sided], radius, opacities)| {
+    let lit = prop::option::weighted(0.4, prop::collection::vec(direction(), 1..5));
+    let sizes = (prop::option::weighted(0.3, radius), opacities);
+    (shape(), prop::option::of(shape()), any::<[bool; 2]>(), sizes, lit)
+        .prop_map(|(first, second, [colored, two_sided], (radius, opacities), lit)| {
             let mut all = second.map_or(first.clone(), |s| first.and(&s));
             let n = all.positions.len();
             let color = |i: usize| [i as f32 / n as f32, 0.5, (i % 7) as f32];
             all.colors = colored.then(|| (0..n).map(color).collect());
             all.normals = all.normals.filter(|_| !two_sided);
+            let lit = lit.filter(|_| all.normals.is_some());
+            all.shading_normals = lit.map(|some| (0..n).map(|i| some[i % some.len()].as_vec3()).collect());
             all.radii = radius.map(|r| (0..n).map(|i| r * (1.0 + (i % 3) as f32)).collect()).or(all.radii);
             all.opacities = opacities.map(|some| (0..n).map(|i| some[i % some.len()]).collect());
             all
@@ -131,6 +135,11 @@ proptest! {
     #[test]
     fn opaque_points_need_no_opacities(p in points(), v in view(), o in options()) {
         holds!(invariants::opaque_points_need_no_opacities(&p, &v, &o));
+    }
+
+    #[test]
+    fn normals_for_light_change_no_coverage(p in points(), v in view(), o in options()) {
+        holds!(invariants::shading_normals_only_shade(&p, &v, &o));
     }
 
     #[test]

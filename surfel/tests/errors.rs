@@ -46,6 +46,9 @@ fn attributes_are_as_many_as_positions() {
     let mismatch = |what, length| SurfelError::LengthMismatch { what, length, count: 2 };
     assert_eq!(refused(&points.with_normals(&[Vec3::Z])), mismatch("normals", 1));
     assert_eq!(refused(&points.with_normals(&[])), mismatch("normals", 0));
+    let of_discs = points.with_normals(&[Vec3::Z; 2]);
+    assert_eq!(refused(&of_discs.with_shading_normals(&[Vec3::Z])), mismatch("shading normals", 1));
+    assert_eq!(refused(&points.with_shading_normals(&[Vec3::Z; 2])), SurfelError::OnlyShadingNormals);
     assert_eq!(refused(&points.with_colors(&[[0.5; 3]; 3])), mismatch("colors", 3));
     assert_eq!(refused(&points.with_radii(&[1.0])), mismatch("radii", 1));
     assert_eq!(refused(&points.with_opacities(&[1.0; 3])), mismatch("opacities", 3));
@@ -56,6 +59,9 @@ fn attributes_are_checked_and_named() {
     let points = Points::new(&TWO);
     for bad in [Vec3::ZERO, -Vec3::ZERO, Vec3::NAN, Vec3::INFINITY, Vec3::new(1.0, f32::NAN, 0.0)] {
         assert_eq!(refused(&points.with_normals(&[Vec3::Z, bad])), SurfelError::BadNormal { index: 1 });
+        let of_discs = points.with_normals(&[Vec3::Z; 2]);
+        let shading = [bad, Vec3::Z];
+        assert_eq!(refused(&of_discs.with_shading_normals(&shading)), SurfelError::BadNormal { index: 0 });
     }
     for bad in [f32::NAN, f32::INFINITY, -0.1] {
         let error = refused(&points.with_colors(&[[0.5; 3], [0.1, bad, 0.2]]));
@@ -192,6 +198,7 @@ fn every_error_says_something() {
         SurfelError::TooManyPoints { count: 1e12, limit: Points::MOST },
         SurfelError::LengthMismatch { what: "radii", length: 3, count: 7 },
         SurfelError::BadNormal { index: 7 },
+        SurfelError::OnlyShadingNormals,
         SurfelError::BadColor { index: 7 },
         SurfelError::BadRadius { index: 7, radius: -1.0 },
         SurfelError::BadOpacity { index: 7, value: 1.5 },

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3, Vec3, dvec3};
 use pointillist_surfel::invariants::{self, Estimates, estimates};
-use pointillist_surfel::{Method, SampleOptions, SurfacePoint, sample};
+use pointillist_surfel::{Method, SampleOptions, SurfacePoint, SurfelError, estimate_normals, sample};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
@@ -128,6 +128,19 @@ fn normals_of_a_sphere_point_to_its_centre() {
             estimates(&points).normals.iter().zip(&points).map(angle).sum::<f64>() / points.len() as f64;
         assert!(mean.to_degrees() < 1.0, "{}°", mean.to_degrees());
     }
+}
+
+#[test]
+fn estimated_normals_come_in_the_order_of_the_points_and_not_from_bad_ones() {
+    let far = DVec3::splat(1e4);
+    let points = on_sphere(Method::Poisson, 2000, 0.3);
+    let moved: Vec<DVec3> = points.iter().map(|p| *p * 3.0 + far).collect();
+    let normals = estimate_normals(&moved).unwrap();
+    let worst = normals.iter().zip(&points).map(|(n, p)| n.as_dvec3().dot(*p).abs()).fold(1.0, f64::min);
+    assert!(normals.len() == points.len() && worst > 0.99, "{worst}");
+    assert_eq!(estimate_normals(&[]), Err(SurfelError::NoPoints));
+    let bad = [DVec3::ZERO, DVec3::NAN];
+    assert!(matches!(estimate_normals(&bad), Err(SurfelError::PointNotFinite { index: 1, .. })));
 }
 
 #[test]

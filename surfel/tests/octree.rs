@@ -59,10 +59,12 @@ fn points() -> BoxedStrategy<OwnedPoints> {
         prop_oneof![3 => 0.01..2.0f32, 1 => (1.0..9.0f32, -37..38).prop_map(|(r, e)| r * 10f32.powi(e))];
     let radii = prop::option::of(prop::collection::vec(radius, 1..4));
     let opacities = prop::option::of(prop::collection::vec(0.0..=1.0f32, 1..4));
-    (positions, normals, radii, opacities, any::<bool>())
-        .prop_map(|(positions, normals, radii, opacities, colored)| {
+    (positions, normals, radii, opacities, any::<[bool; 2]>())
+        .prop_map(|(positions, normals, radii, opacities, [colored, lit])| {
             let n = positions.len();
+            let lit = normals.clone().filter(|_| lit);
             OwnedPoints {
+                shading_normals: lit.map(|some| some.into_iter().rev().cycle().take(n).collect()),
                 normals: normals.map(|some| some.into_iter().cycle().take(n).collect()),
                 radii: radii.map(|some| some.into_iter().cycle().take(n).collect()),
                 colors: colored.then(|| (0..n).map(|i| [i as f32, 0.5, 1.0 / (i + 1) as f32]).collect()),

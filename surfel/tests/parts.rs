@@ -30,10 +30,11 @@ fn points() -> impl Strategy<Value = OwnedPoints> {
         (0..n).map(|i| at(f64::from(i))).collect::<Vec<_>>()
     });
     let positions = prop_oneof![prop::collection::vec(place, 1..80), spiral];
-    (positions, any::<[bool; 4]>()).prop_map(|(positions, [normals, radii, colors, opacities])| {
+    (positions, any::<[bool; 5]>()).prop_map(|(positions, [normals, lit, radii, colors, opacities])| {
         let n = positions.len();
         OwnedPoints {
             normals: normals.then(|| (0..n).map(normal).collect()),
+            shading_normals: (normals && lit).then(|| (0..n).map(|i| normal(i / 2)).collect()),
             radii: radii.then(|| (0..n).map(|i| 0.01 + 0.02 * (i % 5) as f32).collect()),
             colors: colors.then(|| (0..n).map(|i| [i as f32, 0.5, 0.1]).collect()),
             opacities: opacities.then(|| (0..n).map(|i| if i % 3 == 0 { 0.5 } else { 1.0 }).collect()),

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3, Vec3, dvec2, dvec3};
 use pointillist_surfel::invariants::{
     OwnedPoints, cloud, culling_changes_nothing, frame, frame_is_sound, frames_are_identical, look_at,
-    use_before_does_not_matter,
+    one_color_stays_one_color, use_before_does_not_matter,
 };
 use pointillist_surfel::{
     Focus, Light, Options, Projection, SampleOptions, SurfelError, View, field_of_view_rad, sample,
@@ -169,4 +169,15 @@ fn ground_below_the_eye_is_seen_where_it_is() {
         }
     }
     assert!(seen > 20_000, "{seen}");
+}
+
+/// The mean color of links so far away that their weights were subnormal had three digits.
+#[test]
+fn what_is_far_away_does_not_color_a_lone_point() {
+    let sheet = OwnedPoints::plane(DVec3::Z * -0.324, DVec3::X * 0.01, DVec3::Y * 0.01, 9, 29);
+    let points =
+        OwnedPoints { normals: None, radii: None, ..OwnedPoints::loose(vec![DVec3::ZERO]).and(&sheet) };
+    let camera = Projection::Perspective { fov_y_rad: 0.2 };
+    let view = look_at(dvec3(-0.022, 0.0, 3.92), dvec3(-0.022, 0.0, 0.0), camera, 1, 1).unwrap();
+    one_color_stays_one_color(&points, &view, &Options::default(), [0.0, 0.0, 23.0 / 64.0]).unwrap();
 }

@@ -21,6 +21,8 @@ pub struct CloudBlock<'a> {
     pub opacities: Option<&'a [f32]>,
     /// As in the file; not always of unit length.
     pub normals: Option<&'a [Vec3]>,
+    /// Properties `face_nx face_ny face_nz` beside normals: across the surface on which the points lie, where the normals are interpolated.
+    pub face_normals: Option<&'a [Vec3]>,
     /// Property `radius` of surfels, in the unit of the positions, as in the file.
     pub radii: Option<&'a [f32]>,
     /// By [`Scalar`], with [`CloudOptions::scalars`].
@@ -95,6 +97,8 @@ pub struct CloudSummary {
     pub has_opacities: bool,
     /// Whether blocks have normals.
     pub has_normals: bool,
+    /// Whether blocks have normals of the surface beside interpolated ones.
+    pub has_face_normals: bool,
     /// Whether blocks have radii.
     pub has_radii: bool,
     /// Whether the file has these, by [`Scalar`]; blocks have them with [`CloudOptions::scalars`].
@@ -166,6 +170,7 @@ impl std::fmt::Display for At {
 pub(super) struct Point {
     pub(super) position: DVec3,
     pub(super) normal: Vec3,
+    pub(super) face_normal: Vec3,
     pub(super) colour: [f32; 3],
     pub(super) opacity: f32,
     pub(super) radius: f32,
@@ -179,6 +184,7 @@ pub(super) struct Has {
     pub(super) colours: bool,
     pub(super) opacities: bool,
     pub(super) normals: bool,
+    pub(super) face_normals: bool,
     pub(super) radii: bool,
     pub(super) scalars: Scalars<bool>,
 }
@@ -189,7 +195,10 @@ impl Point {
         // A sum is not finite if a term is not; terms that are finite in f32 cannot overflow this one.
         let rest =
             f64::from(r) + f64::from(g) + f64::from(b) + f64::from(self.opacity) + f64::from(self.radius);
-        is_usable(self.position) && self.normal.is_finite() && rest.is_finite()
+        is_usable(self.position)
+            && self.normal.is_finite()
+            && self.face_normal.is_finite()
+            && rest.is_finite()
     }
 }
 
@@ -204,6 +213,7 @@ pub(super) struct Gather<'a> {
     colours: Vec<[f32; 3]>,
     opacities: Vec<f32>,
     normals: Vec<Vec3>,
+    face_normals: Vec<Vec3>,
     radii: Vec<f32>,
     scalars: Scalars<Vec<f32>>,
     seen: u64,
@@ -229,6 +239,7 @@ impl<'a> Gather<'a> {
             colours: Vec::new(),
             opacities: Vec::new(),
             normals: Vec::new(),
+            face_normals: Vec::new(),
             radii: Vec::new(),
             scalars: Scalars::default(),
             seen: 0,
@@ -270,6 +281,9 @@ impl<'a> Gather<'a> {
         if self.has.normals {
             self.normals.push(point.normal);
         }
+        if self.has.face_normals {
+            self.face_normals.push(point.face_normal);
+        }
         if self.has.radii {
             self.radii.push(point.radius);
         }
@@ -293,6 +307,7 @@ impl<'a> Gather<'a> {
             colours: self.has.colours.then_some(&*self.colours),
             opacities: self.has.opacities.then_some(&*self.opacities),
             normals: self.has.normals.then_some(&*self.normals),
+            face_normals: self.has.face_normals.then_some(&*self.face_normals),
             radii: self.has.radii.then_some(&*self.radii),
             scalars: std::array::from_fn(|i| {
                 (self.wants_scalars && self.has.scalars[i]).then_some(&*self.scalars[i])
@@ -303,6 +318,7 @@ impl<'a> Gather<'a> {
         self.colours.clear();
         self.opacities.clear();
         self.normals.clear();
+        self.face_normals.clear();
         self.radii.clear();
         self.scalars.iter_mut().for_each(Vec::clear);
         Ok(())
@@ -348,6 +364,7 @@ impl<'a> Gather<'a> {
             has_colours: self.has.colours,
             has_opacities: self.has.opacities,
             has_normals: self.has.normals,
+            has_face_normals: self.has.face_normals,
             has_radii: self.has.radii,
             has_scalars: self.has.scalars,
             bounds: [self.low, self.high],

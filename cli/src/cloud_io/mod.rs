@@ -55,8 +55,8 @@ pub(crate) const DRAW_CLOUD: &str = "`pointillist scan FILE` draws points as clo
 ///
 /// Formats, each known by content or extension:
 ///
-/// * PLY, ascii and binary of both byte orders: `x y z` of the element `vertex`; normals `nx ny nz`; colours
-///   `red green blue`, `diffuse_red …` or `r g b`; opacities `alpha` or `a`; `radius`. Faces and other elements are passed
+/// * PLY, ascii and binary of both byte orders: `x y z` of the element `vertex`; normals `nx ny nz`, and `face_nx face_ny face_nz` where those are
+///   interpolated; colours `red green blue`, `diffuse_red …` or `r g b`; opacities `alpha` or `a`; `radius`. Faces and other elements are passed
 ///   over, but for a Stanford `range_grid`, which gives [`CloudSummary::grid`].
 /// * XYZ text (`.xyz`, `.txt`, `.asc`, `.pts`, `.csv`): three to seven numbers a line; which of them are colours is
 ///   described in the module that reads it and in the messages.

@@ -27,7 +27,7 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), CliError> {
     report.stats.count("triangles", scene.mesh.triangle_count() as u64);
     report.stats.count("lights", scene.lights.len() as u64);
     let text = format!(
-        "{}: fine; {} triangles in {} objects, {} materials, {} textures, {} lights, {}×{} pixels",
+        "{}: fine; triangles: {}, objects: {}, materials: {}, textures: {}, lights: {}; {}×{} pixels",
         name_of(&options.scene),
         scene.mesh.triangle_count(),
         scene.mesh.objects.len(),

@@ -116,9 +116,13 @@ fn check_memory(options: &SampleOptions) -> Result<(), CliError> {
 }
 
 fn with_attributes(scene: &Scene, point: &SurfacePoint) -> CloudPoint {
+    let normal = normal(scene, point);
+    // Normals say which side is outside; triangles may be wound either way.
+    let face_normal = if normal.dot(point.normal) < 0.0 { -point.normal } else { point.normal };
     CloudPoint {
         position: point.position,
-        normal: normal(scene, point).as_vec3(),
+        normal: normal.as_vec3(),
+        face_normal: face_normal.as_vec3(),
         color: color(scene, point).to_array().map(encoded),
         radius: point.radius,
     }

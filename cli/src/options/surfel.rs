@@ -10,7 +10,7 @@ use std::path::PathBuf;
 /// `surfel`.
 #[derive(Debug, clap::Args)]
 pub struct SurfelOptions {
-    /// Clouds, drawn together: .ply with x y z and, where it has them, nx ny nz, red green blue, alpha, radius; .ply.gz, .xyz, .las, .laz, .octree, with a feature .e57
+    /// Clouds, drawn together: .ply with x y z and, where it has them, nx ny nz, face_nx face_ny face_nz beside these, red green blue, alpha, radius; .ply.gz, .xyz, .las, .laz, .octree, with a feature .e57
     #[arg(required = true, value_name = "CLOUD")]
     pub clouds: Vec<PathBuf>,
     /// The picture: .png or .exr (default: the first CLOUD's name with .png)

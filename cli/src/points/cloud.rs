@@ -17,6 +17,8 @@ use std::path::{Path, PathBuf};
 pub struct PointSet {
     positions: Vec<DVec3>,
     normals: Option<Vec<Vec3>>,
+    /// Of the surface, where the normals are interpolated; none as long as no file has them. Points of files without them have their normals here.
+    face_normals: Option<Vec<Vec3>>,
     colours: Option<Vec<[f32; 3]>>,
     radii: Option<Vec<f32>>,
     /// None as long as no file has them; points of files without them are opaque.
@@ -97,6 +99,7 @@ impl PointSet {
     pub(super) fn add(&mut self, block: &CloudBlock<'_>, values: &[f32]) {
         self.values.extend_from_slice(values);
         self.positions.extend_from_slice(block.positions);
+        self.add_face_normals(block.face_normals, block.normals);
         append(&mut self.normals, block.normals);
         append(&mut self.colours, block.colours);
         append(&mut self.radii, block.radii);
@@ -110,10 +113,31 @@ impl PointSet {
         }
     }
 
+    /// Before the normals of the same points are added.
+    fn add_face_normals(&mut self, own: Option<&[Vec3]>, normals: Option<&[Vec3]>) {
+        let (Some(before), Some(normals)) = (&self.normals, normals) else {
+            self.face_normals = None;
+            return;
+        };
+        if own.is_some() && self.face_normals.is_none() {
+            self.face_normals = Some(before.clone());
+        }
+        if let Some(all) = &mut self.face_normals {
+            all.extend_from_slice(own.unwrap_or(normals));
+        }
+    }
+
     /// Adds points of another set that have been coloured, by their numbers.
     pub(super) fn add_chosen(&mut self, from: &Self, chosen: &[u32]) {
         let before = self.positions.len();
         self.positions.extend(chosen.iter().map(|&i| from.positions[i as usize]));
+        let of = |all: Option<&Vec<Vec3>>| -> Option<Vec<Vec3>> {
+            all.map(|all| chosen.iter().map(|&i| all[i as usize]).collect())
+        };
+        self.add_face_normals(
+            of(from.face_normals.as_ref()).as_deref(),
+            of(from.normals.as_ref()).as_deref(),
+        );
         append_chosen(&mut self.normals, from.normals.as_ref(), chosen);
         append_chosen(&mut self.colours, from.colours.as_ref(), chosen);
         append_chosen(&mut self.radii, from.radii.as_ref(), chosen);
@@ -143,6 +167,7 @@ impl PointSet {
         let rows = |has: bool, bytes: usize| if has { bytes } else { 0 };
         let each = size_of::<DVec3>()
             + rows(self.normals.is_some(), size_of::<Vec3>())
+            + rows(self.face_normals.is_some(), size_of::<Vec3>())
             + rows(self.colours.is_some(), size_of::<[f32; 3]>())
             + rows(self.radii.is_some(), size_of::<f32>())
             + rows(self.opacities.is_some(), size_of::<f32>())
@@ -244,7 +269,10 @@ impl PointSet {
     fn points(&self, estimate_normals: bool) -> Points<'_> {
         let mut points = Points::new(&self.positions);
         if let Some(normals) = self.normals.as_deref().filter(|_| !estimate_normals) {
-            points = points.with_normals(normals);
+            points = match &self.face_normals {
+                Some(of_surface) => points.with_normals(of_surface).with_shading_normals(normals),
+                None => points.with_normals(normals),
+            };
         }
         if let Some(colors) = &self.colours {
             points = points.with_colors(colors);

@@ -88,6 +88,7 @@ pub struct Selector<'a> {
     colours: Vec<[f32; 3]>,
     opacities: Vec<f32>,
     normals: Vec<Vec3>,
+    face_normals: Vec<Vec3>,
     radii: Vec<f32>,
     scalars: [Vec<f32>; Scalar::ALL.len()],
 }
@@ -110,6 +111,7 @@ impl<'a> Selector<'a> {
             colours: vec![],
             opacities: vec![],
             normals: vec![],
+            face_normals: vec![],
             radii: vec![],
             scalars: Default::default(),
         }
@@ -145,6 +147,7 @@ impl<'a> Selector<'a> {
             colours: block.colours.map(|values| gather(taken, values, &mut self.colours)),
             opacities: block.opacities.map(|values| gather(taken, values, &mut self.opacities)),
             normals: block.normals.map(|values| gather(taken, values, &mut self.normals)),
+            face_normals: block.face_normals.map(|values| gather(taken, values, &mut self.face_normals)),
             radii: block.radii.map(|values| gather(taken, values, &mut self.radii)),
             scalars,
         })
@@ -165,6 +168,7 @@ mod tests {
             colours: None,
             opacities: None,
             normals: None,
+            face_normals: None,
             radii: None,
             scalars: [None, Some(&classes), None],
         };

@@ -205,6 +205,86 @@ fn a_part_draws_the_points_that_it_shows() {
     assert_eq!(drawn(&["--crop", "0,0,8,8"]), 0);
 }
 
+/// A unit sphere of five bands of ten quadrilaterals, without normals.
+fn coarse_sphere() -> String {
+    let corner = |i: usize| {
+        let (s, z) = (std::f64::consts::PI * (i / 10) as f64 / 5.0).sin_cos();
+        let (y, x) = (std::f64::consts::TAU * (i % 10) as f64 / 10.0).sin_cos();
+        format!("v {} {} {z}\n", s * x, s * y)
+    };
+    let at = |row: usize, column: usize| row * 10 + column % 10 + 1;
+    let face = |i: usize| {
+        let (r, c) = (i / 10, i % 10);
+        format!("f {} {} {} {}\n", at(r, c), at(r + 1, c), at(r + 1, c + 1), at(r, c + 1))
+    };
+    (0..60).map(corner).chain((0..50).map(face)).collect()
+}
+
+/// The least opacity more than three pixels inside of the outline of a convex solid.
+fn least_inside(drawn: &Picture) -> f32 {
+    let rows: Vec<&[[f32; 4]]> = drawn.color.chunks(drawn.size[0] as usize).collect();
+    let ends = |row: &&[[f32; 4]]| {
+        let first = row.iter().position(|c| c[3] > 0.5)?;
+        Some((first + 4, row.iter().rposition(|c| c[3] > 0.5)?.saturating_sub(3)))
+    };
+    let inside = |row: &&[[f32; 4]]| {
+        let (first, last) = ends(row).unwrap_or((0, 0));
+        row.get(first..last).unwrap_or_default().iter().fold(1.0f32, |least, c| least.min(c[3]))
+    };
+    let shown: Vec<usize> = (0..rows.len()).filter(|&y| ends(&rows[y]).is_some()).collect();
+    rows[shown[0] + 4..shown[shown.len() - 1] - 3].iter().map(inside).fold(1.0, f32::min)
+}
+
+#[test]
+fn a_sampled_mesh_with_smooth_normals_has_no_holes_beside_its_outline() {
+    let folder = Folder::new();
+    folder.write("coarse.obj", coarse_sphere());
+    let sample = ["sample", "coarse.obj", "--method", "ldi", "--count", "60000", "--ascii", "--quiet"];
+    folder.prints(&[&sample[..], &["-o", "a.ply"]].concat());
+    let text = std::fs::read_to_string(folder.path("a.ply")).unwrap();
+    assert!(
+        text.contains("property float face_nx\nproperty float face_ny\nproperty float face_nz\nend_header\n")
+    );
+    // As other programs write it.
+    let bare: String = text.replace("face_", "other_").lines().map(|line| format!("{line}\n")).collect();
+    folder.write("bare.ply", bare);
+    let least = |cloud: &[&str]| {
+        let view = ["--eye", "4,0.3,1.2", "--target", "0,0,0", "--fov", "35", "--size", "100x100"];
+        let line =
+            [&["surfel"], cloud, &view, &["-o", "a.exr", "--float", "--overwrite", "--quiet"]].concat();
+        folder.prints(&line);
+        least_inside(&picture(&folder, "a.exr"))
+    };
+    let (own, octree, alone) = (least(&["a.ply"]), least(&["a.ply", "--octree"]), least(&["bare.ply"]));
+    assert!(own > 0.97 && octree > 0.97 && alone < 0.8, "{own}, {octree} with an octree, {alone} without");
+}
+
+#[test]
+fn clouds_with_and_without_face_normals_are_drawn_together() {
+    let folder = folder();
+    let with_faces = |name: &str, z: f64| {
+        let properties = [&PROPERTIES[..], &["float face_nx", "float face_ny", "float face_nz"]].concat();
+        let lines: Vec<String> = sheet(z).iter().map(|line| format!("{line} 0 0 1")).collect();
+        folder.write(name, ply(&properties, &lines));
+    };
+    with_faces("near_faces.ply", 0.5);
+    with_faces("far_faces.ply", -0.5);
+    let drawn = |clouds: [&str; 2]| {
+        folder.prints(&[&["surfel"], &clouds[..], &VIEW, &["-o", "b.exr", "--overwrite"]].concat());
+        std::fs::read(folder.path("b.exr")).map(|bytes| read_exr_picture(&bytes).unwrap().color).unwrap()
+    };
+    let plain = drawn(["near.ply", "far.ply"]);
+    for clouds in
+        [["near_faces.ply", "far.ply"], ["near.ply", "far_faces.ply"], ["near_faces.ply", "far_faces.ply"]]
+    {
+        // Packed, normals are off by 0.005°.
+        let other = drawn(clouds);
+        let off = plain.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| (a - b).abs());
+        let off = off.fold(0.0, f32::max);
+        assert!(off < 2e-3, "{clouds:?}: {off}");
+    }
+}
+
 #[test]
 fn parts_of_another_picture_do_not_join() {
     let folder = folder();

@@ -192,6 +192,7 @@ pub(crate) fn build(points: &str, octree: &Path) -> Outcome {
                 colours: None,
                 opacities: None,
                 normals: None,
+                face_normals: None,
                 radii: None,
                 scalars,
             })?;

@@ -1,5 +1,6 @@
 //! `ibpr`: time against error of raw range scans, against the surface that they measured.
 
+mod floor;
 mod scans;
 mod settings;
 mod study;

@@ -11,6 +11,7 @@ use crate::common::layers::Layers;
 use crate::common::report::{Outcome, Row, on_one_thread, write, write_csv};
 use crate::common::timing::{Clock, Timing, timed_by};
 use crate::common::true_surface::{Surface, Truth, point_at};
+use crate::ibpr::floor::{self, Subject};
 use crate::ibpr::scans::{Faults, RangeScan, Survey};
 use crate::ibpr::settings::{Group, again, groups};
 use crate::ibpr::tables::{COLUMNS, Measured, markdown};
@@ -64,7 +65,8 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     let charted = |rows: Vec<Row>| rows.into_iter().filter(|r| r.scene.starts_with('σ')).collect::<Vec<_>>();
     chart_of(out_dir, "ibpr", "normals, mean error in degrees", &charted(rows(|e| e.normal_mean)))?;
     chart_of(out_dir, "ibpr-depth", "depth, RMSE in spacings", &charted(rows(|e| e.depth_rmse)))?;
-    write(out_dir, "ibpr.md", &markdown(&bench.setup(), &results))?;
+    let text = markdown(&bench.setup(), &results) + &bench.beside_the_floor()?;
+    write(out_dir, "ibpr.md", &text)?;
     Ok(true)
 }
 
@@ -117,6 +119,15 @@ impl Bench {
             }
         }
         Ok(results)
+    }
+
+    /// The section about the floor.
+    fn beside_the_floor(&self) -> Result<String, Box<dyn std::error::Error + Send + Sync>> {
+        eprintln!("ibpr: the floor");
+        let scans = self.survey.measured(Faults::default(), SEEDS[0]);
+        let spacing = self.survey.spacing;
+        let cloud = cloud_of(&scans, spacing)?;
+        floor::section(&Subject { cloud: &cloud, scans: &scans, spacing, view: &self.view })
     }
 
     /// What one frame drew, its processor seconds, and its errors.

@@ -10,8 +10,10 @@ use crate::surfel::lens_camera::Matt;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ColouredCloud {
     pub(crate) positions: Vec<DVec3>,
-    /// Unit; the smooth normals of the surface, not those of its triangles.
+    /// Unit; the smooth normals of the surface, which light sees.
     pub(crate) normals: Vec<Vec3>,
+    /// Unit; those of its triangles, on the side of the smooth ones.
+    pub(crate) face_normals: Vec<Vec3>,
     /// Linear albedo.
     pub(crate) colours: Vec<[f32; 3]>,
     /// Of discs that leave no gap, world units.
@@ -26,9 +28,15 @@ impl ColouredCloud {
             let corners = surface.triangles()[p.triangle as usize].map(|v| surface.normals()[v as usize]);
             p.interpolate(corners).normalize_or(p.normal).as_vec3()
         };
+        let normals: Vec<Vec3> = points.iter().map(normal).collect();
+        let outwards = |(p, n): (&SurfacePoint, &Vec3)| {
+            let own = p.normal.as_vec3();
+            if own.dot(*n) < 0.0 { -own } else { own }
+        };
         Ok(Self {
             positions: points.iter().map(|p| p.position).collect(),
-            normals: points.iter().map(normal).collect(),
+            face_normals: points.iter().zip(&normals).map(outwards).collect(),
+            normals,
             colours: points.iter().map(|p| matt.albedo(p.position).as_vec3().to_array()).collect(),
             radii: points.iter().map(|p| p.radius).collect(),
         })
@@ -36,7 +44,8 @@ impl ColouredCloud {
 
     pub(crate) fn points(&self) -> Points<'_> {
         Points::new(&self.positions)
-            .with_normals(&self.normals)
+            .with_normals(&self.face_normals)
+            .with_shading_normals(&self.normals)
             .with_colors(&self.colours)
             .with_radii(&self.radii)
     }
@@ -66,6 +75,7 @@ impl ColouredCloud {
         Self {
             positions: pick(&self.positions, numbers),
             normals: pick(&self.normals, numbers),
+            face_normals: pick(&self.face_normals, numbers),
             colours: pick(&self.colours, numbers),
             radii: pick(&self.radii, numbers),
         }

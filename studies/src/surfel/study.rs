@@ -1,10 +1,11 @@
 //! `surfel`: time against error of point clouds, against rays cast at the surface through a thin lens.
 
+use std::f32::consts::TAU;
 use std::path::Path;
 use std::time::Instant;
 
-use glam::DVec3;
-use pointillist_surfel::{Cloud, Method, Points, Procedure, SampleOptions, SurfelError};
+use glam::{DVec3, Quat, Vec3};
+use pointillist_surfel::{Cloud, Method, Points, Procedure, SampleOptions, SurfelError, estimate_normals};
 
 use crate::common::charts::chart_of;
 use crate::common::data;
@@ -42,6 +43,15 @@ const RADII: [f32; 5] = [0.5, 0.75, 1.0, 1.5, 2.0];
 const BLURS: [u32; 5] = [0, 2, 6, 16, 32];
 const REFERENCE_BLUR: u32 = 16;
 
+/// By how much normals are turned to see what that costs.
+const OFF_DEG: [f32; 3] = [1.0, 2.0, 3.0];
+
+/// The golden ratio less 1: multiples of it are spread evenly over the turns.
+const GOLDEN_TURN: f64 = 0.618_033_988_749_894_9;
+
+/// The level of detail that small objects had before the present default.
+const COARSER_LEVEL: f32 = 1.4;
+
 /// What all measurements share.
 struct Bench {
     surface: Surface,
@@ -69,6 +79,7 @@ fn measure(effort: Effort, out_dir: &Path) -> Outcome {
     let mut bench = Bench::new(effort)?;
     let mut sections = vec![];
     sections.extend(bench.front_sections()?);
+    sections.push(bench.normals()?);
     sections.push(bench.sizes()?);
     sections.push(bench.speed()?);
     sections.push(bench.lenses()?);
@@ -125,7 +136,8 @@ impl Bench {
         self.note_reference(&stage, "front.exr");
         let bare = || Points::new(&self.small.positions).with_colors(&self.small.colours);
         let without_normals = Cloud::new(&bare().with_radii(&self.small.radii))?;
-        let without_radii = Cloud::new(&bare().with_normals(&self.small.normals))?;
+        let normals = bare().with_normals(&self.small.face_normals).with_shading_normals(&self.small.normals);
+        let without_radii = Cloud::new(&normals)?;
         let ldi = sampled(&self.surface, Method::Ldi, SCANNED_POINTS)?.ready()?;
         let (mut clouds, mut radii) = (vec![], vec![]);
         let of_points = |n: usize, what: &str| format!("{n} points{what}");
@@ -147,6 +159,43 @@ impl Bench {
             Section { title: "Clouds, 512×512", ratio: None, rows: clouds },
             Section { title: "Radii of discs: 97000 points, 512×512", ratio: None, rows: radii },
         ])
+    }
+
+    /// What normals are worth: exact ones, those of one kind alone, ones that are off, and estimated ones with and without sides.
+    fn normals(&mut self) -> Result<Section, SurfelError> {
+        let stage = Stage::new("normals", &self.surface, front(&self.surface, SIZE), &self.effort);
+        let ColouredCloud { positions, normals, face_normals, colours, radii } = &self.small;
+        let estimated = estimate_normals(positions)?;
+        let off = |of: &[Vec3]| {
+            let angle = |(a, b): (&Vec3, &Vec3)| f64::from(a.dot(*b).abs().min(1.0)).acos().to_degrees();
+            estimated.iter().zip(of).map(angle).sum::<f64>() / of.len() as f64
+        };
+        self.notes.push(format!(
+            "Estimated normals are off by {:.2}° from those of triangles in the mean, and by {:.2}° from smooth ones.",
+            off(face_normals),
+            off(normals)
+        ));
+        let sided: Vec<Vec3> =
+            estimated.iter().zip(normals).map(|(e, n)| if e.dot(*n) < 0.0 { -*e } else { *e }).collect();
+        let bare = || Points::new(positions).with_colors(colours).with_radii(radii);
+        let mut clouds = vec![
+            ("of triangles, smooth ones for light".to_owned(), self.small.points()),
+            ("of triangles alone".to_owned(), bare().with_normals(face_normals)),
+            ("smooth ones alone".to_owned(), bare().with_normals(normals)),
+            ("estimated, sides known".to_owned(), bare().with_normals(&sided)),
+            ("estimated".to_owned(), bare()),
+        ];
+        let turned = OFF_DEG.map(|degrees| (degrees, turned_by(normals, degrees)));
+        for (degrees, normals) in &turned {
+            clouds.push((format!("smooth ones, {degrees}° off"), bare().with_normals(normals)));
+        }
+        let blended = stage.options(Procedure::Blended);
+        let row = |(setting, points): (String, Points<'_>)| {
+            eprintln!("surfel: {}: {setting}", stage.name);
+            stage.measured(&Cloud::new(&points)?, setting, &blended)
+        };
+        let rows = clouds.into_iter().map(row).collect::<Result<_, _>>()?;
+        Ok(Section { title: "Normals: 97000 points, 512×512", ratio: None, rows })
     }
 
     /// Levels of detail at all sizes of the object.
@@ -179,11 +228,23 @@ impl Bench {
         {
             let stage = Stage::new("speed", &self.surface, front(&self.surface, size), &self.effort);
             for cloud in clouds {
-                rows.extend(by_both(&stage, cloud, &format!("{} points at {size}²", cloud.len()))?);
+                let setting = format!("{} points at {size}²", cloud.len());
+                rows.extend(by_both(&stage, cloud, &setting)?);
+                if size == LARGE_SIZE {
+                    let mut options = stage.options(Procedure::Blended);
+                    options.level = COARSER_LEVEL;
+                    rows.push(stage.measured(
+                        cloud,
+                        format!("{setting}, level {COARSER_LEVEL}"),
+                        &options,
+                    )?);
+                }
             }
         }
+        let large = self.large_ready.len().to_string();
+        let level = |m: &Measured| m.setting.split_once(", ").map(|(_, level)| level.to_owned());
         compare_times(&mut rows, |row, other| {
-            other.series == row.series && other.setting.starts_with(&self.large_ready.len().to_string())
+            other.series == row.series && level(other) == level(row) && other.setting.starts_with(&large)
         });
         Ok(Section { title: "Speed, front", ratio: Some("of 362272 points at 1024²"), rows })
     }
@@ -230,6 +291,17 @@ impl Bench {
         }
         Ok(list)
     }
+}
+
+/// Unit vectors turned by this angle, each about another axis across it.
+fn turned_by(normals: &[Vec3], degrees: f32) -> Vec<Vec3> {
+    let turn = |(i, n): (usize, &Vec3)| {
+        // Golden angles: no two neighbours in the list are turned alike.
+        let around = (i as f64 * GOLDEN_TURN).fract() as f32 * TAU;
+        Quat::from_axis_angle(*n, around)
+            * (Quat::from_axis_angle(n.any_orthonormal_vector(), degrees.to_radians()) * *n)
+    };
+    normals.iter().enumerate().map(turn).collect()
 }
 
 fn sampled(surface: &Surface, method: Method, count: usize) -> Result<ColouredCloud, SurfelError> {

@@ -161,15 +161,12 @@ const GOALS: [Goal; 12] = [
 
 /// Why goals are missed, of those that are, and what was tried.
 const LIMITS: &str = "\nWhat limits those that are missed, where they are:\n\n\
-    * *Lens of 32 px*: kernels. By a sampling profiler, 78 % of the frame's processor time goes into the two passes over the pixels of each disc (nearest depth 23 %, sums 55 %), 11 % into taking \
-      and projecting discs. A disc as wide as the blur covers 3.9·R² pixels and may be 3.5 + 0.4·R pixels from the next, so that 15 lie on a pixel at R = 32, and 10 at 16. Tried, by a program that is not kept here, on a bumpy sphere of 97000 points: a slope of 0.5 \
-      to 1 instead of 0.4 saves 8 to 11 %, but costs 2 dB of 44.6 at 20 px and 2.6 of 44.8 at 12 (against a picture of all points); a wider spacing beyond 16 px only, 0.65·R to 0.8·R, saves nothing that could be measured up to 20 px; leaving out the corners of \
-      boxes that the ellipse does not reach costs more than it saves (11.2 ms against 9.5 at 20 px).\n\
-    * *1274573 points against 362272*: of the larger cloud 407671 points are drawn, of the smaller one 214075. At the default level of 1.4 it was 1.64: that of 1.27, which small objects gain from, draws more points of the larger cloud only.\n\
+    * *Lens of 32 px*: kernels. A disc as wide as the blur covers 3.9·R² pixels and may be 3.5 + 0.4·R pixels from the next, so that 15 lie on a pixel at R = 32, and 10 at 16.\n\
+    * *1274573 points against 362272*: the larger cloud has more points to draw (*points drawn* under *Speed*), and the ratio of times is that of points. At a level of 1.4, for which there are rows too, it is smaller: 1.27, which small objects gain from, \
+      draws more points of the larger cloud only.\n\
     * *The paper's procedure* has no levels between those of the tree, and filters every pixel with kernels as wide as its blur.\n\
-    * *Without normals*: how far off estimated normals are, and the outline. By the same program, on a bumpy sphere of 97000 points, against a finer cloud, given normals reach 47.4 dB and estimated ones 40.8. Given normals that are turned by 1.5° at \
-      random (as far as estimated ones are) reach 43.5, by 2° 41.9, by 3° 39.3: most of it. Within 3 pixels of the outline estimated ones do as well as given ones that are 3° off (44.3 and 44.1 dB), elsewhere as those that are 2° off (43.5 both), \
-      since fits there have neighbours on one side only and discs cannot be refused for facing away: 97000 are drawn, not 63583.\n";
+    * *Without normals*: see *Normals* below. Of what is lost, as much as *estimated, sides known* has less than *of triangles, smooth ones for light* is the direction of estimated normals, the rest their sides: discs cannot be refused for facing away, \
+      and those of the far side count at the outline. Rows of smooth normals that are off show what a direction costs.\n";
 
 /// Pictures of a scene elsewhere may differ by rounding: so many dB from the unchanged one do not show.
 const ROUNDING: Limit = Limit::AtLeast(60.0);

@@ -112,6 +112,28 @@ pub fn opaque_points_need_no_opacities(
     agree(frame(&points.thinned(|_| 1.0), view, options), frame(&without, view, options))
 }
 
+/// What light sees in the place of the normals changes neither what is covered nor how deep it lies.
+///
+/// # Errors
+/// The first pixel that differs.
+pub fn shading_normals_only_shade(
+    points: &OwnedPoints,
+    view: &View,
+    options: &Options,
+) -> Result<(), String> {
+    let without = OwnedPoints { shading_normals: None, ..points.clone() };
+    let (Some(a), Some(b)) = (frame(points, view, options), frame(&without, view, options)) else {
+        return Ok(());
+    };
+    let bits = |frame: &Frame, i: usize| [frame.color()[i][3], frame.depth()[i]].map(f32::to_bits);
+    match (0..a.color().len()).find(|&i| bits(&a, i) != bits(&b, i)) {
+        Some(i) => {
+            Err(format!("pixel {i}: opacity and depth {:x?}, without {:x?}", bits(&a, i), bits(&b, i)))
+        }
+        None => Ok(()),
+    }
+}
+
 /// Points of one color (at most 65,408), lit from everywhere, show that color wherever anything is seen; with links, as
 /// exactly as these keep it.
 ///

@@ -118,5 +118,7 @@ fn links_are_sound(cloud: &Cloud, node: &Node, below: Range<usize>) -> Result<()
     let off = (links / points - 1.0).abs();
     check(off <= AREA_ROUNDING, || format!("links stand for an area of {links:e}, not {points:e}"))?;
     let colored = cloud.links.colors.as_ref().is_none_or(|c| c.len() == cloud.links.len());
+    let lit = cloud.links.shading_normals.as_ref().map(Vec::len);
+    let colored = colored && lit == cloud.has_shading_normals().then_some(cloud.links.len());
     check(colored && cloud.links.normals.len() == cloud.links.len(), || "lengths differ".to_owned())
 }

@@ -11,6 +11,8 @@ pub struct OwnedPoints {
     pub positions: Vec<DVec3>,
     /// See [`Points::with_normals`].
     pub normals: Option<Vec<Vec3>>,
+    /// See [`Points::with_shading_normals`].
+    pub shading_normals: Option<Vec<Vec3>>,
     /// See [`Points::with_colors`].
     pub colors: Option<Vec<[f32; 3]>>,
     /// See [`Points::with_radii`].
@@ -49,9 +51,8 @@ impl OwnedPoints {
         Self {
             positions,
             normals: Some(vec![normal; count]),
-            colors: None,
             radii: (radius > 0.0).then(|| vec![radius; count]),
-            opacities: None,
+            ..Self::default()
         }
     }
 
@@ -125,6 +126,7 @@ impl OwnedPoints {
         Self {
             positions: [self.positions.as_slice(), other.positions.as_slice()].concat(),
             normals: both(self.normals.as_ref(), other.normals.as_ref()),
+            shading_normals: both(self.shading_normals.as_ref(), other.shading_normals.as_ref()),
             colors: both(self.colors.as_ref(), other.colors.as_ref()),
             radii: both(self.radii.as_ref(), other.radii.as_ref()),
             opacities: both(self.opacities.as_ref(), other.opacities.as_ref()),
@@ -147,6 +149,7 @@ impl OwnedPoints {
         Self {
             positions: order.iter().map(|i| self.positions[*i]).collect(),
             normals: reordered(self.normals.as_ref(), &order),
+            shading_normals: reordered(self.shading_normals.as_ref(), &order),
             colors: reordered(self.colors.as_ref(), &order),
             radii: reordered(self.radii.as_ref(), &order),
             opacities: reordered(self.opacities.as_ref(), &order),
@@ -159,6 +162,7 @@ impl OwnedPoints {
         Points {
             positions: &self.positions,
             normals: self.normals.as_deref(),
+            shading_normals: self.shading_normals.as_deref(),
             colors: self.colors.as_deref(),
             radii: self.radii.as_deref(),
             opacities: self.opacities.as_deref(),

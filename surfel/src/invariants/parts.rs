@@ -65,6 +65,7 @@ fn rows(cloud: &Cloud, with_sizes: bool) -> Vec<Vec<u32>> {
         }
         row.extend(points.colors.iter().flat_map(|all| all[i].map(f32::to_bits)));
         row.push(points.opacity(i).to_bits());
+        row.extend(points.shading_normals.iter().map(|all| all[i]));
         row
     };
     let mut rows: Vec<Vec<u32>> = (0..cloud.len()).map(row).collect();
@@ -82,6 +83,7 @@ impl OwnedPoints {
         Self {
             positions: of(&self.positions, numbers),
             normals: self.normals.as_ref().map(|all| of(all, numbers)),
+            shading_normals: self.shading_normals.as_ref().map(|all| of(all, numbers)),
             colors: self.colors.as_ref().map(|all| of(all, numbers)),
             radii: self.radii.as_ref().map(|all| of(all, numbers)),
             opacities: self.opacities.as_ref().map(|all| of(all, numbers)),

@@ -15,10 +15,12 @@ pub(super) type Values = [f64; UNUSED + 1];
 pub(super) const UNUSED: usize = FIRST_SCALAR + SCALARS;
 
 /// Where the first value by [`Scalar`] goes.
-const FIRST_SCALAR: usize = 11;
+const FIRST_SCALAR: usize = 14;
 
 const POSITION: [&str; 3] = ["x", "y", "z"];
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
+/// What `sample` writes beside normals that are interpolated.
+const FACE_NORMAL: [&str; 3] = ["face_nx", "face_ny", "face_nz"];
 
 /// The way out for colours and opacities out of range.
 pub(super) const COLOUR_HELP: &str =
@@ -33,7 +35,7 @@ const OPACITY: [&str; 2] = ["alpha", "a"];
 
 /// The meaning of each property of a vertex.
 pub(super) struct Layout {
-    /// For each property an index into [`Values`]: 0–2 position, 3–5 normal, 6–8 colour, 9 radius, 10 opacity, then by [`Scalar`].
+    /// For each property an index into [`Values`]: 0–2 position, 3–5 normal, 6–8 colour, 9 radius, 10 opacity, 11–13 normal of the surface, then by [`Scalar`].
     pub(super) slots: Vec<usize>,
     colour: Option<([&'static str; 3], [ColourCode; 3])>,
     opacity: Option<(&'static str, ColourCode)>,
@@ -55,6 +57,7 @@ impl Layout {
             return Err(vertex.error(name, message).with_help("a point needs the properties x, y and z"));
         };
         let normal = three(NORMAL);
+        let face_normal = normal.and_then(|_| three(FACE_NORMAL));
         let colour = COLOURS.into_iter().find_map(|names| Some((names, three(names)?)));
         let radius = scalar("radius");
         let opacity = OPACITY.into_iter().find_map(|name| Some((name, scalar(name)?)));
@@ -68,6 +71,7 @@ impl Layout {
             .chain(normal.map_or([None; 3], |n| n.map(Some)))
             .chain(colour.map_or([None; 3], |(_, c)| c.map(Some)))
             .chain([radius, opacity.map(|(_, property)| property)])
+            .chain(face_normal.map_or([None; 3], |n| n.map(Some)))
             .chain(scalars);
         for (slot, property) in wanted.enumerate() {
             if let Some(property) = property {
@@ -81,6 +85,7 @@ impl Layout {
             colours: colour.is_some(),
             opacities: opacity.is_some(),
             normals: normal.is_some(),
+            face_normals: face_normal.is_some(),
             radii: radius.is_some(),
             scalars: scalars.map(|property| property.is_some()),
         };
@@ -89,7 +94,7 @@ impl Layout {
 
     /// The point with these numbers, or what is wrong with them.
     pub(super) fn point(&self, values: &Values) -> Result<Point, String> {
-        let [x, y, z, nx, ny, nz, r, g, b, radius, opacity, ..] = *values;
+        let [x, y, z, nx, ny, nz, r, g, b, radius, opacity, fx, fy, fz, ..] = *values;
         let scalars: Scalars<f32> = std::array::from_fn(|i| values[FIRST_SCALAR + i] as f32);
         let out_of_range = |name: &str, stored: f64, code: ColourCode| {
             format!("`{name}` is {stored}, not from 0 to {}", code.highest())
@@ -112,6 +117,7 @@ impl Layout {
         Ok(Point {
             position: DVec3::new(x, y, z),
             normal: Vec3::new(nx as f32, ny as f32, nz as f32),
+            face_normal: Vec3::new(fx as f32, fy as f32, fz as f32),
             colour,
             opacity,
             radius: radius as f32,

@@ -15,6 +15,7 @@ pub(super) fn of_summary(summary: &CloudSummary) -> Value {
         "colours": summary.has_colours,
         "opacities": summary.has_opacities,
         "normals": summary.has_normals,
+        "face_normals": summary.has_face_normals,
         "radii": summary.has_radii,
         "bounds": summary.bounds.map(|corner| corner.to_array()),
         "warnings": summary.warnings,

@@ -15,8 +15,11 @@ const OPACITIES: u32 = 8;
 /// The first of the measured values; the others follow.
 const SCALARS: u32 = 16;
 
+/// Of the surface, beside normals that are interpolated.
+const FACE_NORMALS: u32 = SCALARS << 3;
+
 /// Bytes of each.
-const SIZES: [(u32, usize); 7] = [
+const SIZES: [(u32, usize); 8] = [
     (COLOURS, 6),
     (NORMALS, 12),
     (RADII, 4),
@@ -24,6 +27,7 @@ const SIZES: [(u32, usize); 7] = [
     (SCALARS, 2),
     (SCALARS << 1, 2),
     (SCALARS << 2, 2),
+    (FACE_NORMALS, 12),
 ];
 
 /// Measured values have 16 bits, as in LAS; this one stands for none, and larger ones are moved below it.
@@ -36,6 +40,7 @@ impl Fields {
             (summary.has_normals, NORMALS),
             (summary.has_radii, RADII),
             (summary.has_opacities, OPACITIES),
+            (summary.has_face_normals, FACE_NORMALS),
         ];
         let scalars = Scalar::ALL.map(|s| (summary.has_scalars[s as usize], SCALARS << s as u32));
         Self(flags.into_iter().chain(scalars).filter(|(has, _)| *has).fold(0, |all, (_, flag)| all | flag))
@@ -48,7 +53,7 @@ impl Fields {
 
     pub(super) fn from_layout(layout: u32, payload: u32) -> Option<Self> {
         let fields = Self(layout);
-        (layout < SCALARS << 3 && fields.bytes() == payload as usize).then_some(fields)
+        (layout < FACE_NORMALS << 1 && fields.bytes() == payload as usize).then_some(fields)
     }
 
     pub(super) fn layout(self) -> u32 {
@@ -75,8 +80,11 @@ impl Fields {
             let colour = block.colours.map_or([0.0; 3], |all| all[i]);
             colour.iter().for_each(|&c| into.extend_from_slice(&root_code(c).to_le_bytes()));
         }
+        let normal = |into: &mut Vec<u8>, all: Option<&[Vec3]>| {
+            all.map_or(Vec3::Z, |all| all[i]).to_array().iter().for_each(|&n| float(into, n));
+        };
         if self.has(NORMALS) {
-            block.normals.map_or(Vec3::Z, |all| all[i]).to_array().iter().for_each(|&n| float(into, n));
+            normal(into, block.normals);
         }
         if self.has(RADII) {
             float(into, block.radii.map_or(0.0, |all| all[i]));
@@ -90,6 +98,9 @@ impl Fields {
                 let code = if value.is_nan() { NO_VALUE } else { (value.round() as u16).min(NO_VALUE - 1) };
                 into.extend_from_slice(&code.to_le_bytes());
             }
+        }
+        if self.has(FACE_NORMALS) {
+            normal(into, block.face_normals);
         }
     }
 }
@@ -110,6 +121,7 @@ pub(super) struct Columns {
     positions: Vec<DVec3>,
     colours: Vec<[f32; 3]>,
     normals: Vec<Vec3>,
+    face_normals: Vec<Vec3>,
     radii: Vec<f32>,
     opacities: Vec<f32>,
     scalars: [Vec<f32>; 3],
@@ -127,7 +139,7 @@ impl Columns {
                 columns.colours.push([(); 3].map(|()| linear_of(u16::from_le_bytes(take(&mut rest)))));
             }
             if fields.has(NORMALS) {
-                columns.normals.push(Vec3::from_array([(); 3].map(|()| f32::from_le_bytes(take(&mut rest)))));
+                columns.normals.push(take_normal(&mut rest));
             }
             if fields.has(RADII) {
                 columns.radii.push(f32::from_le_bytes(take(&mut rest)));
@@ -138,6 +150,9 @@ impl Columns {
             for scalar in Scalar::ALL.into_iter().filter(|s| fields.has(SCALARS << *s as u32)) {
                 let code = u16::from_le_bytes(take(&mut rest));
                 columns.scalars[scalar as usize].push(if code == NO_VALUE { f32::NAN } else { code.into() });
+            }
+            if fields.has(FACE_NORMALS) {
+                columns.face_normals.push(take_normal(&mut rest));
             }
         }
         columns
@@ -153,11 +168,16 @@ impl Columns {
             positions: &self.positions,
             colours: has(COLOURS).then_some(&*self.colours),
             normals: has(NORMALS).then_some(&*self.normals),
+            face_normals: has(FACE_NORMALS).then_some(&*self.face_normals),
             radii: has(RADII).then_some(&*self.radii),
             opacities: has(OPACITIES).then_some(&*self.opacities),
             scalars: Scalar::ALL.map(|s| has(SCALARS << s as u32).then_some(&*self.scalars[s as usize])),
         }
     }
+}
+
+fn take_normal(rest: &mut &[u8]) -> Vec3 {
+    Vec3::from_array([(); 3].map(|()| f32::from_le_bytes(take(rest))))
 }
 
 /// The next bytes of a record.
