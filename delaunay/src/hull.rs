@@ -10,7 +10,7 @@ use glam::DVec3;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hull {
     facets: Vec<[u32; 3]>,
-    /// Normals of any length that point outward; 0 where rounding hides which way that is.
+    /// Normals of any length that point outward; 0 where rounding hides which way that is, and of facets that are edges or points.
     outward: Vec<DVec3>,
     /// The facets at point i are `around[first[i]..first[i + 1]]`.
     around: Vec<u32>,

@@ -191,11 +191,8 @@ impl Facets<'_> {
     fn add(&mut self, corners: [u32; 3], inner: u32) -> u32 {
         let [a, b, c] = corners.map(|i| self.vertices.at(i));
         let inward = self.vertices.at(inner) - a;
-        let outward = match corners {
-            // 0 where all three are the end of a line: no other facet meets it, so nobody asks for its side.
-            [_, j, k] if j == k => (b - a).cross(inward).cross(b - a),
-            _ => (b - a).cross(c - a),
-        };
+        // 0 for an edge of a plane's hull and an end of a line's: with so few neighbours, all are asked.
+        let outward = (b - a).cross(c - a);
         self.corners.push(corners);
         let height = outward.dot(inward);
         let reach = (b - a).length().max((c - a).length()).max(inward.length());

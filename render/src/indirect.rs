@@ -21,7 +21,7 @@ pub struct IndirectOptions {
     pub tolerance: f64,
     /// Scenes of more patches are linked by groups. Default: 1000.
     pub most_full: usize,
-    /// Scenes of more surfaces are linked by rays: every pair of surfaces is looked at for groups. Default: 2000.
+    /// Scenes of more surfaces are linked by rays: every pair of surfaces is looked at for groups, cut where others stand on them. Default: 128.
     pub most_paired: usize,
 }
 
@@ -37,7 +37,7 @@ const SOLVED_TO: f64 = 1e-4;
 impl IndirectOptions {
     /// The defaults, as a constant.
     pub const DEFAULT: Self =
-        Self { patches_across: 32.0, tolerance: 0.01, most_full: 1000, most_paired: 2000 };
+        Self { patches_across: 32.0, tolerance: 0.01, most_full: 1000, most_paired: 128 };
 
     /// Divides the longest side of the scene into so many patches.
     #[must_use]

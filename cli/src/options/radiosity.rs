@@ -51,11 +51,11 @@ pub struct RadiosityBakeOptions {
     #[arg(long, value_name = "SIZE", value_parser = values::positive)]
     pub adaptive: Option<f64>,
     /// Which patches exchange light directly: all pairs, groups of patches where --tolerance allows, or those that rays meet (auto: groups above 1000
-    /// patches and with --importance, rays above 2000 surfaces)
+    /// patches and with --importance, rays above 128 surfaces)
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub links: LinkKind,
     /// Largest error of one link between groups, as a fraction of the scene's mean radiosity (default 0.01); with rays, standard error of the light
-    /// at a vertex, as a fraction of it (default 0.02)
+    /// at a vertex, as a fraction of it (default 0.01, or 0.02 above 2000 surfaces)
     #[arg(long, value_name = "T", value_parser = values::positive)]
     pub tolerance: Option<f64>,
     /// Link groups at --tolerance only where the scene's camera sees what they carry, and coarsely elsewhere: in half the time, with up to 2.6 times

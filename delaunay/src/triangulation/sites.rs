@@ -387,3 +387,30 @@ impl Sites {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+
+    /// Two short edges along one line, and a long edge to the opposite corner of the box, in any order: the volume is 0, and its terms round.
+    #[test]
+    fn corners_of_a_plane_are_so_where_sides_differ_much() {
+        let mut seed = 11_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 34) as f64 * 0.5_f64.powi(52)
+        };
+        for _ in 0..2000 {
+            let mut short = || dvec3(random(), random(), random());
+            let (near, far) = (DVec3::splat(-1.0), DVec3::ONE - 0.5 * short());
+            let along = short();
+            let corners = [near, near + 3.0 * along, near + 8.0 * along, far];
+            let sites = Sites::new(corners.into_iter());
+            for turned in 0..4 {
+                let order = [0, 1, 2, 3].map(|k| Vertex(1 + (k + turned) % 4));
+                assert_eq!(sites.orient(order), 0.0, "{corners:?}, {turned}");
+            }
+        }
+    }
+}

@@ -14,9 +14,11 @@ use crate::scene::{self, Overrides, Scene};
 use glam::{DVec2, DVec3};
 use pointillist_radiosity as radiosity;
 use pointillist_radiosity::{
-    Baked, HemicubeKind, RadiosityError, SceneOptions, Solution, SolveOptions, Transport,
+    Baked, HemicubeKind, RadiosityError, RayOptions, SceneOptions, Solution, SolveOptions, Transport,
 };
-use pointillist_render::{Lamps, SceneError, SceneSurfaces, fingerprint, scene_surfaces, with_lamps};
+use pointillist_render::{
+    IndirectOptions, Lamps, SceneError, SceneSurfaces, fingerprint, scene_surfaces, with_lamps,
+};
 use std::path::Path;
 
 /// Patches along the scene's longest side, unless said otherwise.
@@ -28,10 +30,13 @@ const LINKED: f64 = 0.8;
 const SOLVED: f64 = 0.82;
 /// Scenes with more patches are linked by groups, unless said otherwise.
 pub(super) const MOST_FULL: usize = 1000;
-/// Scenes with more surfaces are linked by rays, unless said otherwise: every pair of surfaces is looked at for groups.
+/// Scenes with more surfaces are linked by rays, unless said otherwise. For groups each pair of surfaces is looked at, cut where others stand on them:
+/// the 248 of `examples/house.toml` are 6,300 parts, which take ten times as long by groups, and eighty times with large patches.
+const MOST_GROUPED: usize = IndirectOptions::DEFAULT.most_paired;
+/// With more surfaces, groups take from minutes to hours, and rays may leave more noise.
 const MOST_PAIRED: usize = 2000;
-/// `--tolerance` of groups, unless said otherwise.
-const LINK_TOLERANCE: f64 = 0.01;
+/// `--tolerance` up to [`MOST_PAIRED`] surfaces, unless said otherwise.
+const TOLERANCE: f64 = 0.01;
 
 pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     let report =
@@ -162,8 +167,14 @@ impl Bake<'_> {
         let plain = options.form_factor == FormFactorKind::Analytic
             && options.method == SolveMethod::GaussSeidel
             && options.least_factor == 0.0;
-        let many = surfaces.surfaces.len() > MOST_PAIRED && !options.importance;
+        let many = surfaces.surfaces.len() > MOST_GROUPED && !options.importance;
         options.links == LinkKind::Rays || (options.links == LinkKind::Auto && plain && many)
+    }
+
+    /// `--tolerance` of links by rays.
+    pub(super) fn ray_tolerance(&self) -> f64 {
+        let many = self.surfaces.surfaces.len() > MOST_PAIRED;
+        self.options.tolerance.unwrap_or(if many { RayOptions::DEFAULT.tolerance } else { TOLERANCE })
     }
 
     pub(super) fn link(&self, progress: &Progress) -> Result<Transport, CliError> {
@@ -293,7 +304,7 @@ impl Bake<'_> {
             self.check_full_links(plain.patch_count())?;
             return Ok(plain);
         }
-        settings = settings.with_tolerance(Some(options.tolerance.unwrap_or(LINK_TOLERANCE)));
+        settings = settings.with_tolerance(Some(options.tolerance.unwrap_or(TOLERANCE)));
         new(&settings)
     }
 

@@ -51,10 +51,8 @@ fn link(bake: &Bake<'_>, progress: &Progress) -> Result<RayTransport, CliError> 
     let direct = stats.stage("direct", || with_lamps(&lamps, |list| scene.direct_with(list, &lit)));
     let direct = direct.map_err(|e| bake.refused(&e))?;
     progress.reach(LIT);
-    let mut options = RayOptions::DEFAULT.with_finest(bake.options.adaptive.unwrap_or(patch * FINEST));
-    if let Some(tolerance) = bake.options.tolerance {
-        options = options.with_tolerance(tolerance);
-    }
+    let finest = bake.options.adaptive.unwrap_or(patch * FINEST);
+    let options = RayOptions::DEFAULT.with_finest(finest).with_tolerance(bake.ray_tolerance());
     let done = |share| progress.reach(LIT + (LINKED - LIT) * share);
     let linked = stats.stage("factors", || scene.transport_by_rays(&direct, &options, &done));
     linked.map_err(|e| bake.refused(&e))

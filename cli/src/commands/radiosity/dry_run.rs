@@ -11,7 +11,6 @@ use crate::job::{Expected, Progress, ProgressMode};
 use crate::memory;
 use crate::options::{FormFactorKind, LinkKind, RadiosityBakeOptions};
 use crate::scene::weight;
-use pointillist_radiosity::RayOptions;
 use pointillist_render::SceneSurfaces;
 use std::ops::RangeInclusive;
 use std::time::Instant;
@@ -97,11 +96,10 @@ pub(super) fn expect(bake: &Bake<'_>) -> Result<Expected, CliError> {
 fn with_longer_patches(bake: &Bake<'_>, times: f64, patches: usize) -> RadiosityBakeOptions {
     let own = bake.options;
     let patch = own.patch.unwrap_or_else(|| bake.extent() / PATCHES_ACROSS);
-    let tolerance = own.tolerance.or(bake.by_rays().then_some(RayOptions::DEFAULT.tolerance));
     RadiosityBakeOptions {
         patch: Some(times * patch),
         adaptive: own.adaptive.map(|adaptive| times * adaptive),
-        tolerance: tolerance.map(|tolerance| if bake.by_rays() { times * tolerance } else { tolerance }),
+        tolerance: if bake.by_rays() { Some(times * bake.ray_tolerance()) } else { own.tolerance },
         // A part of a large scene is solved as the whole is.
         links: match own.links {
             LinkKind::Auto if bake.by_rays() => LinkKind::Rays,
