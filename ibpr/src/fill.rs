@@ -7,6 +7,7 @@
 
 use crate::buffer::{Buffer, DepthScale, PAD};
 use crate::parallel::*;
+use std::ops::Range;
 
 /// Number of points that a filled pixel counts as: it is drawn, but has almost no weight in plane fits.
 pub(crate) const FILLED: f32 = 1e-3;
@@ -51,7 +52,7 @@ pub(crate) fn pull_push(buffer: &mut Buffer, scale: &DepthScale, levels: u32, sc
         return;
     }
     if buffer.layers > 1 {
-        return fill_bands(buffer, &mut scratch.bands, |buffer, i, fills| {
+        return fill_bands(buffer, &mut scratch.bands, all_columns, |buffer, i, fills| {
             layers_between(buffer, i, scale, fills)
         });
     }
@@ -59,7 +60,7 @@ pub(crate) fn pull_push(buffer: &mut Buffer, scale: &DepthScale, levels: u32, sc
     let FillScratch { bands, levels: pyramid } = scratch;
     pyramid.resize_with(coarser.max(pyramid.len()), Buffer::default);
     // Direct neighbours come first: they are finer than the pyramid.
-    fill_bands(buffer, bands, |buffer, i, fills| fills.extend(between(buffer, i, scale)));
+    fill_bands(buffer, bands, near_points, |buffer, i, fills| fills.extend(between(buffer, i, scale)));
     for l in 0..coarser {
         let (finer, rest) = pyramid.split_at_mut(l);
         pull(finer.last().unwrap_or(buffer), &mut rest[0], scale);
@@ -67,14 +68,34 @@ pub(crate) fn pull_push(buffer: &mut Buffer, scale: &DepthScale, levels: u32, sc
     for l in (0..coarser).rev() {
         let (finer, rest) = pyramid.split_at_mut(l);
         let (coarse, fine) = (&rest[0], finer.last_mut().unwrap_or(buffer));
-        fill_bands(fine, bands, |fine, i, fills| fills.extend(below(coarse, fine, i, scale)));
+        let columns = |fine: &Buffer, row: usize| {
+            let above = near_points(coarse, row / 2);
+            2 * above.start..(2 * above.end).min(fine.width)
+        };
+        fill_bands(fine, bands, columns, |fine, i, fills| fills.extend(below(coarse, fine, i, scale)));
     }
 }
 
-/// Calls `find` for each pixel of the unchanged buffer, then writes the values found.
+/// All columns of a row.
+fn all_columns(buffer: &Buffer, _: usize) -> Range<usize> {
+    0..buffer.width
+}
+
+/// The columns between the first and the last point of a row and of those beside it: no other pixel has points on opposite sides.
+fn near_points(buffer: &Buffer, row: usize) -> Range<usize> {
+    let middle = buffer.at(0, row);
+    let rows = [middle - buffer.pitch, middle, middle + buffer.pitch];
+    let counts = rows.map(|start| &buffer.count[start..start + buffer.width]);
+    let first = counts.iter().filter_map(|row| row.iter().position(|count| *count > 0.0)).min();
+    let last = counts.iter().filter_map(|row| row.iter().rposition(|count| *count > 0.0)).max();
+    first.zip(last).map_or(0..0, |(first, last)| first..last + 1)
+}
+
+/// Calls `find` for each pixel of the unchanged buffer in the `columns` of its row, then writes the values found.
 fn fill_bands(
     buffer: &mut Buffer,
     bands: &mut Vec<Vec<Fill>>,
+    columns: impl Fn(&Buffer, usize) -> Range<usize> + Sync + Send,
     find: impl Fn(&Buffer, usize, &mut Vec<Fill>) + Sync + Send,
 ) {
     let count = buffer.height.div_ceil(BAND_ROWS);
@@ -85,7 +106,9 @@ fn fill_bands(
         fills.clear();
         for row in i * BAND_ROWS..((i + 1) * BAND_ROWS).min(shared.height) {
             let start = shared.at(0, row);
-            (start..start + shared.width).for_each(|i| find(shared, i, fills));
+            for i in columns(shared, row) {
+                find(shared, start + i, fills);
+            }
         }
     });
     for fill in bands[..count].iter().flatten() {

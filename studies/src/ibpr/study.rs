@@ -43,6 +43,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     let view = surface.view(SIZE);
     let measure = Measure::new(Truth::new(&surface, &view), survey.spacing);
     let bench = Bench { surface, survey, measure, view };
+    let floor = beside_the_floor(&bench.survey, &bench.view)?;
     let mut results = vec![];
     for noise in NOISES {
         eprintln!("ibpr: noise {noise}");
@@ -65,9 +66,29 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     let charted = |rows: Vec<Row>| rows.into_iter().filter(|r| r.scene.starts_with('σ')).collect::<Vec<_>>();
     chart_of(out_dir, "ibpr", "normals, mean error in degrees", &charted(rows(|e| e.normal_mean)))?;
     chart_of(out_dir, "ibpr-depth", "depth, RMSE in spacings", &charted(rows(|e| e.depth_rmse)))?;
-    let text = markdown(&bench.setup(), &results) + &bench.beside_the_floor()?;
+    let text = markdown(&bench.setup(), &results) + &floor;
     write(out_dir, "ibpr.md", &text)?;
     Ok(true)
+}
+
+/// Prints the section about the floor alone.
+pub(crate) fn run_floor() -> Outcome {
+    let surface = Surface::bunny_or_bumpy();
+    let survey = Survey::new(&surface, POINTS);
+    print!("{}", beside_the_floor(&survey, &surface.view(SIZE))?);
+    Ok(true)
+}
+
+/// The section about the floor.
+fn beside_the_floor(
+    survey: &Survey,
+    view: &View,
+) -> Result<String, Box<dyn std::error::Error + Send + Sync>> {
+    eprintln!("ibpr: the floor");
+    let scans = survey.measured(Faults::default(), SEEDS[0]);
+    let spacing = survey.spacing;
+    let cloud = cloud_of(&scans, spacing)?;
+    floor::section(&Subject { cloud: &cloud, scans: &scans, spacing, view })
 }
 
 /// Faults besides depth noise.
@@ -119,15 +140,6 @@ impl Bench {
             }
         }
         Ok(results)
-    }
-
-    /// The section about the floor.
-    fn beside_the_floor(&self) -> Result<String, Box<dyn std::error::Error + Send + Sync>> {
-        eprintln!("ibpr: the floor");
-        let scans = self.survey.measured(Faults::default(), SEEDS[0]);
-        let spacing = self.survey.spacing;
-        let cloud = cloud_of(&scans, spacing)?;
-        floor::section(&Subject { cloud: &cloud, scans: &scans, spacing, view: &self.view })
     }
 
     /// What one frame drew, its processor seconds, and its errors.
