@@ -76,6 +76,37 @@ fn a_quad_whose_diagonal_crosses_cells_closes_its_tile() {
     assert!(tile.counts().clusters_skipped > 40, "{:?}", tile.counts());
 }
 
+/// Nobody asked what the counts say.
+#[test]
+fn cells_are_counted_by_how_they_were_resolved() {
+    let mut soup = Soup::default();
+    let surface = soup.surface(1.0);
+    // Two triangles, whose common edge runs through the cells of the picture's diagonal; nothing beside and above them.
+    soup.polygon(
+        &[dvec3(-99.0, -99.0, 0.0), dvec3(4.0, -99.0, 0.0), dvec3(4.0, 4.0, 0.0), dvec3(-99.0, 4.0, 0.0)],
+        surface,
+    );
+    let geometry = soup.geometry().unwrap();
+    let camera = Projection::Orthographic { height: 16.0 };
+    let view = View::look_at(DVec3::Z * 100.0, DVec3::ZERO, DVec3::Y, camera, 16, 16).unwrap();
+    let renderer = Renderer::new(&geometry, &PlainOpacity, view, EXACT).unwrap();
+    let mut tile = Tile::default();
+    renderer.render(renderer.picture(), &mut tile);
+    let counts = tile.counts();
+    assert_eq!(
+        [
+            counts.cells_empty,
+            counts.cells_single,
+            counts.cells_tiled,
+            counts.cells_apart,
+            counts.cells_compared
+        ],
+        [16 * 16 - 12 * 12, 12 * 11, 12, 0, 0],
+        "{counts:?}"
+    );
+    assert_eq!(counts.micropoints, 12 * 13);
+}
+
 /// Coincident surfaces were ordered by the rounding of their depths: which one was seen changed from cell to cell.
 #[test]
 fn of_coincident_surfaces_the_same_one_is_seen_everywhere() {

@@ -70,6 +70,14 @@ impl<'a> Report<'a> {
         }
     }
 
+    /// Tells the user how to light a scene with a baked file: by this key of the scene.
+    pub(super) fn tell_use(&self, scene: &Path, key: &str, baked: &Path) {
+        if !is_standard(baked) {
+            let (scene, baked) = (scene.display(), baked.display());
+            self.note(&format!("draw with it: pointillist render {scene} --set {key}={baked}"));
+        }
+    }
+
     /// Tells the user something that may be wrong.
     pub(super) fn warn(&self, text: &str) {
         self.note(&format!("warning: {text}"));

@@ -122,6 +122,25 @@ fn render_takes_the_baked_light_and_refuses_that_of_other_triangles() {
     folder.fails(&["render", "own.toml", "-o", "b.exr"], 3, &["geometry"]);
 }
 
+/// Who has baked light need not look up how it is used.
+#[test]
+fn how_baked_light_is_used_is_told_and_works() {
+    let folder = corner();
+    folder.prints(&["probe", "place", "room.toml", "--grid", "2x1x1", "-o", "two.json"]);
+    for line in [
+        &["radiosity", "room.toml", "-o", "baked.json"][..],
+        &["probe", "bake", "room.toml", "two.json", "--resolution", "16", "-o", "probes.json"],
+    ] {
+        let output = folder.command(line).output().expect("it runs");
+        let told = String::from_utf8(output.stderr).expect("text");
+        let words =
+            told.lines().find_map(|line| line.strip_prefix("draw with it: pointillist ")).expect(&told);
+        folder.prints(&words.split(' ').chain(["-o", "lit.exr"]).collect::<Vec<_>>());
+    }
+    let ply = folder.command(&["radiosity", "room.toml", "-o", "baked.ply"]).output().expect("it runs");
+    assert!(!String::from_utf8(ply.stderr).expect("text").contains("draw with it"));
+}
+
 /// Baked light of other lights or materials fits the triangles: it is drawn, and the user is told that it is old.
 #[test]
 fn light_of_other_materials_or_lights_is_drawn_with_a_warning() {

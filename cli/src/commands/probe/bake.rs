@@ -61,6 +61,9 @@ pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
         name_of_output(&options.output),
         file.probes.len()
     ));
+    if options.part.is_none() {
+        report.tell_use(&options.scene, "ambient.probes", &options.output);
+    }
     report.finish()
 }
 

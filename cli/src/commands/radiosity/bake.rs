@@ -418,18 +418,16 @@ impl Bake<'_> {
         file.patches = found.patches;
         file.bound = found.bound;
         let path = &options.output;
+        let is_ply = path.extension().is_some_and(|e| e == "ply");
         report.stats.stage("write", || {
-            write_text(path, |output| {
-                if path.extension().is_some_and(|e| e == "ply") {
-                    file.write_ply(output)
-                } else {
-                    file.write_json(output)
-                }
-            })
+            write_text(path, |output| if is_ply { file.write_ply(output) } else { file.write_json(output) })
         })?;
         let seconds = report.stats.elapsed().as_secs_f64();
         let vertices = file.positions.len();
         report.note(&format!("{}: {vertices} vertices in {seconds:.2} s", name_of_output(path)));
+        if let Some(scene) = options.scene.as_ref().filter(|_| !is_ply) {
+            report.tell_use(scene, "ambient.radiosity", path);
+        }
         Ok(())
     }
 }
