@@ -385,6 +385,24 @@ fn a_split_takes_no_more_than_there_is() {
     assert!((0.0..1e-5).contains(&least), "{least:e}");
 }
 
+#[test]
+fn windows_are_their_formulas() {
+    let pi = std::f64::consts::PI;
+    for (window, l, strength, factor) in [
+        (Window::Hanning, 1, 0.5, 0.5),
+        (Window::Hanning, 2, 0.25, 0.5),
+        (Window::Lanczos, 1, 0.5, 2.0 / pi),
+        (Window::Lanczos, 3, 0.25, 4.0 / (3.0 * pi) * 0.5_f64.sqrt()),
+        // λ = 1 and 3.
+        (Window::Laplacian, 2, 0.5, 1.0 / 37.0),
+        (Window::Laplacian, 1, 0.75, 1.0 / 13.0),
+        (Window::Even, 5, 0.3, 0.7),
+    ] {
+        let found = window.factor(l, strength);
+        assert!((found - factor).abs() < 1e-15, "{window:?} of band {l} at {strength}: {found}");
+    }
+}
+
 /// A single lamp: order 2 is negative opposite to it.
 #[test]
 fn a_split_loses_less_than_a_window() {
