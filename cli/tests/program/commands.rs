@@ -185,7 +185,12 @@ fn openjd_progress_goes_to_standard_output() {
 #[test]
 fn scenes_come_from_standard_input() {
     let folder = Folder::new();
-    folder.command(&["check", "-"]).write_stdin(SCENE).assert().success().stdout(contains("fine; triangles: 1, objects: 1"));
+    folder
+        .command(&["check", "-"])
+        .write_stdin(SCENE)
+        .assert()
+        .success()
+        .stdout(contains("fine; triangles: 1, objects: 1"));
 }
 
 #[test]
