@@ -208,7 +208,13 @@ fn every_error_says_something() {
     for error in errors {
         let text = error.to_string();
         assert!(
-            text.contains('7') || matches!(error, SurfelError::NoPoints | SurfelError::TooManyPoints { .. }),
+            text.contains('7')
+                || matches!(
+                    error,
+                    SurfelError::NoPoints
+                        | SurfelError::OnlyShadingNormals
+                        | SurfelError::TooManyPoints { .. }
+                ),
             "{text}"
         );
     }

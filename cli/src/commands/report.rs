@@ -115,8 +115,9 @@ impl<'a> Report<'a> {
             self.warn("this is a debug build: it takes several times as long as one made with `cargo build --release`");
         }
         if let Some(seconds) = json["seconds"].as_object() {
-            for (stage, value) in seconds {
-                self.detail(&format!("{stage:>10} {:.3} s", value.as_f64().unwrap_or_default()));
+            for (stage, wall) in seconds {
+                let [wall, cpu] = [wall, &json["cpu_seconds"][stage]].map(|s| s.as_f64().unwrap_or_default());
+                self.detail(&format!("{stage:>10} {}", times(wall, cpu)));
             }
         }
         match &self.common.stats {
@@ -126,6 +127,15 @@ impl<'a> Report<'a> {
             }),
             None => Ok(()),
         }
+    }
+}
+
+/// How long a stage took. Those of tiles are timed by their processor time alone, since they take place at once on several threads.
+fn times(wall: f64, cpu: f64) -> String {
+    match (wall > 0.0, cpu > 0.0) {
+        (true, true) => format!("{wall:.3} s, {cpu:.3} s of processor time"),
+        (false, true) => format!("{cpu:.3} s of processor time"),
+        _ => format!("{wall:.3} s"),
     }
 }
 

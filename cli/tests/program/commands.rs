@@ -193,6 +193,20 @@ fn scenes_come_from_standard_input() {
         .stdout(contains("fine; triangles: 1, objects: 1"));
 }
 
+/// Stages of tiles have no wall time of their own: they were told to take 0 s.
+#[test]
+fn details_tell_how_long_each_stage_took() {
+    let folder = Folder::new();
+    let output = folder.command(&["render", "scene.toml", "-v", "-o", "a.png"]).output().expect("it runs");
+    let told = String::from_utf8(output.stderr).expect("text");
+    for (stage, is_timed_by_processor) in
+        [("tiles ", false), ("total ", true), ("visibility ", true), ("shade ", true)]
+    {
+        let line = told.lines().find(|line| line.trim_start().starts_with(stage)).expect(&told);
+        assert_eq!(line.ends_with(" of processor time"), is_timed_by_processor, "{told}");
+    }
+}
+
 #[test]
 fn dice_reads_lines_and_names_bad_ones() {
     let folder = Folder::new();
