@@ -6,7 +6,7 @@ use pointillist_micropoint::invariants::{
 };
 use pointillist_micropoint::{
     Geometry, MicropointError, MicropointOptions, PixelRect, PlainOpacity, Projection, Renderer,
-    SurfaceOpacity, TexelCorner, TexelSums, TexelWrap, Tile, View, ViewError,
+    SurfaceOpacity, TexelCorner, TexelSums, TexelWrap, Tile, TileCounts, View, ViewError,
 };
 
 const EXACT: MicropointOptions = MicropointOptions::DEFAULT;
@@ -55,6 +55,17 @@ fn a_rectangle_without_pixels_sees_nothing() {
     }
 }
 
+/// What a picture of 16² pixels, each a unit wide, takes, seen along −z.
+fn counts_from_above(soup: &Soup) -> TileCounts {
+    let geometry = soup.geometry().unwrap();
+    let camera = Projection::Orthographic { height: 16.0 };
+    let view = View::look_at(DVec3::Z * 100.0, DVec3::ZERO, DVec3::Y, camera, 16, 16).unwrap();
+    let renderer = Renderer::new(&geometry, &PlainOpacity, view, EXACT).unwrap();
+    let mut tile = Tile::default();
+    renderer.render(renderer.picture(), &mut tile);
+    tile.counts()
+}
+
 /// A cell behind whose first parts a later one closed it was not looked at again, and the tile stayed open for good.
 #[test]
 fn a_quad_whose_diagonal_crosses_cells_closes_its_tile() {
@@ -67,13 +78,8 @@ fn a_quad_whose_diagonal_crosses_cells_closes_its_tile() {
     for i in 0..20 {
         soup.sphere(dvec3(f64::from(i % 5) - 2.0, f64::from(i / 5) - 2.0, -3.0), 0.5, 8, 12, surface);
     }
-    let geometry = soup.geometry().unwrap();
-    let camera = Projection::Orthographic { height: 16.0 };
-    let view = View::look_at(DVec3::Z * 100.0, DVec3::ZERO, DVec3::Y, camera, 16, 16).unwrap();
-    let renderer = Renderer::new(&geometry, &PlainOpacity, view, EXACT).unwrap();
-    let mut tile = Tile::default();
-    renderer.render(renderer.picture(), &mut tile);
-    assert!(tile.counts().clusters_skipped > 40, "{:?}", tile.counts());
+    let counts = counts_from_above(&soup);
+    assert!(counts.clusters_skipped > 40, "{counts:?}");
 }
 
 /// Nobody asked what the counts say.
@@ -86,13 +92,7 @@ fn cells_are_counted_by_how_they_were_resolved() {
         &[dvec3(-99.0, -99.0, 0.0), dvec3(4.0, -99.0, 0.0), dvec3(4.0, 4.0, 0.0), dvec3(-99.0, 4.0, 0.0)],
         surface,
     );
-    let geometry = soup.geometry().unwrap();
-    let camera = Projection::Orthographic { height: 16.0 };
-    let view = View::look_at(DVec3::Z * 100.0, DVec3::ZERO, DVec3::Y, camera, 16, 16).unwrap();
-    let renderer = Renderer::new(&geometry, &PlainOpacity, view, EXACT).unwrap();
-    let mut tile = Tile::default();
-    renderer.render(renderer.picture(), &mut tile);
-    let counts = tile.counts();
+    let counts = counts_from_above(&soup);
     assert_eq!(
         [
             counts.cells_empty,

@@ -17,7 +17,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub struct IndirectOptions {
     /// Patches along the longest side of the scene. Default: 32, for irradiance to about 1 % in rooms.
     pub patches_across: f64,
-    /// Error of a link between two groups of patches, over what passes it, where scenes have more patches than `most_full`. Default: 0.01.
+    /// Error of a link between two groups of patches, over what passes it, where scenes have more patches than `most_full`, and by rays that of
+    /// the light at a vertex ([`IndirectOptions::ray_tolerance`]). Default: 0.01.
     pub tolerance: f64,
     /// Scenes of more patches are linked by groups. Default: 1000.
     pub most_full: usize,
@@ -31,6 +32,8 @@ const OF_PAIRS: [f64; 3] = [0.02, 0.8, 0.82];
 const OF_RAYS: [f64; 3] = [0.1, 0.2, 0.25];
 /// By rays, patches are divided down to this share of their size where light changes fast.
 const FINEST: f64 = 1.0 / 8.0;
+/// Scenes with more surfaces are buildings, for which light by rays may have more noise.
+const MANY: usize = 2000;
 /// Tolerance of the solver by rays: far below the error of links.
 const SOLVED_TO: f64 = 1e-4;
 
@@ -58,6 +61,13 @@ impl IndirectOptions {
     pub const fn with_most_full(mut self, patches: usize) -> Self {
         self.most_full = patches;
         self
+    }
+
+    /// Standard error of the light at a vertex, over that light, where so many surfaces are linked by rays: `tolerance` up to 2000 surfaces, and
+    /// at least 0.02 for buildings of more.
+    #[must_use]
+    pub const fn ray_tolerance(&self, surfaces: usize) -> f64 {
+        if surfaces > MANY { self.tolerance.max(RayOptions::DEFAULT.tolerance) } else { self.tolerance }
     }
 
     /// Looks at pairs in scenes of at most so many surfaces.
@@ -163,7 +173,8 @@ fn by_rays(
     let divide = || radiosity::Scene::new(&surfaces.surfaces, &settings);
     let (patches, direct) = directly_lit(scene, divide, &told, lit)?;
     let done = |share| told.reach([lit, linked], share);
-    let rays = RayOptions::DEFAULT.with_finest(patch * FINEST);
+    let tolerance = options.ray_tolerance(surfaces.surfaces.len());
+    let rays = RayOptions::DEFAULT.with_finest(patch * FINEST).with_tolerance(tolerance);
     let transport = stage(monitor, "factors", || patches.transport_by_rays(&direct, &rays, &done))?;
     go_on(monitor)?;
     let settings = SolveOptions::DEFAULT.with_tolerance(SOLVED_TO);

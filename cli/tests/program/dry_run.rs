@@ -54,6 +54,16 @@ fn bakes_are_expected_and_not_begun() {
         rays["basis"].as_str().unwrap().contains("among some")
             || rays["basis"].as_str().unwrap().contains("longer")
     );
+    // A long, narrow board is a row of squares to groups, and four patches by rays.
+    folder.write("board.obj", "v 0 0 0\nv 1 0 0\nv 1 0 0.01\nv 0 0 0.01\nf 4 3 2 1\n");
+    folder.write("board.toml", "[[object]]\nmesh = \"board.obj\"\n");
+    let of = |links: &str| {
+        let line = ["radiosity", "board.toml", "--links", links, "--patch", "0.25"];
+        let basis = expects(&folder, &line)["basis"].as_str().unwrap().to_owned();
+        let (before, _) = basis.split_once(" patches").expect("it says of how many");
+        before.rsplit(' ').next().unwrap().parse::<usize>().unwrap()
+    };
+    assert!(10 * of("rays") <= of("hierarchical"), "{} of {}", of("rays"), of("hierarchical"));
     folder.write("p.json", "{\"probes\":[{\"position\":[0.5,0.5,0.5]},{\"position\":[0.2,0.5,0.5]},{\"position\":[0.5,0.5,0.2]}]}");
     let line = ["probe", "bake", "room.toml", "p.json", "--resolution", "16", "-o", "b.json"];
     let probes = expects(&folder, &line);

@@ -14,7 +14,7 @@ use crate::scene::{self, Overrides, Scene};
 use glam::{DVec2, DVec3};
 use pointillist_radiosity as radiosity;
 use pointillist_radiosity::{
-    Baked, HemicubeKind, RadiosityError, RayOptions, SceneOptions, Solution, SolveOptions, Transport,
+    Baked, HemicubeKind, RadiosityError, SceneOptions, Solution, SolveOptions, Transport,
 };
 use pointillist_render::{
     IndirectOptions, Lamps, SceneError, SceneSurfaces, fingerprint, scene_surfaces, with_lamps,
@@ -22,7 +22,7 @@ use pointillist_render::{
 use std::path::Path;
 
 /// Patches along the scene's longest side, unless said otherwise.
-pub(super) const PATCHES_ACROSS: f64 = 32.0;
+const PATCHES_ACROSS: f64 = 32.0;
 /// Units of the progress bar, and shares of the time after which direct light, form factors and the solution are there, about.
 pub(super) const PROGRESS_STEPS: u64 = 1000;
 const LIT: f64 = 0.02;
@@ -31,12 +31,12 @@ const SOLVED: f64 = 0.82;
 /// Scenes with more patches are linked by groups, unless said otherwise.
 pub(super) const MOST_FULL: usize = 1000;
 /// Scenes with more surfaces are linked by rays, unless said otherwise. For groups each pair of surfaces is looked at, cut where others stand on them:
-/// the 248 of `examples/house.toml` are 6,300 parts, which take ten times as long by groups, and eighty times with large patches.
+/// the 248 of `examples/house.toml` are 6,300 parts, which take ten times as long by groups, and fifty times with large patches.
 const MOST_GROUPED: usize = IndirectOptions::DEFAULT.most_paired;
-/// With more surfaces, groups take from minutes to hours, and rays may leave more noise.
+/// With more surfaces, groups take from minutes to hours.
 const MOST_PAIRED: usize = 2000;
-/// `--tolerance` up to [`MOST_PAIRED`] surfaces, unless said otherwise.
-const TOLERANCE: f64 = 0.01;
+/// `--tolerance` of groups, unless said otherwise.
+const LINK_TOLERANCE: f64 = IndirectOptions::DEFAULT.tolerance;
 
 pub(super) fn run(options: &RadiosityBakeOptions) -> Result<(), CliError> {
     let report =
@@ -171,10 +171,15 @@ impl Bake<'_> {
         options.links == LinkKind::Rays || (options.links == LinkKind::Auto && plain && many)
     }
 
+    /// `--patch`.
+    pub(super) fn patch(&self) -> f64 {
+        self.options.patch.unwrap_or_else(|| self.extent() / PATCHES_ACROSS)
+    }
+
     /// `--tolerance` of links by rays.
     pub(super) fn ray_tolerance(&self) -> f64 {
-        let many = self.surfaces.surfaces.len() > MOST_PAIRED;
-        self.options.tolerance.unwrap_or(if many { RayOptions::DEFAULT.tolerance } else { TOLERANCE })
+        let count = self.surfaces.surfaces.len();
+        self.options.tolerance.unwrap_or_else(|| IndirectOptions::DEFAULT.ray_tolerance(count))
     }
 
     pub(super) fn link(&self, progress: &Progress) -> Result<Transport, CliError> {
@@ -282,7 +287,7 @@ impl Bake<'_> {
     /// The scene in patches, linked as asked.
     pub(super) fn divided(&self) -> Result<radiosity::Scene, CliError> {
         let options = self.options;
-        let patch = options.patch.unwrap_or_else(|| self.extent() / PATCHES_ACROSS);
+        let patch = self.patch();
         let mut settings = SceneOptions::DEFAULT
             .with_patch(patch)
             .with_smallest_patch(options.adaptive.unwrap_or(patch))
@@ -304,7 +309,7 @@ impl Bake<'_> {
             self.check_full_links(plain.patch_count())?;
             return Ok(plain);
         }
-        settings = settings.with_tolerance(Some(options.tolerance.unwrap_or(TOLERANCE)));
+        settings = settings.with_tolerance(Some(options.tolerance.unwrap_or(LINK_TOLERANCE)));
         new(&settings)
     }
 

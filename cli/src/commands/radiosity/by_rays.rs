@@ -1,6 +1,6 @@
 //! `radiosity SCENE` for buildings: links are found by rays.
 
-use super::bake::{Bake, FactorVisitor, Found, PATCHES_ACROSS, PROGRESS_STEPS};
+use super::bake::{Bake, FactorVisitor, Found, PROGRESS_STEPS};
 use crate::error::CliError;
 use crate::job::Progress;
 use pointillist_radiosity as radiosity;
@@ -32,26 +32,29 @@ pub(super) fn run(bake: &Bake<'_>, progress: &Progress) -> Result<(), CliError> 
     bake.write(&Found { patches, bound: solution.bound, factors: &factors }, &baked)
 }
 
-/// Solves for light and forgets it; the number of patches comes back.
-pub(super) fn trial(bake: &Bake<'_>, progress: &Progress) -> Result<usize, CliError> {
+/// Solves for light and forgets it.
+pub(super) fn trial(bake: &Bake<'_>, progress: &Progress) -> Result<(), CliError> {
     let transport = link(bake, progress)?;
     let options = SolveOptions::DEFAULT.with_tolerance(SOLVED_TO);
     let _ = transport.solve(&options).map_err(|e| bake.refused(&e))?.bake_with(&|_| ());
-    Ok(transport.counts().patches)
+    Ok(())
+}
+
+/// The patches, before light divides some of them further.
+pub(super) fn divided(bake: &Bake<'_>) -> Result<radiosity::Scene, CliError> {
+    let settings = SceneOptions::for_rays(bake.patch()).with_max_elements(bake.most_elements());
+    radiosity::Scene::new(&bake.surfaces.surfaces, &settings).map_err(|e| bake.refused(&e))
 }
 
 fn link(bake: &Bake<'_>, progress: &Progress) -> Result<RayTransport, CliError> {
     let stats = &bake.report.stats;
-    let patch = bake.options.patch.unwrap_or_else(|| bake.extent() / PATCHES_ACROSS);
-    let settings = SceneOptions::for_rays(patch).with_max_elements(bake.most_elements());
-    let divided = || radiosity::Scene::new(&bake.surfaces.surfaces, &settings);
-    let mut scene = stats.stage("divide", divided).map_err(|e| bake.refused(&e))?;
+    let mut scene = stats.stage("divide", || divided(bake))?;
     let lamps = Lamps::new(bake.scene);
     let lit = |share| progress.reach(LIT * share);
     let direct = stats.stage("direct", || with_lamps(&lamps, |list| scene.direct_with(list, &lit)));
     let direct = direct.map_err(|e| bake.refused(&e))?;
     progress.reach(LIT);
-    let finest = bake.options.adaptive.unwrap_or(patch * FINEST);
+    let finest = bake.options.adaptive.unwrap_or(bake.patch() * FINEST);
     let options = RayOptions::DEFAULT.with_finest(finest).with_tolerance(bake.ray_tolerance());
     let done = |share| progress.reach(LIT + (LINKED - LIT) * share);
     let linked = stats.stage("factors", || scene.transport_by_rays(&direct, &options, &done));

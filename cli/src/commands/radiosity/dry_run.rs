@@ -4,7 +4,7 @@
 //! and 2 times as long, and with rays an error of light as many times as large; or, where surfaces are too small to have fewer patches, among one of 16, 8 and 4
 //! surfaces. Time and memory are taken to be a power of the number of patches, the one that the last two parts show.
 
-use super::bake::{Bake, MOST_FULL, PATCHES_ACROSS};
+use super::bake::{Bake, MOST_FULL};
 use super::by_rays;
 use crate::error::CliError;
 use crate::job::{Expected, Progress, ProgressMode};
@@ -45,12 +45,12 @@ pub(super) fn expect(bake: &Bake<'_>) -> Result<Expected, CliError> {
     let mut expected = Expected { threads, heavy: weight::heavy(bake.scene), ..Expected::default() };
     expected.add("load", stats.elapsed().as_secs_f64(), stats.cpu_elapsed());
     let loaded = memory::peak_bytes();
-    let patches = bake.divided()?.patch_count();
+    let patches = patch_count(bake)?;
     let coarse = |times: f64| with_longer_patches(bake, times, patches);
     let mut trials: Vec<Trial> = vec![];
     let is_coarser = {
         let options = coarse(COARSENINGS[0]);
-        Bake { options: &options, ..*bake }.divided()?.patch_count() * FEWER <= patches
+        patch_count(&Bake { options: &options, ..*bake })? * FEWER <= patches
     };
     for step in 0..COARSENINGS.len() {
         let trial = if is_coarser {
@@ -92,12 +92,17 @@ pub(super) fn expect(bake: &Bake<'_>) -> Result<Expected, CliError> {
     Ok(expected)
 }
 
+/// How many patches there are before light divides some of them further.
+fn patch_count(bake: &Bake<'_>) -> Result<usize, CliError> {
+    let scene = if bake.by_rays() { by_rays::divided(bake)? } else { bake.divided()? };
+    Ok(scene.patch_count())
+}
+
 /// Options with patches that are so many times as long.
 fn with_longer_patches(bake: &Bake<'_>, times: f64, patches: usize) -> RadiosityBakeOptions {
     let own = bake.options;
-    let patch = own.patch.unwrap_or_else(|| bake.extent() / PATCHES_ACROSS);
     RadiosityBakeOptions {
-        patch: Some(times * patch),
+        patch: Some(times * bake.patch()),
         adaptive: own.adaptive.map(|adaptive| times * adaptive),
         tolerance: if bake.by_rays() { Some(times * bake.ray_tolerance()) } else { own.tolerance },
         // A part of a large scene is solved as the whole is.
@@ -125,7 +130,8 @@ fn trial(bake: &Bake<'_>) -> Result<Trial, CliError> {
     let progress = Progress::new(ProgressMode::Off);
     let (start, cpu_start) = (Instant::now(), bake.report.stats.cpu_elapsed());
     let patches = if bake.by_rays() {
-        by_rays::trial(bake, &progress)?
+        by_rays::trial(bake, &progress)?;
+        patch_count(bake)?
     } else {
         let transport = bake.link(&progress)?;
         let _ = bake.solve(&transport, &progress)?.bake_with(&|_| ());
