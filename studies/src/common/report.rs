@@ -45,6 +45,12 @@ impl Limit {
         }
     }
 
+    /// What tables of goals say: a value that is nearer to its limit than its spread says nothing.
+    pub(crate) fn verdict(self, value: f64, spread: f64) -> &'static str {
+        let (Self::AtMost(limit) | Self::AtLeast(limit)) = self;
+        if (value - limit).abs() <= spread { "undecided" } else { verdict(self.is_kept_by(value)) }
+    }
+
     /// The one of two values that is farther on the wrong side.
     pub(crate) fn worse(self, a: f64, b: f64) -> f64 {
         match self {

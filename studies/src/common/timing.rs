@@ -10,6 +10,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use crate::common::report::Limit;
 use cpu_time::ThreadTime;
 
 /// How much longer the calibration may take around a run.
@@ -150,15 +151,15 @@ pub(crate) struct Ratio {
 }
 
 impl Ratio {
-    /// What tables of goals say: a ratio that is nearer to its bound than its spread says nothing.
+    /// What tables of goals say of a ratio that may be so large.
     pub(crate) fn at_most(self, bound: f64) -> &'static str {
-        if (self.value - bound).abs() <= self.spread {
-            "undecided"
-        } else if self.value <= bound {
-            "reached"
-        } else {
-            "**missed**"
-        }
+        Limit::AtMost(bound).verdict(self.value, self.spread)
+    }
+
+    /// Of two medians: half of either's range may be missing or too much.
+    pub(crate) fn of_timings(time: Timing, other: Timing) -> Self {
+        let value = time.seconds / other.seconds;
+        Self { value, spread: value * 0.5 * (time.spread + other.spread) }
     }
 
     fn of(mut ratios: Vec<f64>) -> Self {

@@ -1,6 +1,6 @@
 //! What is measured of a frame.
 
-use crate::common::timing::Timing;
+use crate::common::timing::{Ratio, Timing};
 use crate::surfel::layer_error::LayerError;
 
 /// A frame of one setting in one scene.
@@ -14,8 +14,8 @@ pub(crate) struct Measured {
     /// Processor seconds on one thread, and seconds on all.
     pub(crate) cpu: Timing,
     pub(crate) wall: Timing,
-    /// Processor time over that of the row that the section names; NaN if it names none.
-    pub(crate) ratio: f64,
+    /// Processor time over that of the row that the section names, if it names one.
+    pub(crate) ratio: Option<Ratio>,
     pub(crate) error: LayerError,
     /// Of the cloud, world units.
     pub(crate) spacing: f64,

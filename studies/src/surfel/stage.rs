@@ -104,7 +104,7 @@ impl Stage {
     ) -> Measured {
         let error = self.measure.of(picture);
         let (scene, spacing) = (self.name.clone(), cloud.spacing());
-        Measured { scene, series, setting, points, cpu, wall, ratio: f64::NAN, error, spacing }
+        Measured { scene, series, setting, points, cpu, wall, ratio: None, error, spacing }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::common::charts::chart_of;
 use crate::common::data;
 use crate::common::picture_layers::PictureLayers;
 use crate::common::report::{Outcome, write, write_csv};
-use crate::common::timing::HOW;
+use crate::common::timing::{HOW, Ratio};
 use crate::common::true_surface::Surface;
 use crate::surfel::coloured_cloud::ColouredCloud;
 use crate::surfel::lens_scenes::{above, front, front_from, lens_name};
@@ -327,10 +327,10 @@ fn procedures_at(level: f32) -> impl Iterator<Item = Procedure> {
 /// Sets each row's ratio to the first row that it is compared with.
 fn compare_times(rows: &mut [Measured], is_compared: impl Fn(&Measured, &Measured) -> bool) {
     let of = |row: &Measured| {
-        rows.iter().find(|other| is_compared(row, other)).map(|other| row.cpu.seconds / other.cpu.seconds)
+        rows.iter().find(|other| is_compared(row, other)).map(|other| Ratio::of_timings(row.cpu, other.cpu))
     };
     let ratios: Vec<_> = rows.iter().map(of).collect();
-    rows.iter_mut().zip(ratios).for_each(|(row, ratio)| row.ratio = ratio.unwrap_or(f64::NAN));
+    rows.iter_mut().zip(ratios).for_each(|(row, ratio)| row.ratio = ratio);
 }
 
 /// Pixels.

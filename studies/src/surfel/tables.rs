@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use crate::common::provenance::provenance;
 use crate::common::report::{Limit, Row, verdict};
+use crate::common::timing::Ratio;
 use crate::surfel::lens_scenes::lens_name;
 use crate::surfel::measured::Measured;
 use crate::surfel::same::Same;
@@ -41,7 +42,7 @@ impl Measured {
         let values = [
             self.points as f64,
             self.wall.seconds,
-            self.ratio,
+            self.ratio.map_or(f64::NAN, |ratio| ratio.value),
             e.psnr,
             e.ssim,
             e.holes,
@@ -65,7 +66,7 @@ impl Measured {
 
     fn line(&self) -> String {
         let e = &self.error;
-        let ratio = if self.ratio.is_nan() { "–".to_owned() } else { format!("{:.3}", self.ratio) };
+        let ratio = self.ratio.map_or("–".to_owned(), |ratio| format!("{:.3}", ratio.value));
         format!(
             "| {} | {} | {} | {} | {:.2} | {:.2} | {ratio} | {:.2} | {:.4} | {:.4} | {:.2} | {:.3} |\n",
             self.scene,
@@ -86,7 +87,6 @@ impl Measured {
 const HEAD: &str = "| scene | procedure | setting | points drawn | CPU ms | wall ms | ratio | PSNR dB | SSIM | holes % | normals, mean ° | depth RMSE |\n\
                     | --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
 
-/// A figure that must be reached: the ratio of one row.
 /// What a goal is about.
 #[derive(Clone, Copy)]
 enum Figure {
@@ -98,6 +98,7 @@ enum Figure {
     PsnrLost(&'static str),
 }
 
+/// A figure that must be reached: of one row.
 struct Goal {
     what: &'static str,
     figure: Figure,
@@ -117,19 +118,20 @@ const fn of_picture(what: &'static str, figure: Figure, limit: Limit, row: [&'st
 }
 
 impl Goal {
-    /// Nothing if a row was not measured.
-    fn found(&self, sections: &[Section]) -> Option<f64> {
+    /// What was found, and how much of it may be chance; nothing if a row was not measured.
+    fn found(&self, sections: &[Section]) -> Option<Ratio> {
         let row = |setting: &str| {
             let is_meant =
                 |m: &&Measured| (&*m.scene, m.series, &*m.setting) == (self.scene, self.series, setting);
             sections.iter().flat_map(|s| &s.rows).find(is_meant)
         };
         let own = row(self.setting)?;
-        Some(match self.figure {
+        let exactly = |value| Ratio { value, spread: 0.0 };
+        match self.figure {
             Figure::Time => own.ratio,
-            Figure::Psnr => own.error.psnr,
-            Figure::PsnrLost(setting) => row(setting)?.error.psnr - own.error.psnr,
-        })
+            Figure::Psnr => Some(exactly(own.error.psnr)),
+            Figure::PsnrLost(setting) => Some(exactly(row(setting)?.error.psnr - own.error.psnr)),
+        }
     }
 }
 
@@ -176,9 +178,11 @@ fn goals(sections: &[Section], same: &[Same]) -> String {
     for goal in &GOALS {
         let Some(found) = goal.found(sections) else { continue };
         let Goal { what, figure, limit, series, .. } = goal;
-        let word = verdict(limit.is_kept_by(found));
+        let Ratio { value, spread } = found;
+        let word = limit.verdict(value, spread);
+        let spread = if spread > 0.0 { format!(" ± {spread:.3}") } else { String::new() };
         let kind = if let Figure::Time = figure { "CPU time" } else { "PSNR, dB" };
-        let _ = writeln!(text, "| {kind}, {what} | {series} | {limit} | {found:.3} | {word} |");
+        let _ = writeln!(text, "| {kind}, {what} | {series} | {limit} | {value:.3}{spread} | {word} |");
     }
     for change in ["moved", "scaled"] {
         let changed = same.iter().filter(|s| s.change.starts_with(change)).map(|s| s.error.psnr);
@@ -252,7 +256,7 @@ pub(crate) fn markdown(setup: &str, sections: &[Section], same: &[Same]) -> Stri
          ms*: time of a frame on all cores. *Points drawn* counts links. *PSNR* and \
          *SSIM*: sRGB, over the surface's box and 8 pixels around. Depth, normals and holes are compared with rays through the pixels' centres, \
          through the middle of a lens, over pixels more than 2 inside the outline; depth is in spacings of the cloud. \
-         *Holes*: such pixels without a surface. Clouds are blue noise unless the row says otherwise.\n\n## Goals\n\n{}{LIMITS}\n\
+         *Holes*: such pixels without a surface. Clouds are blue noise unless the row says otherwise.\n\n## Goals\n\nA ratio of times may be off by half of the ranges of both; one that is nearer to its bound than that is undecided.\n\n{}{LIMITS}\n\
          ## Beside the paper\n\n{}",
         provenance(),
         goals(sections, same),
