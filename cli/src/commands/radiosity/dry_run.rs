@@ -29,6 +29,9 @@ const LEAST_BYTES: f64 = 1e6;
 /// Powers of the number of patches that are possible: groups of patches need fewer links than there are patches, single patches as many as pairs, of
 /// which each has the more in between the more surfaces there are.
 const POWERS: RangeInclusive<f64> = 0.5..=2.5;
+/// The same by rays, where a patch has at most so many links: halls of more and more columns took powers of 0.3 to 0.9 (`studies/results/radiosity.md`,
+/// "Cost against the number of surfaces").
+const POWERS_OF_RAYS: RangeInclusive<f64> = 0.5..=1.0;
 
 /// What solving for light with some length of patches took.
 struct Trial {
@@ -68,11 +71,12 @@ pub(super) fn expect(bake: &Bake<'_>) -> Result<Expected, CliError> {
     }
     let last = &trials[trials.len() - 1];
     let before = trials.len().checked_sub(2).map(|i| &trials[i]);
-    let middle = 0.5 * (POWERS.start() + POWERS.end());
+    let powers = if bake.by_rays() { POWERS_OF_RAYS } else { POWERS };
+    let middle = 0.5 * (powers.start() + powers.end());
     let power = |of: &dyn Fn(&Trial) -> f64, least: f64| match before {
         Some(before) if of(before) > least && last.patches > before.patches => {
             let growth = (of(last) / of(before)).ln() / (last.patches as f64 / before.patches as f64).ln();
-            growth.clamp(*POWERS.start(), *POWERS.end())
+            growth.clamp(*powers.start(), *powers.end())
         }
         _ => middle,
     };
