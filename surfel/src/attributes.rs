@@ -71,6 +71,8 @@ pub(crate) struct Sorted {
     pub(crate) codes: Vec<u64>,
     /// The caller's number of each.
     pub(crate) numbers: Vec<u32>,
+    /// Which of them are seen from both sides: those without given normals whose surface has no outside.
+    pub(crate) two_sided: Vec<bool>,
 }
 
 /// Estimates missing attributes and sorts points by Morton code, then by attributes, so that the order of input does
@@ -86,20 +88,20 @@ pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice, usual: Option<f64
     let at = |i: u32| (points.positions[i as usize] - lattice.low) / lattice.side;
     let positions: Vec<DVec3> = keys.iter().map(|&(_, i)| at(i)).collect();
     let places = Places::new(&positions);
-    let two_sided = points.normals.is_none();
     let unit = |n: Vec3| (n / n.abs().max_element()).normalize();
-    let normals: Vec<Vec3> = match points.normals {
-        Some(given) => keys.iter().map(|&(_, i)| unit(given[i as usize])).collect(),
-        None => normals::estimate(&places),
+    let (normals, two_sided): (Vec<Vec3>, Vec<bool>) = match points.normals {
+        Some(given) => keys.iter().map(|&(_, i)| (unit(given[i as usize]), false)).unzip(),
+        None => normals::estimate(&places).into_iter().map(|n| (n.way, !n.has_outside)).unzip(),
     };
+    let is_estimated = points.normals.is_none();
     let radii: Vec<f32> = match points.radii {
         Some(given) => {
             keys.iter().map(|&(_, i)| (f64::from(given[i as usize]) / lattice.side) as f32).collect()
         }
-        None => radius::of_cloud(&places, &normals, two_sided, usual),
+        None => radius::of_cloud(&places, &normals, is_estimated, usual),
     };
     let radii: Vec<f32> = radii.into_iter().map(|r| r.clamp(SMALLEST, 1e6)).collect();
-    let areas = areas::of_cloud(&places, &normals, &radii, two_sided);
+    let areas = areas::of_cloud(&places, &normals, &radii, is_estimated);
     let opacities = points.opacities.filter(|all| all.iter().any(|&opacity| opacity < 1.0));
     let attributes = Attributes {
         cells: [0, 1, 2].map(|axis| keys.iter().map(|&(_, i)| cells[i as usize][axis]).collect()),
@@ -113,7 +115,7 @@ pub(crate) fn in_order(points: &Points<'_>, lattice: &Lattice, usual: Option<f64
         opacities: opacities.map(|given| keys.iter().map(|&(_, i)| given[i as usize]).collect()),
     };
     let (codes, numbers) = keys.into_iter().unzip();
-    Sorted { attributes, codes, numbers }
+    Sorted { attributes, codes, numbers, two_sided }
 }
 
 /// Order of points of one Morton code: by all attributes. Points that are equal in all of them are interchangeable.

@@ -30,6 +30,18 @@ pub(crate) fn turned(view: &View, v: DVec3) -> DVec3 {
     DVec3::new(v.dot(view.right()), -v.dot(view.up()), v.dot(view.forward()))
 }
 
+/// Whether the eye is in the box around a node; an orthographic one, whether any part of its plane is.
+fn is_among(view: &View, lattice: &Lattice, root: &Node) -> bool {
+    let middle = lattice.way(view.eye(), root.origin) / lattice.side;
+    let half = root.half.as_dvec3();
+    if view.projection().is_perspective() {
+        middle.abs().cmple(half).all()
+    } else {
+        let forward = view.forward();
+        middle.dot(forward).abs() <= half.dot(forward.abs())
+    }
+}
+
 #[derive(Clone, Debug)]
 pub(crate) struct Camera {
     pub(crate) view: View,
@@ -49,10 +61,20 @@ pub(crate) struct Camera {
     pub(crate) focus: f32,
     /// World axes of the picture.
     pub(crate) axes: [Vec3; 3],
+    /// Whether everything is drawn from both sides.
+    pub(crate) sees_both_sides: bool,
 }
 
 impl Camera {
-    pub(crate) fn new(view: &View, lattice: &Lattice, root: &Node, focus: &Focus) -> Self {
+    /// `is_estimated`: which side of a closed surface is its outside was found out. An eye among such surfaces may be in one of them, as
+    /// in a room, whose walls it sees from within: it sees both sides of everything.
+    pub(crate) fn new(
+        view: &View,
+        lattice: &Lattice,
+        root: &Node,
+        focus: &Focus,
+        is_estimated: bool,
+    ) -> Self {
         let middle = turned(view, lattice.way(view.eye(), root.origin)).z / lattice.side;
         let extent = f64::from(root.half.length()) + f64::from(root.widest);
         let reference = middle.max(0.01 * extent);
@@ -72,6 +94,7 @@ impl Camera {
             blur,
             focus: (focus / lattice.side - reference).clamp(-1e12, 1e12) as f32,
             axes: [view.right(), -view.up(), view.forward()].map(|v| v.as_vec3()),
+            sees_both_sides: is_estimated && is_among(view, lattice, root),
         }
     }
 

@@ -18,8 +18,8 @@ pub struct Cloud {
     pub(crate) points: Attributes,
     pub(crate) nodes: Vec<Node>,
     pub(crate) links: PackedLinks,
-    /// Whether normals may point to either side.
-    pub(crate) two_sided: bool,
+    /// Whether normals were estimated.
+    pub(crate) is_estimated: bool,
 }
 
 impl Cloud {
@@ -32,16 +32,18 @@ impl Cloud {
     pub fn new(points: &Points<'_>) -> Result<Self, SurfelError> {
         points.check()?;
         let lattice = Lattice::around(points.positions);
-        let Sorted { attributes, codes, .. } = in_order(points, &lattice, None);
-        Ok(Self::of_sorted(lattice, attributes, &codes, points.normals.is_none()))
+        let Sorted { attributes, codes, two_sided, .. } = in_order(points, &lattice, None);
+        let mut cloud = Self::of_sorted(lattice, attributes, &codes, &two_sided);
+        cloud.is_estimated = points.normals.is_none();
+        Ok(cloud)
     }
 
-    /// Makes the tree of points that are sorted.
+    /// Makes the tree of points that are sorted; their normals count as given. `two_sided`: which of them are seen from both sides.
     pub(crate) fn of_sorted(
         lattice: Lattice,
         mut attributes: Attributes,
         codes: &[u64],
-        two_sided: bool,
+        two_sided: &[bool],
     ) -> Self {
         let (cubes, generations) = octree::divide(codes);
         let mut links = links::make(&cubes, &generations, &attributes);
@@ -52,7 +54,7 @@ impl Cloud {
         let mut nodes = nodes(&cubes, &generations, &links, &attributes, two_sided);
         nodes.iter_mut().zip(pairs).for_each(|(node, pairs)| node.pairs = pairs);
         let links = PackedLinks::new(&links, &nodes, &attributes);
-        Self { lattice, points: attributes, nodes, links, two_sided }
+        Self { lattice, points: attributes, nodes, links, is_estimated: false }
     }
 
     /// Number of points.
@@ -80,10 +82,11 @@ impl Cloud {
         self.points.shading_normals.is_some()
     }
 
-    /// Whether normals were estimated; such a cloud is seen from both sides.
+    /// Whether normals were estimated. Closed surfaces are then seen from their outside, if the eye is beside all of them (the box around the
+    /// cloud); others, those of [`Cloud::parts`], and all of them from among them are seen from both sides.
     #[must_use]
     pub fn has_estimated_normals(&self) -> bool {
-        self.two_sided
+        self.is_estimated
     }
 
     /// All positions, in an order of the cloud's own, to 2⁻³² of its extent.

@@ -19,7 +19,8 @@ impl Cloud {
     /// [`SurfelError::NoPoints`] without parts, [`SurfelError::NotOfOneKind`], [`SurfelError::TooManyPoints`].
     pub fn join(parts: &[&Self]) -> Result<Self, SurfelError> {
         let first = parts.first().ok_or(SurfelError::NoPoints)?;
-        let is_other = |part: &&Self| part.lattice != first.lattice || part.two_sided != first.two_sided;
+        let is_other =
+            |part: &&Self| part.lattice != first.lattice || part.is_estimated != first.is_estimated;
         if let Some(index) = parts.iter().position(is_other) {
             return Err(SurfelError::NotOfOneKind { index });
         }
@@ -34,7 +35,7 @@ impl Cloud {
             points: Attributes::joined(&of_points),
             nodes: nodes(parts),
             links: PackedLinks::joined(&of_links),
-            two_sided: first.two_sided,
+            is_estimated: first.is_estimated,
         })
     }
 }

@@ -25,6 +25,17 @@ pub(crate) struct Cone {
     pub(crate) half_angle_rad: f32,
 }
 
+/// Which way all that lies below a node faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Facing {
+    /// Some of it is seen from both sides, and so is all that is drawn for the node.
+    BothWays,
+    /// It is seen from the front, and faces everywhere.
+    Everywhere,
+    /// It is seen from the front.
+    Within(Cone),
+}
+
 /// A cube of the octree, for the renderer.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Node {
@@ -32,8 +43,8 @@ pub(crate) struct Node {
     pub(crate) origin: [u32; 3],
     /// Half the sides of that box, units.
     pub(crate) half: Vec3,
-    /// Of all points below; none if they face everywhere.
-    pub(crate) cone: Option<Cone>,
+    /// Of all points below.
+    pub(crate) facing: Facing,
     /// Distance of what is drawn for it, units: the square root of its mean area.
     pub(crate) spacing: f32,
     /// Largest radius of what is drawn for it, units.
@@ -47,6 +58,14 @@ pub(crate) struct Node {
 impl Node {
     pub(crate) fn is_leaf(&self) -> bool {
         self.children.is_empty()
+    }
+
+    /// Holds all normals of what is seen from the front only; none if that faces everywhere.
+    pub(crate) fn cone(&self) -> Option<Cone> {
+        match self.facing {
+            Facing::Within(cone) => Some(cone),
+            Facing::BothWays | Facing::Everywhere => None,
+        }
     }
 
     /// Whether it only holds others together: see [`around`].
@@ -99,13 +118,13 @@ impl Node {
     }
 }
 
-/// Boxes, cones and sizes of all cubes, the deepest first.
+/// Boxes, cones and sizes of all cubes, the deepest first. `two_sided`: which points are seen from both sides.
 pub(crate) fn nodes(
     cubes: &[Cube],
     generations: &[usize],
     links: &[Vec<Link>],
     points: &Attributes,
-    two_sided: bool,
+    two_sided: &[bool],
 ) -> Vec<Node> {
     let mut starts = Vec::with_capacity(cubes.len());
     let mut link_count = 0;
@@ -143,7 +162,7 @@ fn spacing(area: f32, count: usize) -> f32 {
     (area / count as f32).sqrt()
 }
 
-fn leaf(cube: &Cube, points: &Attributes, two_sided: bool) -> Node {
+fn leaf(cube: &Cube, points: &Attributes, two_sided: &[bool]) -> Node {
     let range = cube.points.clone();
     let ends = |axis: usize| {
         let cells = &points.cells[axis][range.clone()];
@@ -155,7 +174,11 @@ fn leaf(cube: &Cube, points: &Attributes, two_sided: bool) -> Node {
     Node {
         origin,
         half,
-        cone: if two_sided { None } else { cone(normals) },
+        facing: if two_sided[range.clone()].contains(&true) {
+            Facing::BothWays
+        } else {
+            cone(normals).map_or(Facing::Everywhere, Facing::Within)
+        },
         spacing: spacing(points.areas[range.clone()].iter().sum(), range.len()),
         widest: points.radii[range.clone()].iter().copied().fold(0.0, f32::max),
         items: range.start as u32..range.end as u32,
@@ -192,7 +215,7 @@ fn inner(cube: &Cube, children: &[&Node], links: &[Link], first_link: u32) -> No
     Node {
         origin,
         half,
-        cone: cone_around(children, links),
+        facing: facing_around(children, links),
         spacing: spacing(area, links.len()),
         widest: links.iter().map(|l| radius_of_area(l.area)).fold(0.0, f32::max),
         items: first_link..first_link + links.len() as u32,
@@ -207,7 +230,7 @@ pub(crate) fn around(children: &[&Node], numbers: Range<u32>) -> Node {
     Node {
         origin,
         half,
-        cone: cone_around(children, &[]),
+        facing: facing_around(children, &[]),
         spacing: f32::INFINITY,
         widest: children.iter().map(|c| c.widest).fold(0.0, f32::max),
         items: 0..0,
@@ -216,9 +239,17 @@ pub(crate) fn around(children: &[&Node], numbers: Range<u32>) -> Node {
     }
 }
 
+/// Which way a node faces that holds others and links.
+fn facing_around(children: &[&Node], links: &[Link]) -> Facing {
+    if children.iter().any(|c| c.facing == Facing::BothWays) {
+        return Facing::BothWays;
+    }
+    cone_around(children, links).map_or(Facing::Everywhere, Facing::Within)
+}
+
 /// Holds the cones of all children and the mean normals of the links.
 fn cone_around(children: &[&Node], links: &[Link]) -> Option<Cone> {
-    let cones: Vec<Cone> = children.iter().map(|c| c.cone).collect::<Option<_>>()?;
+    let cones: Vec<Cone> = children.iter().map(|c| c.cone()).collect::<Option<_>>()?;
     let axis = cones.iter().map(|c| c.axis).sum::<Vec3>().try_normalize()?;
     let below = cones.iter().map(|c| c.axis.angle_between(axis) + c.half_angle_rad).fold(0.0, f32::max);
     let own = links.iter().map(|l| l.normal.angle_between(axis)).fold(0.0, f32::max);

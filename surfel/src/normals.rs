@@ -1,27 +1,40 @@
 //! Normals of a cloud that has none.
 //!
-//! The plane through a point's neighbours that is nearest to them in the sense of least squares: its normal is the
-//! direction in which they vary least, the eigenvector of their covariance for its smallest eigenvalue (H. Hoppe et
-//! al., *Surface reconstruction from unorganized points*, SIGGRAPH 1992, §3.2).
+//! 1. The plane through a point's neighbours that is nearest to them in the sense of least squares: its normal is the
+//!    direction in which they vary least, the eigenvector of their covariance for its smallest eigenvalue (H. Hoppe et
+//!    al., *Surface reconstruction from unorganized points*, SIGGRAPH 1992, §3.2).
+//! 2. A paraboloid over it, because surfaces bend (`quadric.rs`).
+//! 3. The same side for all normals of a surface (`orient.rs`), and the outside, where there is one (`outside.rs`).
 
 use crate::error::SurfelError;
 use crate::lattice::Lattice;
 use crate::neighbours::Places;
+use crate::orient::{Around, Orientation, VOTERS};
 use crate::points::Points;
+use crate::{outside, quadric};
 use glam::{DVec3, Vec3};
 use pointillist_parallel as parallel;
+use std::f64::consts::PI;
 
-/// Places that a plane is fitted to, the point's own among them. Mean angle to the true normal on a sphere of 4000
-/// points of blue noise, and with noise of 0.1 spacings along the normal: 0.70° and 3.5° with 8, 0.50° and 2.0° with
-/// 14, 0.42° and 1.0° with 28, which round off what is thinner.
+/// Places that a surface is fitted to, the point's own among them.
 const FITTED: usize = 14;
 
 /// Most rotations of all three pairs of axes. Each squares what is left off the diagonal: about 5 are needed.
 const SWEEPS: usize = 8;
 
-/// The unit normal of every point as [`Cloud`](crate::Cloud) estimates it, in the caller's order, for those who know on which side of it the outside is.
+/// What is known of a point without a normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Estimate {
+    /// Unit normal.
+    pub(crate) way: Vec3,
+    /// Whether it stands on the outside of a closed surface.
+    pub(crate) has_outside: bool,
+}
+
+/// The unit normal of every point as [`Cloud`](crate::Cloud) estimates it, in the caller's order.
 ///
-/// Its largest component is positive, which says nothing about sides. Does not depend on the order of points.
+/// Normals of one surface stand on one side of it: on the outside if it is closed, or bent enough to say. Those of a flat one face along
+/// the positive axis that most of them are nearest to. Does not depend on the order of points.
 ///
 /// # Errors
 /// [`SurfelError::NoPoints`], [`SurfelError::TooManyPoints`], [`SurfelError::PointNotFinite`], [`SurfelError::PointTooFar`].
@@ -29,29 +42,60 @@ pub fn estimate_normals(positions: &[DVec3]) -> Result<Vec<Vec3>, SurfelError> {
     Points::new(positions).check()?;
     let lattice = Lattice::around(positions);
     let places: Vec<DVec3> = positions.iter().map(|p| (*p - lattice.low) / lattice.side).collect();
-    Ok(estimate(&Places::new(&places)))
+    Ok(estimate(&Places::new(&places)).into_iter().map(|of_point| of_point.way).collect())
 }
 
-/// The unit normal of every point, in the caller's order; the side on which it stands is arbitrary: its largest
-/// component is positive. On a smooth surface the angle to the true one falls with the spacing, and with noise across
-/// the surface it is about 0.35 of the noise per spacing, rad.
+/// The normal of every point, in the caller's order.
 ///
 /// Points that coincide have the same normal. Where all neighbours lie on a line the normal is some direction across
 /// it, and that of a lone place is +Z. Does not depend on the order of points.
-pub(crate) fn estimate(places: &Places) -> Vec<Vec3> {
-    let of_places = parallel::map(places.len(), |place| {
+pub(crate) fn estimate(places: &Places) -> Vec<Estimate> {
+    let fits = parallel::map(places.len(), |place| Fit::of(places, place));
+    let mut normals: Vec<DVec3> = fits.iter().map(|fit| fit.normal).collect();
+    let around: Vec<Around> = fits.iter().map(|fit| fit.around).collect();
+    let areas: Vec<f64> = fits.into_iter().map(|fit| fit.area).collect();
+    let orientation = Orientation::of(places, &normals, &around);
+    let is_closed = outside::face_outwards(places, &mut normals, &areas, &orientation);
+    let mut estimates = vec![Estimate { way: Vec3::Z, has_outside: false }; places.point_count()];
+    for (place, (normal, &has_outside)) in normals.iter().zip(&is_closed).enumerate() {
+        let estimate = Estimate { way: normal.as_vec3(), has_outside };
+        places.points(place).iter().for_each(|&i| estimates[i as usize] = estimate);
+    }
+    estimates
+}
+
+/// The surface about a place.
+struct Fit {
+    /// Its largest component is positive.
+    normal: DVec3,
+    /// The nearest neighbours.
+    around: Around,
+    /// About the area of the surface that the place stands for.
+    area: f64,
+}
+
+impl Fit {
+    fn of(places: &Places, place: usize) -> Self {
         let mut found = Vec::with_capacity(FITTED);
         places.nearest(place, FITTED, f64::INFINITY, &mut found);
         let farthest = found.last().map_or(0.0, |n| n.distance2.sqrt());
         // In parts of the farthest distance, so that no square of an offset is lost.
         let offset = |i: usize| (places.at(found[i].place) - places.at(place)) / farthest;
-        if farthest > 0.0 { towards_largest(least_variation(found.len(), offset)).as_vec3() } else { Vec3::Z }
-    });
-    let mut normals = vec![Vec3::Z; places.point_count()];
-    for (place, normal) in of_places.into_iter().enumerate() {
-        places.points(place).iter().for_each(|&i| normals[i as usize] = normal);
+        let normal = if farthest > 0.0 {
+            let plane = towards_largest(least_variation(found.len(), offset));
+            quadric::normal((0..found.len()).map(offset), plane)
+        } else {
+            DVec3::Z
+        };
+        // n neighbours lie on a disc of n areas: the mean of what four of them say, which is right for lattices as well as for random points.
+        let says = |n: usize| found.get(n).map(|near| PI * near.distance2 / n as f64);
+        let said = || (VOTERS / 2 + 1..=VOTERS).map_while(says);
+        Self {
+            normal,
+            around: std::array::from_fn(|i| found.get(i + 1).map_or(place as u32, |n| n.place as u32)),
+            area: said().sum::<f64>() / said().count().max(1) as f64,
+        }
     }
-    normals
 }
 
 /// The normal or its opposite: the one with its largest component (the first of equals) positive.

@@ -54,16 +54,19 @@ impl Cloud {
         if !(spacing > 0.0 && spacing.is_finite()) {
             return Err(SurfelError::BadSpacing { spacing });
         }
-        let Sorted { attributes, codes, numbers } =
+        let Sorted { attributes, codes, numbers, .. } =
             in_order(points, &lattice, Some(SIXTH_NEIGHBOUR * spacing / side));
+        let is_estimated = points.normals.is_none();
         let count =
             parts.iter().filter(|&&part| part != NO_PART).max().map_or(0, |&last| usize::from(last) + 1);
         let of_part = |part: usize| {
             let is_in = |place: &u32| usize::from(parts[numbers[*place as usize] as usize]) == part;
             let places: Vec<u32> = (0..numbers.len() as u32).filter(is_in).collect();
             let codes: Vec<u64> = places.iter().map(|&place| codes[place as usize]).collect();
-            let two_sided = points.normals.is_none();
-            (!places.is_empty()).then(|| Self::of_sorted(lattice, attributes.at(&places), &codes, two_sided))
+            // What is closed, and where its outside is, only the whole could tell.
+            let two_sided = vec![is_estimated; places.len()];
+            let made = || Self::of_sorted(lattice, attributes.at(&places), &codes, &two_sided);
+            (!places.is_empty()).then(|| Self { is_estimated, ..made() })
         };
         Ok((0..count).map(of_part).collect())
     }

@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::grid::TileRect;
-use crate::node::Node;
+use crate::node::{Facing, Node};
 use crate::vector::Vector;
 use glam::{DVec3, Vec3};
 use pulp::Simd;
@@ -17,7 +17,7 @@ pub(crate) struct Map {
     centre: [f32; 2],
     /// Last row and column, not included.
     pub(crate) size: [f32; 2],
-    two_sided: bool,
+    both_sides: bool,
     margin: f32,
     /// The edges of the picture, from the tile's first pixel.
     edges: [Edges; 2],
@@ -49,7 +49,7 @@ impl Edges {
 
 impl Map {
     /// `margin` is how far from its centre any disc of `node` may touch pixels.
-    pub(crate) fn new(camera: &Camera, node: &Node, margin: f32, tile: &TileRect, two_sided: bool) -> Self {
+    pub(crate) fn new(camera: &Camera, node: &Node, margin: f32, tile: &TileRect) -> Self {
         let f = f64::from(camera.focal);
         let (right, down, forward) = (camera.view.right(), -camera.view.up(), camera.view.forward());
         let origin = camera.local(node);
@@ -73,7 +73,8 @@ impl Map {
             Edges::new(camera, camera.view.width(), camera.centre[0], tile.x),
             Edges::new(camera, camera.view.height(), camera.centre[1], tile.y),
         ];
-        Self { rows, first, centre: [cx as f32, cy as f32], size, two_sided, margin, edges }
+        let both_sides = camera.sees_both_sides || node.facing == Facing::BothWays;
+        Self { rows, first, centre: [cx as f32, cy as f32], size, both_sides, margin, edges }
     }
 
     /// Which discs have anything in view, by the balls around them.
@@ -133,7 +134,7 @@ impl<S: Simd> Placed<S> {
         let facing = normal[0] * way[0] + normal[1] * way[1] + normal[2];
         let scale = w * camera.focal;
         let mut placed = Self { x, y, depth, inverse, scale, way, normal, spread, facing };
-        if map.two_sided {
+        if map.both_sides {
             let flip = Vector::all(simd, -1.0).if_set(facing.exceeds(0.0), 1.0);
             placed.facing = facing * flip;
             placed.normal = [normal[0] * flip, normal[1] * flip, normal[2] * flip];

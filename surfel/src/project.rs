@@ -33,7 +33,7 @@ impl Projector {
         splats: &mut Splats,
     ) {
         let node = &scene.cloud.nodes[selected.node as usize];
-        let map = Map::new(&scene.camera, node, selected.margin, tile, scene.cloud.two_sided);
+        let map = Map::new(&scene.camera, node, selected.margin, tile);
         for run in Run::all(node, selected.in_pairs) {
             self.discs.take(scene.cloud, node, &run);
             let count = run.discs();

@@ -56,7 +56,7 @@ impl Renderer {
             return Err(SurfelError::TooLarge { width, height });
         }
         options.check()?;
-        let camera = Camera::new(view, &cloud.lattice, &cloud.nodes[0], &options.focus);
+        let camera = Camera::new(view, &cloud.lattice, &cloud.nodes[0], &options.focus, cloud.is_estimated);
         frame.reshape(width as usize, height as usize, options.surface_layers);
         let wanted = options.window.unwrap_or(view.picture());
         // What lies beside the window is not looked at, so it is not known to be hidden. The paper's procedure has no windows.

@@ -65,7 +65,9 @@ pub(crate) struct Angles {
 
 impl Angles {
     pub(crate) fn of(node: &Node, camera: &Camera) -> Self {
-        let Some(cone) = node.cone else { return Self { least_rad: 0.0, typical_rad: 0.0 } };
+        let Some(cone) = node.cone().filter(|_| !camera.sees_both_sides) else {
+            return Self { least_rad: 0.0, typical_rad: 0.0 };
+        };
         let axis = Vec3::from_array(camera.axes.map(|a| a.dot(cone.axis)));
         let (towards_eye, spread) = if camera.is_perspective {
             let to_eye = -camera.local(node).as_vec3();

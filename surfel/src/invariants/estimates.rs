@@ -8,8 +8,10 @@ use glam::{DVec3, Vec3};
 /// What is estimated for a cloud of positions: each list in their order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimates {
-    /// Unit normals, signs arbitrary.
+    /// Unit normals, those of one surface on one side.
     pub normals: Vec<Vec3>,
+    /// Which of them stand on the outside of a closed surface.
+    pub have_outside: Vec<bool>,
     /// Radii of discs, the cloud's unit.
     pub radii: Vec<f32>,
     /// Shares of the surface, the square of the cloud's unit.
@@ -20,10 +22,11 @@ pub struct Estimates {
 #[must_use]
 pub fn estimates(positions: &[DVec3]) -> Estimates {
     let places = Places::new(positions);
-    let normals = normals::estimate(&places);
+    let (normals, have_outside): (Vec<Vec3>, Vec<bool>) =
+        normals::estimate(&places).into_iter().map(|n| (n.way, n.has_outside)).unzip();
     let radii = radius::of_cloud(&places, &normals, true, None);
     let areas = areas::of_cloud(&places, &normals, &radii, true);
-    Estimates { normals, radii, areas }
+    Estimates { normals, have_outside, radii, areas }
 }
 
 /// Any finite positions have unit normals, and radii and areas that are normal numbers, the same ones in any order.
@@ -31,11 +34,10 @@ pub fn estimates(positions: &[DVec3]) -> Estimates {
 /// # Errors
 /// The first point for which that does not hold.
 pub fn estimates_are_sound(positions: &[DVec3]) -> Result<(), String> {
-    let Estimates { normals, radii, areas } = estimates(positions);
+    let own = estimates(positions);
+    let Estimates { normals, radii, areas, .. } = &own;
     for (i, normal) in normals.iter().enumerate() {
         check((normal.length() - 1.0).abs() < 1e-6, || format!("normal {normal}"))?;
-        let largest = normal.abs().max_element();
-        check(normal.max_element() >= largest - 1e-6, || format!("normal {normal} has the other sign"))?;
         let (radius, area) = (radii[i], areas[i]);
         check(radius.is_normal() && radius > 0.0, || format!("radius {radius:e}"))?;
         check(area.is_normal() && area > 0.0, || format!("area {area:e}"))?;
@@ -44,9 +46,10 @@ pub fn estimates_are_sound(positions: &[DVec3]) -> Result<(), String> {
     backwards.reverse();
     let mut other = estimates(&backwards);
     other.normals.reverse();
+    other.have_outside.reverse();
     other.radii.reverse();
     other.areas.reverse();
-    check(other == Estimates { normals: normals.clone(), radii, areas }, || "the order matters".to_owned())
+    check(other == own, || "the order matters".to_owned())
 }
 
 /// Areas of points with normals and radii: where a normal has a front and a back, and where it has not.

@@ -93,7 +93,7 @@ fn box_holds(cloud: &Cloud, node: &Node, below: Range<usize>) -> Result<(), Stri
 }
 
 fn cone_holds(cloud: &Cloud, node: &Node, below: Range<usize>) -> Result<(), String> {
-    let Some(cone) = node.cone else { return Ok(()) };
+    let Some(cone) = node.cone() else { return Ok(()) };
     check((cone.axis.length() - 1.0).abs() < 1e-5, || format!("axis {}", cone.axis))?;
     let off = |normal: Vec3| normal.as_dvec3().angle_between(cone.axis.as_dvec3());
     let holds = |what: &str, normal: Vec3| {

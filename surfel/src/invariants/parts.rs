@@ -46,8 +46,8 @@ pub fn parts_are_the_whole(points: &OwnedPoints) -> Result<(), String> {
     let Ok(whole) = cloud(points) else { return Ok(()) };
     let joined = in_octants(points, whole.spacing().max(1e-280), 1.0).map_err(|error| error.to_string())?;
     octree_is_sound(&joined)?;
-    check(joined.lattice == whole.lattice && joined.two_sided == whole.two_sided, || {
-        "another cube, or other sides".to_owned()
+    check(joined.lattice == whole.lattice && joined.is_estimated == whole.is_estimated, || {
+        "another cube, or normals of another kind".to_owned()
     })?;
     let (one, other) = (rows(&whole, points.radii.is_some()), rows(&joined, points.radii.is_some()));
     let first = one.iter().zip(&other).find(|(a, b)| a != b);
