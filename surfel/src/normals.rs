@@ -55,9 +55,9 @@ pub(crate) fn estimate(places: &Places) -> Vec<Estimate> {
     let around: Vec<Around> = fits.iter().map(|fit| fit.around).collect();
     let areas: Vec<f64> = fits.into_iter().map(|fit| fit.area).collect();
     let orientation = Orientation::of(places, &normals, &around);
-    let is_closed = outside::face_outwards(places, &mut normals, &areas, &orientation);
+    let have_outside = outside::face_outwards(places, &mut normals, &areas, &orientation);
     let mut estimates = vec![Estimate { way: Vec3::Z, has_outside: false }; places.point_count()];
-    for (place, (normal, &has_outside)) in normals.iter().zip(&is_closed).enumerate() {
+    for (place, (normal, &has_outside)) in normals.iter().zip(&have_outside).enumerate() {
         let estimate = Estimate { way: normal.as_vec3(), has_outside };
         places.points(place).iter().for_each(|&i| estimates[i as usize] = estimate);
     }

@@ -5,8 +5,7 @@
 //! bend as well as between the two faces of a thin sheet (S. König, S. Gumhold, *Consistent propagation of normal orientations in point
 //! clouds*, VMV 2009; the product of both normals, as H. Hoppe et al. have it, is wrong for the latter).
 //!
-//! 1. Clear votes are followed at once, the clearest first: a maximum spanning forest, by classes of weight. A cloud becomes a few
-//!    *patches*.
+//! 1. Clear votes are followed at once. A cloud becomes a few *patches*.
 //! 2. Between patches there are votes that contradict one another, along sharp edges and where surfaces touch. They are added up, and those two
 //!    patches are joined for which the sum is largest, until nothing is left to join (greedy additive contraction; the problem is that of N. Schertler, B.
 //!    Savchynskyy, S. Gumhold, *Towards globally optimal normal orientations for large point clouds*, CGF 2017).
@@ -26,8 +25,13 @@ pub(crate) const VOTERS: usize = 8;
 /// The nearest places around one, itself not among them; its own number where there are fewer.
 pub(crate) type Around = [u32; VOTERS];
 
-/// Weights of votes that are followed at once, class by class.
-const CLEAR: [f32; 5] = [0.98, 0.95, 0.9, 0.8, 0.7];
+/// Votes of at least this weight are followed at once. Of 97,000 points of the Stanford Dragon, whose crest and claws are thin, 291 have the wrong
+/// side if none is, in 0.7 s more, 302 with this, and 439 with 0.95.
+const CLEAR: f32 = 0.98;
+
+/// The share of a place's votes that may be against what was found. On average surfaces none is; of the 302 places above, this finds 81, and
+/// 166 others near them.
+const DISPUTED: f32 = 0.2;
 
 /// Which places are on one surface, and on which side of it their normals stand.
 pub(crate) struct Orientation {
@@ -35,6 +39,8 @@ pub(crate) struct Orientation {
     pub(crate) surfaces: Vec<u32>,
     /// Whether its normal stands on the side that is not that of the other place.
     pub(crate) turned: Vec<bool>,
+    /// Whether some of the neighbours are for the other side.
+    pub(crate) disputed: Vec<bool>,
 }
 
 impl Orientation {
@@ -50,11 +56,8 @@ impl Orientation {
         };
         let mut sets = SignedSets::new(places.len());
         // 1
-        for (class, least) in CLEAR.into_iter().enumerate() {
-            let most = if class > 0 { CLEAR[class - 1] } else { f32::INFINITY };
-            for (i, j, vote) in all().filter(|(_, _, vote)| (least..most).contains(&vote.abs())) {
-                sets.unite(i, j, vote < 0.0);
-            }
+        for (i, j, vote) in all().filter(|(_, _, vote)| vote.abs() >= CLEAR) {
+            sets.unite(i, j, vote < 0.0);
         }
         // 2
         let mut sums = Sums::default();
@@ -65,8 +68,16 @@ impl Orientation {
             }
         }
         sums.contract(&mut sets);
-        let (surfaces, turned) = (0..places.len() as u32).map(|i| sets.find(i)).unzip();
-        Self { surfaces, turned }
+        let (surfaces, turned): (Vec<u32>, Vec<bool>) =
+            (0..places.len() as u32).map(|i| sets.find(i)).unzip();
+        let is_disputed = |(i, (near, votes)): (usize, (&Around, &[f32; VOTERS]))| {
+            let is_against = |&(j, vote): &(&u32, &f32)| (*vote < 0.0) == (turned[i] == turned[*j as usize]);
+            let weight = |(_, vote): (&u32, &f32)| vote.abs();
+            let against: f32 = near.iter().zip(votes).filter(is_against).map(weight).sum();
+            against > DISPUTED * near.iter().zip(votes).map(weight).sum::<f32>()
+        };
+        let disputed = around.iter().zip(&votes).enumerate().map(is_disputed).collect();
+        Self { surfaces, turned, disputed }
     }
 }
 

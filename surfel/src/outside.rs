@@ -78,7 +78,8 @@ impl<'a> Run<'a> {
 }
 
 /// Turns the normals of each surface to its outside, if it has one: a closed surface has, and a bent one, more or less; the others
-/// get the side on which most of the surface faces along the axis that it faces most. Says of each place whether its surface is closed.
+/// get the side on which most of the surface faces along the axis that it faces most. Says of each place whether it is on the outside of a closed surface beyond
+/// dispute.
 /// `areas` are those of the places.
 pub(crate) fn face_outwards(
     places: &Places,
@@ -90,7 +91,7 @@ pub(crate) fn face_outwards(
     // Surface by surface, each in the order of places: neighbours follow one another.
     let mut order: Vec<u32> = (0..places.len() as u32).collect();
     order.sort_by_key(|&place| orientation.surfaces[place as usize]);
-    let mut is_closed = vec![false; places.len()];
+    let mut has_outside = vec![false; places.len()];
     for surface in
         order.chunk_by(|&a, &b| orientation.surfaces[a as usize] == orientation.surfaces[b as usize])
     {
@@ -102,10 +103,10 @@ pub(crate) fn face_outwards(
         let (sign, closed) = outside(&patches);
         for &place in surface {
             normals[place as usize] *= sign;
-            is_closed[place as usize] = closed;
+            has_outside[place as usize] = closed && !orientation.disputed[place as usize];
         }
     }
-    is_closed
+    has_outside
 }
 
 /// By which sign normals are to be multiplied, and whether the surface is closed.

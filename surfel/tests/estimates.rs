@@ -143,6 +143,90 @@ fn estimated_normals_come_in_the_order_of_the_points_and_not_from_bad_ones() {
     assert!(matches!(estimate_normals(&bad), Err(SurfelError::PointNotFinite { index: 1, .. })));
 }
 
+/// Points of a torus about Z with this thickness, whose other radius is 1, and the vectors out of it.
+fn torus(count: u32, thickness: f64) -> (Vec<DVec3>, Vec<DVec3>) {
+    // As many rounds as make the lattice about square.
+    let rounds = (f64::from(count) * thickness).sqrt();
+    let at = |i: u32| {
+        let (around, through) = (TAU * f64::from(i) / rounds, TAU * f64::from(i) / f64::from(count));
+        let (axis, out) = (dvec3(through.cos(), through.sin(), 0.0), around.cos());
+        let out = axis * out + DVec3::Z * around.sin();
+        (axis + out * thickness, out)
+    };
+    (0..count).map(at).unzip()
+}
+
+#[test]
+fn normals_stand_outside_of_closed_surfaces() {
+    for points in [on_sphere(Method::Poisson, 2000, 0.3), two_scans(800), anywhere(2000, 4), anywhere(100, 4)]
+    {
+        invariants::sides_are_found(&points, &points, true).unwrap();
+    }
+    for (count, thickness) in [(4000, 0.4), (4000, 0.1)] {
+        let (points, out) = torus(count, thickness);
+        invariants::sides_are_found(&points, &out, true).unwrap();
+    }
+    // One in the other, and one beside them that is small and dense.
+    let sphere = on_sphere(Method::Poisson, 2000, 0.3);
+    let moved = |factor: f64, by: DVec3| sphere.iter().map(move |p| *p * factor + by);
+    let three = moved(1.0, DVec3::ZERO).chain(moved(0.8, DVec3::ZERO)).chain(moved(0.1, DVec3::X * 1.5));
+    invariants::sides_are_found(&three.collect::<Vec<_>>(), &sphere.repeat(3), true).unwrap();
+}
+
+#[test]
+fn normals_stand_outside_of_sharp_and_thin_things() {
+    // A box of 40 × 40 × 3 lattice steps: edges, and two sheets three steps apart.
+    let (wide, thick) = (40, 3);
+    let (mut points, mut out) = (vec![], vec![]);
+    for (x, y, z) in
+        (0..=wide).flat_map(|x| (0..=wide).flat_map(move |y| (0..=thick).map(move |z| (x, y, z))))
+    {
+        let side = |at: i32, size: i32| f64::from(i32::from(at == size) - i32::from(at == 0));
+        let way = dvec3(side(x, wide), side(y, wide), side(z, thick));
+        if way != DVec3::ZERO {
+            points.push(dvec3(x.into(), y.into(), z.into()));
+            out.push(way);
+        }
+    }
+    invariants::sides_are_found(&points, &out, true).unwrap();
+}
+
+#[test]
+fn normals_of_open_surfaces_stand_on_one_side_and_not_outside() {
+    let wavy: Vec<DVec3> =
+        sheet(50).iter().map(|p| *p + DVec3::Z * 3.0 * (0.3 * p.x).sin() * (0.2 * p.y).cos()).collect();
+    invariants::sides_are_found(&wavy, &[DVec3::Z; 2500], false).unwrap();
+    // Up, because most of it faces so.
+    assert!(estimates(&wavy).normals.iter().all(|n| n.z > 0.0));
+    let half: Vec<DVec3> = on_sphere(Method::Poisson, 3000, 0.3).into_iter().filter(|p| p.x < 0.0).collect();
+    invariants::sides_are_found(&half, &half, false).unwrap();
+    // A tube without ends.
+    let tube: Vec<DVec3> = sheet(60)
+        .iter()
+        .map(|p| dvec3((TAU * p.x / 60.0).cos(), (TAU * p.x / 60.0).sin(), 0.1 * p.y))
+        .collect();
+    let out: Vec<DVec3> = tube.iter().map(|p| dvec3(p.x, p.y, 0.0)).collect();
+    invariants::sides_are_found(&tube, &out, false).unwrap();
+}
+
+#[test]
+fn noise_does_not_turn_normals() {
+    // A fifth of a spacing (0.08) on either side.
+    let mut next = random(9);
+    let points = on_sphere(Method::Poisson, 2000, 0.3);
+    let noisy: Vec<DVec3> = points.iter().map(|p| *p * (1.0 + 0.032 * (next() - 0.5))).collect();
+    invariants::sides_are_found(&noisy, &points, true).unwrap();
+}
+
+#[test]
+fn normals_follow_a_bend() {
+    // A plane through 14 unevenly spread neighbours is off by 0.50°.
+    let points = on_sphere(Method::Poisson, 4000, 0.3);
+    let angle = |(n, p): (&Vec3, &DVec3)| n.as_dvec3().angle_between(*p);
+    let mean = estimates(&points).normals.iter().zip(&points).map(angle).sum::<f64>() / points.len() as f64;
+    assert!(mean.to_degrees() < 0.05, "{}°", mean.to_degrees());
+}
+
 #[test]
 fn normals_of_a_plane_are_exact_far_away() {
     // At 1e6, coordinates of the plane are rounded to 1e-10.

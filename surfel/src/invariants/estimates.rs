@@ -52,6 +52,21 @@ pub fn estimates_are_sound(positions: &[DVec3]) -> Result<(), String> {
     check(other == own, || "the order matters".to_owned())
 }
 
+/// All estimated normals are on the side of these vectors, one for each point, and have an outside exactly if `closed`; where the vectors say nothing
+/// of the outside (a flat surface), all are on their side or none is.
+///
+/// # Errors
+/// How many are not.
+pub fn sides_are_found(positions: &[DVec3], outwards: &[DVec3], closed: bool) -> Result<(), String> {
+    let Estimates { normals, have_outside, .. } = estimates(positions);
+    let wrong = normals.iter().zip(outwards).filter(|(n, out)| n.as_dvec3().dot(**out) <= 0.0).count();
+    let is_right = wrong == 0 || !closed && wrong == positions.len();
+    check(is_right, || format!("{wrong} of {} normals are on the wrong side", positions.len()))?;
+    let count = have_outside.iter().filter(|has| **has).count();
+    let wanted = if closed { positions.len() } else { 0 };
+    check(count == wanted, || format!("{count} of {} points have an outside", positions.len()))
+}
+
 /// Areas of points with normals and radii: where a normal has a front and a back, and where it has not.
 #[must_use]
 pub fn areas_by_sides(positions: &[DVec3], normals: &[Vec3], radii: &[f32]) -> (Vec<f32>, Vec<f32>) {
