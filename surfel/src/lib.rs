@@ -42,6 +42,7 @@
 //!   out of focus, points are as far apart as the blur is wide. Between two levels it draws pairs of neighbours as one
 //!   disc. Discs become ellipses with exact perspective and are lit; in each pixel those of the nearest surface are
 //!   averaged and composited over what is behind. Points may have opacities ([`Points::with_opacities`]).
+//! * Without normals, [`Cloud::new`] estimates them, and looks for the outside of closed surfaces ([`estimate_normals`]).
 //! * [`Cloud::parts`] and [`Cloud::join`]: a cloud that is too large to be held is prepared in parts, each with the
 //!   points around it, and those parts are drawn together that a view needs.
 //! * [`Focus`]: the paper's parameter d (\[3\], §3), or a thin lens, of which d = aperture/focus is the same.

@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 pub struct Points<'a> {
     /// World.
     pub(crate) positions: &'a [DVec3],
-    /// Outward; of any length above 0. Without them planes are fitted, and the surface is seen from both sides.
+    /// Outward; of any length above 0. Without them they are estimated: see [`crate::Cloud::has_estimated_normals`].
     pub(crate) normals: Option<&'a [Vec3]>,
     /// What light sees in the place of the normals; of any length above 0.
     pub(crate) shading_normals: Option<&'a [Vec3]>,

@@ -266,7 +266,7 @@ fn tell_counts(report: &Report<'_>, cloud: &surfel::Cloud, frame: &surfel::Frame
         report.warn(if counts.points > 0 {
             "nothing was drawn: points are too far apart to cover a pixel, or blurred too much"
         } else if counts.nodes_facing_away > 0 {
-            "nothing was drawn: everything in view faces away; --estimate-normals shows both sides"
+            "nothing was drawn: everything in view faces away; --estimate-normals looks for the outside itself"
         } else {
             "nothing was drawn: no point is in view; without --eye and --target all are"
         });

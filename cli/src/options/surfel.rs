@@ -94,7 +94,7 @@ pub struct DiscOptions {
     /// Do not skip what faces away or is hidden; the picture is the same
     #[arg(long)]
     pub no_cull: bool,
-    /// Fit planes to neighbouring points for normals, even where the file has some
+    /// Estimate normals from neighbouring points, even where the file has some
     #[arg(long)]
     pub estimate_normals: bool,
     /// Draw all points as opaque, whatever opacity the file gives them (`alpha` in a PLY)

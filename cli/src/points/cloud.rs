@@ -202,7 +202,7 @@ impl PointSet {
         }
         if !summary.has_normals {
             warn(
-                "has no normals: planes are fitted to neighbouring points, and the surface is seen from both sides",
+                "has no normals: they are estimated; closed surfaces are seen from outside, others from both sides",
             );
         }
         Ok(())
