@@ -71,7 +71,7 @@ fn shape(shape: &Shape) -> OwnedPoints {
         }
         Shape::Sphere { centre, radius, count } => {
             let radius = f64::from(*radius) / 128.0 + 0.01;
-            OwnedPoints::sphere(steps(*centre), radius, 4 * u32::from(*count))
+            OwnedPoints::sphere(steps(*centre), radius, 2 * u32::from(*count))
         }
     }
 }
@@ -80,20 +80,23 @@ fn repeated(normals: &[[i8; 3]], count: usize) -> Vec<Vec3> {
     normals.iter().map(|n| Vec3::from_array(n.map(f32::from))).cycle().take(count).collect()
 }
 
-/// Points of which parts are made: each of the eight octants of all of them is prepared among all the others.
-const MOST_IN_PARTS: usize = 100;
+/// Points that are drawn: a few more than a leaf of an octree holds. Each input makes a dozen clouds of them, which is most of its time.
+const MOST: usize = 320;
 
-/// Some from all over.
-fn few(points: &OwnedPoints) -> OwnedPoints {
+/// Points of which parts are made: each of the eight octants of all of them is prepared among all the others.
+const MOST_IN_PARTS: usize = 40;
+
+/// At most so many, from all over.
+fn few(points: &OwnedPoints, most: usize) -> OwnedPoints {
     let count = points.positions.len();
-    let numbers: Vec<usize> = (0..count).step_by(count.div_ceil(MOST_IN_PARTS).max(1)).collect();
+    let numbers: Vec<usize> = (0..count.min(most)).map(|i| i * count / count.min(most)).collect();
     points.chosen(&numbers)
 }
 
 fn points(shapes: &[Shape], attributes: &Attributes) -> OwnedPoints {
     let mut shapes = shapes.iter().take(3).map(shape);
     let first = shapes.next().unwrap_or_default();
-    let mut all = shapes.fold(first, |all, next| all.and(&next));
+    let mut all = few(&shapes.fold(first, |all, next| all.and(&next)), MOST);
     let n = all.positions.len();
     if let Some(normals) = attributes.normals.as_ref().filter(|some| !some.is_empty()) {
         all.normals = Some(repeated(normals, n));
@@ -177,18 +180,22 @@ fuzz_target!(|input: (Vec<Shape>, Attributes, Picture, Rules, u64, Option<Vec<[i
     let mut points = points(&shapes, &attributes).resized(k);
     let lit = lit.filter(|some| !some.is_empty() && points.normals.is_some());
     points.shading_normals = lit.map(|some| repeated(&some, points.positions.len()));
-    let few = few(&points);
+    let few = few(&points, MOST_IN_PARTS);
     let options = options(&rules, k);
-    let facts = invariants::octrees_are_sound(&points)
-        .and_then(|()| invariants::frames_are_sound(&points, &view, &options))
-        .and_then(|()| invariants::opaque_points_need_no_opacities(&points, &view, &options))
-        .and_then(|()| invariants::shading_normals_only_shade(&points, &view, &options))
-        .and_then(|()| invariants::order_does_not_matter(&points, &view, &options, seed))
-        .and_then(|()| invariants::culling_changes_nothing(&points, &view, &options))
-        .and_then(|()| invariants::one_color_stays_one_color(&points, &view, &options, [0.25, 1.0, 0.7]))
-        .and_then(|()| invariants::parts_are_the_whole(&few))
-        .and_then(|()| invariants::parts_are_sound(&few, &part_numbers(&few, seed), &division(&picture, k)));
-    if let Err(broken) = facts {
+    let facts = || {
+        invariants::octrees_are_sound(&points)
+            .and_then(|()| invariants::frames_are_sound(&points, &view, &options))
+            .and_then(|()| invariants::opaque_points_need_no_opacities(&points, &view, &options))
+            .and_then(|()| invariants::shading_normals_only_shade(&points, &view, &options))
+            .and_then(|()| invariants::order_does_not_matter(&points, &view, &options, seed))
+            .and_then(|()| invariants::culling_changes_nothing(&points, &view, &options))
+            .and_then(|()| invariants::one_color_stays_one_color(&points, &view, &options, [0.25, 1.0, 0.7]))
+            .and_then(|()| invariants::parts_are_the_whole(&few))
+            .and_then(|()| {
+                invariants::parts_are_sound(&few, &part_numbers(&few, seed), &division(&picture, k))
+            })
+    };
+    if let (Err(broken), ()) = rayon::join(facts, || ()) {
         panic!("{broken}");
     }
 });

@@ -170,8 +170,9 @@ impl Bench {
             let angle = |(a, b): (&Vec3, &Vec3)| f64::from(a.dot(*b).abs().min(1.0)).acos().to_degrees();
             estimated.iter().zip(of).map(angle).sum::<f64>() / of.len() as f64
         };
+        let wrong = estimated.iter().zip(normals).filter(|(e, n)| e.dot(**n) < 0.0).count();
         self.notes.push(format!(
-            "Estimated normals are off by {:.2}° from those of triangles in the mean, and by {:.2}° from smooth ones.",
+            "Estimated normals are off by {:.2}° from those of triangles in the mean, and by {:.2}° from smooth ones; {wrong} of them have the wrong side.",
             off(face_normals),
             off(normals)
         ));

@@ -167,8 +167,8 @@ const LIMITS: &str = "\nWhat limits those that are missed, where they are:\n\n\
     * *1274573 points against 362272*: the larger cloud has more points to draw (*points drawn* under *Speed*), and the ratio of times is that of points. At a level of 1.4, for which there are rows too, it is smaller: 1.27, which small objects gain from, \
       draws more points of the larger cloud only.\n\
     * *The paper's procedure* has no levels between those of the tree, and filters every pixel with kernels as wide as its blur.\n\
-    * *Without normals*: see *Normals* below. Of what is lost, as much as *estimated, sides known* has less than *of triangles, smooth ones for light* is the direction of estimated normals, the rest their sides: discs cannot be refused for facing away, \
-      and those of the far side count at the outline. Rows of smooth normals that are off show what a direction costs.\n";
+    * *Without normals*: see *Normals* below. Of what is lost, as much as *estimated, sides known* has less than *of triangles, smooth ones for light* is the direction of estimated normals, the rest their sides: discs that are seen from both cannot be \
+      refused for facing away, and those of the far side count at the outline. Rows of smooth normals that are off show what a direction costs.\n";
 
 /// Pictures of a scene elsewhere may differ by rounding: so many dB from the unchanged one do not show.
 const ROUNDING: Limit = Limit::AtLeast(60.0);

@@ -121,6 +121,9 @@ pub fn shading_normals_only_shade(
     view: &View,
     options: &Options,
 ) -> Result<(), String> {
+    if points.shading_normals.is_none() {
+        return Ok(());
+    }
     let without = OwnedPoints { shading_normals: None, ..points.clone() };
     let (Some(a), Some(b)) = (frame(points, view, options), frame(&without, view, options)) else {
         return Ok(());
