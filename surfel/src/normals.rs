@@ -16,7 +16,9 @@ use glam::{DVec3, Vec3};
 use pointillist_parallel as parallel;
 use std::f64::consts::PI;
 
-/// Places that a surface is fitted to, the point's own among them.
+/// Places that a surface is fitted to, the point's own among them. Mean angle to the smooth normals of the Stanford Bunny (97,000 points of blue noise),
+/// and with noise of 0.1 and 0.25 spacings along them: 0.50°, 3.8° and 8.9° with 10, 0.68°, 2.8° and 6.4° with 14, 0.90°, 2.2° and 5.0° with 18, 1.19°, 2.0° and 4.0°
+/// with 24, which round off what is thinner. A plane through 14 is off by 1.30°, 2.4° and 5.1°.
 const FITTED: usize = 14;
 
 /// Most rotations of all three pairs of axes. Each squares what is left off the diagonal: about 5 are needed.

@@ -179,6 +179,46 @@ fn a_closed_surface_has_no_holes_at_any_zoom_by_the_paper_too() {
     assert_eq!(holes(&SPHERE, Procedure::Paper), NO_HOLES);
 }
 
+/// Front and back do not mix at the outline, because the back is not drawn.
+#[test]
+fn a_closed_surface_without_normals_looks_as_with_those_of_its_outside() {
+    let given = cloud(&OwnedPoints { normals: Some(outside(&sphere())), ..sphere() }).unwrap();
+    let estimated = cloud(&OwnedPoints { normals: None, ..sphere() }).unwrap();
+    let view = perspective(DVec3::Z * 4.0, DVec3::ZERO, 0.7);
+    let [given, estimated] = [given, estimated].map(|cloud| drawn(&cloud, &view, &with(|_| {})).unwrap());
+    let most =
+        given.color().iter().zip(estimated.color()).map(|(a, b)| (a[3] - b[3]).abs()).fold(0.0, f32::max);
+    assert!(most < 0.01, "opacity differs by {most}");
+    assert!(estimated.counts().points <= given.counts().points);
+}
+
+fn outside(sphere: &OwnedPoints) -> Vec<Vec3> {
+    sphere.positions.iter().map(|p| p.as_vec3().normalize()).collect()
+}
+
+/// An orthographic eye whose plane cuts it does, too.
+#[test]
+fn a_sphere_that_is_cut_open_shows_its_inside() {
+    let cloud = cloud(&OwnedPoints { normals: None, ..sphere() }).unwrap();
+    let camera = Projection::Orthographic { height: 1.0 };
+    let view = View::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, camera, 64, 64).unwrap();
+    let drawn = drawn(&cloud, &view, &with(|_| {})).unwrap();
+    assert!((0..64 * 64).all(|i| alpha(&drawn, i) > 0.999));
+}
+
+#[test]
+fn an_open_surface_without_normals_is_seen_from_both_sides() {
+    let cloud = cloud(&OwnedPoints {
+        normals: None,
+        ..OwnedPoints::plane(DVec3::ZERO, DVec3::X * 0.05, DVec3::Y * 0.05, 40, 40)
+    })
+    .unwrap();
+    for eye in [DVec3::Z * 4.0, -DVec3::Z * 4.0] {
+        let drawn = drawn(&cloud, &perspective(eye, DVec3::ZERO, 0.1), &with(|_| {})).unwrap();
+        assert!((0..drawn.depth().len()).all(|i| alpha(&drawn, i) > 0.999), "from {eye}");
+    }
+}
+
 /// The eye in it sees the inside, without a hole, where normals have no sign.
 #[test]
 fn a_sphere_around_the_eye_has_no_holes() {
