@@ -1,6 +1,9 @@
 //! Averages over neighbouring places where light comes from far away: their rays count for one another (\[8\]'s test for interpolation).
 //! Places behind a wall and places in front of it are no neighbours, however close they are: a surface that reaches into a wall has both.
 
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
 use glam::DVec3;
 
 use super::gather::Gathered;
@@ -11,7 +14,7 @@ use pointillist_parallel as parallel;
 const APART: f64 = 0.15;
 /// Weight of normals in that model.
 const TURN: f64 = 1.5;
-/// Neighbours of a place, about, at most.
+/// Neighbours of a place, itself included, at most.
 const MOST: usize = 64;
 /// Places in a cell of the tree.
 const LEAF: usize = 8;
@@ -42,13 +45,14 @@ impl<'p> Places<'p> {
         gathered: &[Gathered],
         which: &[usize],
     ) -> Vec<(Rgb, f64)> {
-        parallel::map_with(which.len(), Vec::new, |near, k| {
+        let room = || BinaryHeap::with_capacity(MOST);
+        parallel::map_with(which.len(), room, |near, k| {
             let i = which[k];
             let (at, reach) = (self.positions[i], gathered[i].reach());
             let (mut sum, mut weights, mut errors) = ([0.0; 3], 0.0, 0.0);
             self.within(at, APART * reach, near);
-            for &(distance2, j) in &*near {
-                let (j, other) = (j as usize, &gathered[j as usize]);
+            for &Near { distance2, place } in &*near {
+                let (j, other) = (place as usize, &gathered[place as usize]);
                 if other.is_covered() != gathered[i].is_covered()
                     || (distance2 == 0.0 && self.are_parted(i, j))
                 {
@@ -89,47 +93,104 @@ impl<'p> Places<'p> {
         self.build(2 * cell + 1, middle, to);
     }
 
-    /// Places nearer than a radius, with their squared distances; nearer than less if these are more than [`MOST`].
-    fn within(&self, point: DVec3, radius: f64, near: &mut Vec<(f64, u32)>) {
+    /// The nearest [`MOST`] places within a radius, with their squared distances, in no order.
+    fn within(&self, point: DVec3, radius: f64, near: &mut BinaryHeap<Near>) {
         near.clear();
-        self.visit((1, 0, self.order.len()), point, radius * radius, near);
-        if near.len() > MOST {
-            // On a surface they are as many as the square of the radius.
-            let within2 = radius * radius * MOST as f64 / near.len() as f64;
-            near.retain(|&(distance2, _)| distance2 <= within2);
-        }
+        self.visit((1, 0, self.order.len()), point, &mut (radius * radius), near);
     }
 
+    /// `within2` becomes less once there are enough.
     fn visit(
         &self,
         (cell, from, to): (usize, usize, usize),
         point: DVec3,
-        within2: f64,
-        near: &mut Vec<(f64, u32)>,
+        within2: &mut f64,
+        near: &mut BinaryHeap<Near>,
     ) {
-        let (low, high) = self.cells[cell];
-        if from == to || (point - point.clamp(low, high)).length_squared() > within2 {
-            return;
-        }
         if 2 * cell >= self.cells.len() {
-            for &i in &self.order[from..to] {
-                let distance2 = (self.positions[i as usize] - point).length_squared();
-                if distance2 <= within2 {
-                    near.push((distance2, i));
+            for &place in &self.order[from..to] {
+                let own =
+                    Near { distance2: (self.positions[place as usize] - point).length_squared(), place };
+                if own.distance2 > *within2 {
+                    continue;
+                }
+                if near.len() < MOST {
+                    near.push(own);
+                } else if let Some(mut last) = near.peek_mut().filter(|last| own < **last) {
+                    *last = own;
+                }
+                if near.len() == MOST {
+                    *within2 = near.peek().map_or(*within2, |last| last.distance2);
                 }
             }
             return;
         }
         let middle = from + (to - from) / 2;
-        self.visit((2 * cell, from, middle), point, within2, near);
-        self.visit((2 * cell + 1, middle, to), point, within2, near);
+        let halves = [(2 * cell, from, middle), (2 * cell + 1, middle, to)];
+        let distances = halves.map(|(half, ..)| {
+            let (low, high) = self.cells[half];
+            (point - point.clamp(low, high)).length_squared()
+        });
+        let nearer = usize::from(distances[1] < distances[0]);
+        for half in [nearer, 1 - nearer] {
+            let (_, from, to) = halves[half];
+            if from < to && distances[half] <= *within2 {
+                self.visit(halves[half], point, within2, near);
+            }
+        }
+    }
+}
+
+/// A place near another one; of two at the same distance that of the smaller number is nearer.
+#[derive(Clone, Copy, PartialEq)]
+struct Near {
+    distance2: f64,
+    place: u32,
+}
+
+impl Eq for Near {}
+
+impl PartialOrd for Near {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Near {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.distance2.total_cmp(&other.distance2).then(self.place.cmp(&other.place))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rays::sequence::mix;
     use glam::dvec3;
+
+    #[test]
+    fn the_nearest_places_are_found() {
+        let number = |i: u64| (mix(i) >> 40) as f64 / (1_u64 << 24) as f64;
+        // Some are at the same position.
+        let positions: Vec<DVec3> = (0..3000_u64)
+            .map(|i| i % 2900)
+            .map(|i| dvec3(number(i), number(i + 5000), number(i + 9000)))
+            .collect();
+        let sides = vec![0; positions.len()];
+        let places = Places::new(&positions, &sides);
+        let mut near = BinaryHeap::new();
+        for (&point, radius) in positions.iter().step_by(37).zip([0.05, 0.2, 0.0].into_iter().cycle()) {
+            places.within(point, radius, &mut near);
+            let of =
+                |place: u32| Near { distance2: (positions[place as usize] - point).length_squared(), place };
+            let mut all: Vec<Near> =
+                (0..3000).map(of).filter(|near| near.distance2 <= radius * radius).collect();
+            all.sort();
+            all.truncate(MOST);
+            let found: Vec<u32> = near.clone().into_sorted_vec().iter().map(|near| near.place).collect();
+            assert_eq!(found, all.iter().map(|near| near.place).collect::<Vec<_>>());
+        }
+    }
 
     /// The foot of a wall that reaches into another one has vertices where its visible part has some: half of the light of both was a dark dash along the corner.
     #[test]

@@ -5,7 +5,7 @@
 use glam::{DVec3, Vec3, Vec4};
 
 /// Triangles in a leaf, at most.
-const LEAF: usize = 4;
+const LEAF: usize = 2;
 /// Places along each axis where a split is tried.
 const BINS: usize = 16;
 /// By this boxes are larger than what they hold: more than single precision rounds coordinates of up to 1.
