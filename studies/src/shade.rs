@@ -2,12 +2,12 @@
 
 use crate::common::provenance::provenance;
 use crate::common::report::{Outcome, write};
+use crate::common::timing::{Clock, HOW, Timing, timed, timed_by};
 use glam::{DVec3, Vec3, vec3};
 use pointillist_shade::{CubeMap, Environment, Material, MerlTable, Model, coat_albedo, directional_albedo};
 use std::fmt::Write as _;
 use std::hint::black_box;
 use std::path::Path;
-use std::time::Instant;
 
 /// Angles from the normal, in degrees.
 const ANGLES: [f32; 6] = [0.0, 30.0, 60.0, 75.0, 85.0, 88.0];
@@ -35,7 +35,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
         "# Reflection\n\n`cargo run --release -p studies -- shade` made this ({}).\n\n## Energy\n\nThe share of light that leaves again, by \
          the angle of the eye to the normal: ∫ f (n·l) dl with {STEPS}² cells packed towards the mirror direction. White \
          surfaces: 1 is all light. *Exchanged*: the largest relative difference after exchanging light and eye, over {PAIRS} pairs. *ns*: an \
-         evaluation, called through a pointer.\n\n| BRDF |",
+         evaluation, called through a pointer. {HOW}\n\n| BRDF |",
         provenance()
     );
     for angle in ANGLES {
@@ -125,15 +125,15 @@ fn exchanged(subject: &Subject) -> f32 {
     pairs().map(difference).fold(0.0, f32::max)
 }
 
-fn nanoseconds(subject: &Subject) -> f64 {
+/// Of one evaluation.
+fn nanoseconds(subject: &Subject) -> Timing {
     let list: Vec<(Vec3, Vec3)> = pairs().collect();
     let once = || {
-        let start = Instant::now();
         let sum: Vec3 = list.iter().map(|&(l, v)| (subject.brdf)(l, v)).sum();
         black_box(sum);
-        start.elapsed().as_secs_f64() * 1e9 / f64::from(PAIRS)
     };
-    (0..9).map(|_| once()).fold(f64::INFINITY, f64::min)
+    let (all, ()) = timed_by(Clock::Processor, once);
+    Timing { seconds: all.seconds * 1e9 / f64::from(PAIRS), ..all }
 }
 
 /// The tabulated albedo of a coat against quadrature.
@@ -162,13 +162,9 @@ fn environment_table(text: &mut String) -> std::fmt::Result {
         let sun = (200.0 * (d.dot(DVec3::new(0.48, 0.6, 0.64)) - 1.0)).exp();
         (0.5 + 0.5 * d.y + 4.0 * sun) as f32
     };
-    let start = Instant::now();
-    let map = Environment::sharp(CubeMap::from_function(256, |d| Vec3::splat(sky(d))));
-    let sharp = start.elapsed().as_secs_f64();
-    let map = map.with_rough_levels();
-    let rough = start.elapsed().as_secs_f64() - sharp;
-    let map = map.with_irradiance();
-    let irradiance = start.elapsed().as_secs_f64() - sharp - rough;
+    let (sharp, map) = timed(|| Environment::sharp(CubeMap::from_function(256, |d| Vec3::splat(sky(d)))));
+    let (rough, map) = timed(|| map.clone().with_rough_levels());
+    let (irradiance, map) = timed(|| map.clone().with_irradiance());
     write!(
         text,
         "\n## Mirrored surroundings\n\nA gradient from 0 to 1 with a sun of 4 that is 8° wide, on a cube of 256² a face ({sharp:.2} s), with \
