@@ -176,7 +176,7 @@ const SEEN: &str = "\
      The pictures: [two rooms](../../docs/together-rooms.jpg), [Sponza](../../docs/together-sponza.jpg), \
      [Šibenik](../../docs/together-sibenik.jpg), each by paths, by radiosity, by 86 and by 192 probes. What is to be seen in them at full size, \
      plain and brightened by two stops: in the two rooms, by probes, nothing but soft brighter and darker places beside the foot of the doorway; by 192 probes a bright dash under the foremost capital of Sponza, \
-     which no probe sees: one that sees it by a fifth, from behind a column, has four fifths of the say there; and in Šibenik, by probes, specks and faint bright streaks on the left wall, and all of it too dark. (Sponza's and Šibenik's pictures and rows are of the code before the change that took the scallops out of the two rooms.)\n";
+     which no probe sees: one that sees it by a fifth, from behind a column, has four fifths of the say there; the foot of the door on the left is too bright there; and in Šibenik, by probes, some specks at ledges of the left wall, and all of it too dark.\n";
 
 fn building(site: &Site, folder: Option<&Path>, text: &mut String) -> Result<(), Fault> {
     let reference = Reference::new(&site.scene, PATHS);
