@@ -12,7 +12,7 @@ use crate::common::data;
 use crate::common::provenance::provenance;
 use crate::common::report::{Outcome, on_threads, write};
 use crate::common::scenes::Sketch;
-use crate::common::timing::{Clock, HOW, timed_part};
+use crate::common::timing::{Clock, HOW, slowdown, timed_part};
 
 /// A picture to be drawn.
 struct Subject {
@@ -101,6 +101,16 @@ fn measure(program: &Path, folder: &Path, text: &mut String) -> Result<String, s
         text,
         "\n| picture | tiles: 1 thread / {cores} threads | memory added by twice the resolution, MiB |\n| --- | ---: | ---: |\n{ratios}"
     );
+    if cores > 1 {
+        let longer = slowdown(cores);
+        let _ = writeln!(
+            text,
+            "\nFixed work that needs no memory takes {:.2} ± {:.2} times as long on {cores} threads at once as on one: they do {:.2} times as much of it in the same time on this machine.",
+            longer.value,
+            longer.spread,
+            cores as f64 / longer.value
+        );
+    }
     if data::folder().is_none() {
         *text += &format!("\n{}\n", data::SKIPPED);
     }

@@ -10,7 +10,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use crate::common::report::Limit;
+use crate::common::report::{Limit, on_threads};
 use cpu_time::ThreadTime;
 
 /// How much longer the calibration may take around a run.
@@ -171,17 +171,22 @@ impl Ratio {
 
 /// How much longer `work` takes than `other`: both in turns, so that what else the machine does meets both alike.
 pub(crate) fn ratio(clock: Clock, mut work: impl FnMut(), mut other: impl FnMut()) -> Ratio {
-    /// Pairs of runs, an odd number; the first pair warms up and does not count.
-    const PAIRS: usize = 15;
     let now = clock.start();
     let seconds = |work: &mut dyn FnMut()| {
         let begin = now();
         work();
         now() - begin
     };
+    ratio_of(|| seconds(&mut work), || seconds(&mut other))
+}
+
+/// [`ratio`] of work that says how long it took.
+fn ratio_of(mut work: impl FnMut() -> f64, mut other: impl FnMut() -> f64) -> Ratio {
+    /// Pairs of runs, an odd number; the first pair warms up and does not count.
+    const PAIRS: usize = 15;
     let mut pair = |_| {
-        let own = seconds(&mut work);
-        own / seconds(&mut other)
+        let own = work();
+        own / other()
     };
     pair(0);
     Ratio::of((0..PAIRS).map(pair).collect())
@@ -204,6 +209,13 @@ pub(crate) fn least_seconds<E>(
         done += 1;
     }
     Ok(least)
+}
+
+/// How much longer fixed work takes on so many threads at once than on one: 1 where each has a processor core of its own.
+pub(crate) fn slowdown(threads: usize) -> Ratio {
+    let on = |threads: usize| move || on_threads(threads, || calibration(Clock::Wall));
+    let (many, one) = (on(threads), on(1));
+    ratio_of(many, one)
 }
 
 /// Seconds that the calibration takes now; by the wall clock on all threads of the pool at once, the slowest of them.
