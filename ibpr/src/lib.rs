@@ -81,6 +81,7 @@ mod render;
 mod rules;
 mod scan;
 mod shade;
+mod solid_row;
 mod spacing;
 mod stray;
 mod wanted;

@@ -37,11 +37,6 @@ impl Nearest {
         self.rim_paint.resize(painted, Paint::NONE);
     }
 
-    /// Whether any face touches a pixel.
-    pub(crate) fn is_covered(&self, at: usize) -> bool {
-        self.solid[at][0] < f32::INFINITY || self.rim_cover[at] > 0.0
-    }
-
     /// Puts a coarser pass over this one at these pixels, except where this shows another surface in front.
     pub(crate) fn draw_over(
         &mut self,

@@ -19,7 +19,7 @@ use crate::parallel::*;
 use crate::pixels::{Nearest, Stack};
 use crate::raster::{Pixels, Strip};
 use crate::rules::Rules;
-use crate::shade::{RowsOut, Shaded, Shader};
+use crate::shade::{RowsOut, Shader};
 use crate::stray;
 use crate::wanted::Wanted;
 use glam::Vec3;
@@ -229,10 +229,13 @@ impl Drawing<'_> {
             }
             let scale = self.rules[0].as_ref().map(|r| r.scale);
             let together = |q: f32| scale.map_or(0.0, |s| s.bent_step(q, 1.0));
-            self.finish(&part, out, |i, place| {
-                let fragments = first.pixels.of(i);
-                (!fragments.is_empty())
-                    .then(|| self.shader.through(fragments, place, alpha, self.colored, together))
+            self.finish(&part, out, |range, place, out| {
+                for (column, i) in (place.0..).zip(range) {
+                    let place = (column, place.1);
+                    let shaded =
+                        self.shader.through(first.pixels.of(i), place, alpha, self.colored, together);
+                    self.shader.write(&shaded, out, i);
+                }
             });
         } else {
             let [first, second] = &mut scratch.nearest;
@@ -242,9 +245,8 @@ impl Drawing<'_> {
             if let Some(rules) = &self.rules[1] {
                 first.pixels.draw_over(&second.pixels, pixels(), &rules.scale, STEP);
             }
-            let pixels = &first.pixels;
-            self.finish(&part, out, |i, place| {
-                pixels.is_covered(i).then(|| self.shader.nearest(pixels, i, place, self.colored))
+            self.finish(&part, out, |range, place, out| {
+                self.shader.nearest_row(&first.pixels, range, place, self.colored, out);
             });
         }
     }
@@ -260,23 +262,19 @@ impl Drawing<'_> {
             .unwrap_or(self.columns.start..self.columns.start)
     }
 
-    /// Writes what `shade` says about each pixel of a part, given its index there and its place in the
-    /// picture, and that there is nothing beside it.
+    /// Has each row of a part written by `row`, given its pixels in the strip and the column and row in the picture of
+    /// the first, and says that there is nothing beside it.
     fn finish(
         &self,
         part: &Part,
         out: &mut RowsOut<'_>,
-        shade: impl Fn(usize, (usize, usize)) -> Option<Shaded>,
+        row: impl Fn(Range<usize>, (usize, usize), &mut RowsOut<'_>),
     ) {
-        for row in 0..part.rows {
-            let at = |columns: Range<usize>| row * self.width + columns.start..row * self.width + columns.end;
+        for i in 0..part.rows {
+            let at = |columns: Range<usize>| i * self.width + columns.start..i * self.width + columns.end;
             out.clear(at(self.columns.start..part.columns.start));
             out.clear(at(part.columns.end..self.columns.end));
-            for column in part.columns.clone() {
-                let i = row * self.width + column;
-                let shaded = shade(i, (column, part.first_row + row)).unwrap_or(Shaded::NOTHING);
-                self.shader.write(&shaded, out, i);
-            }
+            row(at(part.columns.clone()), (part.columns.start, part.first_row + i), out);
         }
     }
 

@@ -5,15 +5,18 @@ use crate::options::Options;
 use crate::pixels::{Fragment, Nearest};
 use crate::raster::Paint;
 use crate::scan::unit;
+use crate::solid_row::SolidRow;
 use glam::{DVec3, Vec3};
 use pointillist_view::Light;
+use pulp::Arch;
 use std::ops::Range;
 
 /// Shading and output of a frame: everything in the camera's frame (right, up, back).
 pub(crate) struct Shader {
-    light: Option<Vec3>,
+    /// Towards the light; none if it is at the eye.
+    pub(crate) light: Option<Vec3>,
     ambient: f32,
-    base: Vec3,
+    pub(crate) base: Vec3,
     /// World axes of the camera's frame.
     axes: [Vec3; 3],
     /// Slopes of the rays: (px − centre) · slope.
@@ -55,19 +58,51 @@ impl Shader {
     #[inline]
     fn shaded(&self, surface: &[f32; 4], place: (usize, usize), paint: Option<&Paint>) -> Vec3 {
         let n = Vec3::new(surface[1], surface[2], surface[3]);
-        let towards_light = self.light.unwrap_or_else(|| {
-            let u = (place.0 as f32 + 0.5 - self.centre.0) * self.ray_slope;
-            let v = (place.1 as f32 + 0.5 - self.centre.1) * self.ray_slope;
-            Vec3::new(-u, v, 1.0)
-        });
-        let lengths2 = n.length_squared() * towards_light.length_squared();
-        let facing = if lengths2 > 0.0 { n.dot(towards_light).max(0.0) / lengths2.sqrt() } else { 0.0 };
+        let towards_light = self.light.unwrap_or_else(|| self.towards_eye(place));
         let color = paint.map_or(self.base, |p| Vec3::from_slice(&p.color[..3]));
-        color * (self.ambient + (1.0 - self.ambient) * facing)
+        color * self.lit(n, towards_light)
+    }
+
+    /// From what a pixel shows to the eye.
+    #[inline(always)]
+    pub(crate) fn towards_eye(&self, place: (usize, usize)) -> Vec3 {
+        let u = (place.0 as f32 + 0.5 - self.centre.0) * self.ray_slope;
+        let v = (place.1 as f32 + 0.5 - self.centre.1) * self.ray_slope;
+        Vec3::new(-u, v, 1.0)
+    }
+
+    /// A + (1 − A)·max(0, n·l), both of any length.
+    #[inline(always)]
+    pub(crate) fn lit(&self, n: Vec3, towards_light: Vec3) -> f32 {
+        let lengths2 = n.length_squared() * towards_light.length_squared();
+        let facing = n.dot(towards_light).max(0.0) / lengths2.sqrt();
+        self.ambient + (1.0 - self.ambient) * if lengths2 > 0.0 { facing } else { 0.0 }
+    }
+
+    /// A row of pixels, `range` in the strip and in `out`, from `place` on: the nearest surface of each.
+    pub(crate) fn nearest_row(
+        &self,
+        pixels: &Nearest,
+        range: Range<usize>,
+        place: (usize, usize),
+        colored: bool,
+        out: &mut RowsOut<'_>,
+    ) {
+        let plain = !colored && out.surface.is_none();
+        if plain {
+            let (surfaces, color) = (&pixels.solid[range.clone()], &mut out.color[range.clone()]);
+            let depth = &mut out.depth[range.clone()];
+            Arch::new().dispatch(SolidRow { shader: self, place, surfaces, color, depth });
+        }
+        for (column, i) in (place.0..).zip(range) {
+            if !plain || pixels.rim_cover[i] > 0.0 {
+                self.write(&self.nearest(pixels, i, (column, place.1), colored), out, i);
+            }
+        }
     }
 
     /// The nearest surface of a pixel, with a rim in front of it blended over what is behind.
-    pub(crate) fn nearest(&self, pixels: &Nearest, i: usize, place: (usize, usize), colored: bool) -> Shaded {
+    fn nearest(&self, pixels: &Nearest, i: usize, place: (usize, usize), colored: bool) -> Shaded {
         let (solid, cover) = (&pixels.solid[i], pixels.rim_cover[i]);
         let has_solid = solid[0] < f32::INFINITY;
         let has_rim = cover > 0.0 && pixels.rim[i][0] < solid[0];
@@ -132,9 +167,12 @@ impl Shader {
 
     /// Distance along the view axis in world units; +∞ stays +∞.
     fn depth(&self, q: f32) -> f32 {
-        if q == f32::INFINITY {
-            return q;
-        }
+        if q == f32::INFINITY { q } else { self.depth_of_shown(q) }
+    }
+
+    /// [`depth`](Self::depth) of a surface.
+    #[inline(always)]
+    pub(crate) fn depth_of_shown(&self, q: f32) -> f32 {
         let d = f64::from(q / (1.0 - self.bend * q));
         let depth = ((d + self.reference) * self.unit) as f32;
         // An outline may reach a little beyond the plane of the eye.

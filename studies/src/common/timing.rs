@@ -156,12 +156,6 @@ impl Ratio {
         Limit::AtMost(bound).verdict(self.value, self.spread)
     }
 
-    /// Of two medians: half of either's range may be missing or too much.
-    pub(crate) fn of_timings(time: Timing, other: Timing) -> Self {
-        let value = time.seconds / other.seconds;
-        Self { value, spread: value * 0.5 * (time.spread + other.spread) }
-    }
-
     fn of(mut ratios: Vec<f64>) -> Self {
         ratios.sort_by(f64::total_cmp);
         let at = |share: f64| ratios[(share * (ratios.len() - 1) as f64).round() as usize];

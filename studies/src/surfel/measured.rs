@@ -14,7 +14,7 @@ pub(crate) struct Measured {
     /// Processor seconds on one thread, and seconds on all.
     pub(crate) cpu: Timing,
     pub(crate) wall: Timing,
-    /// Processor time over that of the row that the section names, if it names one.
+    /// Processor time over that of what the section names, if it names one.
     pub(crate) ratio: Option<Ratio>,
     pub(crate) error: LayerError,
     /// Of the cloud, world units.

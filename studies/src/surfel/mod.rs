@@ -8,6 +8,7 @@ mod lens_samples;
 mod lens_scenes;
 mod measured;
 mod same;
+mod sheets;
 mod stage;
 mod study;
 mod tables;

@@ -7,7 +7,7 @@ use pointillist_surfel::{
 
 use crate::common::picture_layers::PictureLayers;
 use crate::common::report::on_one_thread;
-use crate::common::timing::{Clock, Timing, timed, timed_by};
+use crate::common::timing::{Clock, Ratio, Timing, ratio, timed, timed_by};
 use crate::common::true_surface::Surface;
 use crate::surfel::layer_error::LayerMeasure;
 use crate::surfel::lens_camera::{LensCamera, Matt};
@@ -52,6 +52,20 @@ pub(crate) fn times(
     Ok([cpu, wall])
 }
 
+/// Processor time of some work over that of another, both in turns on one thread.
+pub(crate) fn in_turns(
+    mut work: impl FnMut() -> Result<(), SurfelError> + Send,
+    mut other: impl FnMut() -> Result<(), SurfelError> + Send,
+) -> Result<Ratio, SurfelError> {
+    let (mut own, mut others) = (Ok(()), Ok(()));
+    let found = on_one_thread(|| {
+        let work = || own = own.clone().and_then(|()| work());
+        let other = || others = others.clone().and_then(|()| other());
+        ratio(Clock::Processor, work, other)
+    });
+    own.and(others).map(|()| found)
+}
+
 /// Something to draw, with its truth.
 pub(crate) struct Stage {
     pub(crate) name: String,
@@ -86,11 +100,33 @@ impl Stage {
         setting: String,
         options: &Options,
     ) -> Result<Measured, SurfelError> {
-        let (view, mut renderer, mut frame) = (view(&self.camera), Renderer::new(), Frame::default());
-        let times = times(|| renderer.draw(cloud, &view, options, &mut frame))?;
+        let times = times(self.frames(cloud, options))?;
         let (picture, counts) = drawn(cloud, &self.camera, options)?;
         let series = name(options.procedure);
         Ok(self.row(cloud, (series, setting), counts.points, times, &picture))
+    }
+
+    /// [`measured`](Self::measured), and how much longer the same takes than in another scene or of another cloud.
+    pub(crate) fn compared(
+        &self,
+        cloud: &Cloud,
+        setting: String,
+        options: &Options,
+        (other, other_cloud): (&Self, &Cloud),
+    ) -> Result<Measured, SurfelError> {
+        let others = at_level(options.level, other.options(options.procedure));
+        let ratio = in_turns(self.frames(cloud, options), other.frames(other_cloud, &others))?;
+        Ok(Measured { ratio: Some(ratio), ..self.measured(cloud, setting, options)? })
+    }
+
+    /// Draws one more frame each time that it is called.
+    pub(crate) fn frames<'a>(
+        &self,
+        cloud: &'a Cloud,
+        options: &'a Options,
+    ) -> impl FnMut() -> Result<(), SurfelError> + Send + use<'a> {
+        let (view, mut renderer, mut frame) = (view(&self.camera), Renderer::new(), Frame::default());
+        move || renderer.draw(cloud, &view, options, &mut frame)
     }
 
     /// What was measured of a picture, as the report has it.
@@ -106,6 +142,12 @@ impl Stage {
         let (scene, spacing) = (self.name.clone(), cloud.spacing());
         Measured { scene, series, setting, points, cpu, wall, ratio: None, error, spacing }
     }
+}
+
+/// The same at another level of detail.
+pub(crate) fn at_level(level: f32, mut options: Options) -> Options {
+    options.level = level;
+    options
 }
 
 /// What reports call it.

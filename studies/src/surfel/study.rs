@@ -5,19 +5,22 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::{DVec3, Quat, Vec3};
-use pointillist_surfel::{Cloud, Method, Points, Procedure, SampleOptions, SurfelError, estimate_normals};
+use pointillist_surfel::{
+    Cloud, Method, Options, Points, Procedure, SampleOptions, SurfelError, estimate_normals,
+};
 
 use crate::common::charts::chart_of;
 use crate::common::data;
 use crate::common::picture_layers::PictureLayers;
 use crate::common::report::{Outcome, write, write_csv};
-use crate::common::timing::{HOW, Ratio};
+use crate::common::timing::HOW;
 use crate::common::true_surface::Surface;
 use crate::surfel::coloured_cloud::ColouredCloud;
 use crate::surfel::lens_scenes::{above, front, front_from, lens_name};
 use crate::surfel::measured::Measured;
 use crate::surfel::same::{Same, compare};
-use crate::surfel::stage::{Effort, PROCEDURES, Stage};
+use crate::surfel::sheets;
+use crate::surfel::stage::{Effort, PROCEDURES, Stage, at_level};
 use crate::surfel::tables::{COLUMNS, Section, csv_rows, markdown};
 
 /// Points of the paper's cloud, and of the bunny's own ten scans together.
@@ -87,7 +90,9 @@ fn measure(effort: Effort, out_dir: &Path) -> Outcome {
     let rows = csv_rows(&sections);
     write_csv(out_dir, "surfel", &COLUMNS, &rows)?;
     chart_of(out_dir, "surfel", "colour, RMSE of sRGB", &rows)?;
-    write(out_dir, "surfel.md", &markdown(&bench.setup(), &sections, &same))?;
+    eprintln!("surfel: two sheets");
+    let two_sheets = sheets::table()?;
+    write(out_dir, "surfel.md", &markdown(&bench.setup(), &sections, &two_sheets, &same))?;
     eprintln!("surfel: {:.0} s", start.elapsed().as_secs_f64());
     // A picture that depends on threads or on the order of points is a fault, however fast.
     Ok(same.iter().all(|s| s.same_bytes || s.may_differ))
@@ -148,12 +153,12 @@ impl Bench {
             (of_points(SCANNED_POINTS, ""), &self.large_ready),
             (of_points(ldi.len(), " by rays"), &ldi),
         ] {
-            clouds.extend(by_both(&stage, cloud, &name)?);
+            clouds.extend(by_both(&stage, cloud, &name, None)?);
         }
         stage.name = "radii".to_owned();
         for factor in RADII {
             let cloud = self.small.clone().with_radii_times(factor).ready()?;
-            radii.extend(by_both(&stage, &cloud, &format!("radii × {factor}"))?);
+            radii.extend(by_both(&stage, &cloud, &format!("radii × {factor}"), None)?);
         }
         Ok([
             Section { title: "Clouds, 512×512", ratio: None, rows: clouds },
@@ -202,20 +207,20 @@ impl Bench {
     /// Levels of detail at all sizes of the object.
     fn sizes(&self) -> Result<Section, SurfelError> {
         let mut rows: Vec<Measured> = vec![];
-        for (distances, name) in SIZES {
+        let stages = SIZES.map(|(distances, name)| {
             let setting = front_from(&self.surface, LARGE_SIZE, distances);
-            let stage = Stage::new(name, &self.surface, setting, &self.effort);
+            Stage::new(name, &self.surface, setting, &self.effort)
+        });
+        let cloud = &self.large_ready;
+        for (i, stage) in stages.iter().enumerate() {
+            let full = (i > 0).then_some((&stages[0], cloud));
             for level in LEVELS {
                 for procedure in procedures_at(level) {
-                    let mut options = stage.options(procedure);
-                    options.level = level;
-                    rows.push(stage.measured(&self.large_ready, format!("level {level}"), &options)?);
+                    let options = at_level(level, stage.options(procedure));
+                    rows.push(row(stage, cloud, format!("level {level}"), &options, full)?);
                 }
             }
         }
-        compare_times(&mut rows, |row, other| {
-            other.scene == SIZES[0].1 && (other.series, &other.setting) == (row.series, &row.setting)
-        });
         let title = "Levels of detail: 362272 points, 1024×1024";
         Ok(Section { title, ratio: Some("of the full size by the same level"), rows })
     }
@@ -224,58 +229,47 @@ impl Bench {
     fn speed(&self) -> Result<Section, SurfelError> {
         let most = sampled(&self.surface, self.effort.method, self.effort.most_points)?.ready()?;
         let mut rows: Vec<Measured> = vec![];
-        for (size, clouds) in
-            [(PAPERS_SIZE, vec![&self.small_ready]), (LARGE_SIZE, vec![&self.large_ready, &most])]
-        {
-            let stage = Stage::new("speed", &self.surface, front(&self.surface, size), &self.effort);
-            for cloud in clouds {
-                let setting = format!("{} points at {size}²", cloud.len());
-                rows.extend(by_both(&stage, cloud, &setting)?);
-                if size == LARGE_SIZE {
-                    let mut options = stage.options(Procedure::Blended);
-                    options.level = COARSER_LEVEL;
-                    rows.push(stage.measured(
-                        cloud,
-                        format!("{setting}, level {COARSER_LEVEL}"),
-                        &options,
-                    )?);
-                }
-            }
+        let [small, large] = [PAPERS_SIZE, LARGE_SIZE]
+            .map(|size| Stage::new("speed", &self.surface, front(&self.surface, size), &self.effort));
+        let compared = Some((&large, &self.large_ready));
+        let setting = |cloud: &Cloud, size: u32| format!("{} points at {size}²", cloud.len());
+        let of_papers = setting(&self.small_ready, PAPERS_SIZE);
+        rows.extend(by_both(&small, &self.small_ready, &of_papers, compared)?);
+        for (cloud, compared) in [(&self.large_ready, None), (&most, compared)] {
+            let setting = setting(cloud, LARGE_SIZE);
+            rows.extend(by_both(&large, cloud, &setting, compared)?);
+            let coarser = at_level(COARSER_LEVEL, large.options(Procedure::Blended));
+            rows.push(row(&large, cloud, format!("{setting}, level {COARSER_LEVEL}"), &coarser, compared)?);
         }
-        let large = self.large_ready.len().to_string();
-        let level = |m: &Measured| m.setting.split_once(", ").map(|(_, level)| level.to_owned());
-        compare_times(&mut rows, |row, other| {
-            other.series == row.series && level(other) == level(row) && other.setting.starts_with(&large)
-        });
-        Ok(Section { title: "Speed, front", ratio: Some("of 362272 points at 1024²"), rows })
+        Ok(Section {
+            title: "Speed, front",
+            ratio: Some("of 362272 points at 1024², by the same level"),
+            rows,
+        })
     }
 
     /// Depth of field against the mean of views from all over the lens.
     fn lenses(&mut self) -> Result<Section, SurfelError> {
         let (mut rows, mut blurs) = (vec![], vec![]);
-        for px in BLURS {
+        let stages = BLURS.map(|px| {
             let share = f64::from(px) / f64::from(REFERENCE_BLUR);
             let setting = above(&self.surface, PAPERS_SIZE, share);
-            let stage = Stage::new(&lens_name(px), &self.surface, setting, &self.effort);
+            Stage::new(&lens_name(px), &self.surface, setting, &self.effort)
+        });
+        for (px, stage) in BLURS.into_iter().zip(&stages) {
             if px == REFERENCE_BLUR {
-                self.note_reference(&stage, "dof.exr");
+                self.note_reference(stage, "dof.exr");
             }
-            blurs.push(format!("{:.1}", largest_blur(&stage, &self.small.positions)));
-            rows.extend(by_both(&stage, &self.small_ready, &format!("{PAPERS_POINTS} points"))?);
+            blurs.push(format!("{:.1}", largest_blur(stage, &self.small.positions)));
+            let cloud = &self.small_ready;
+            let sharp = (px > 0).then_some((&stages[0], cloud));
+            rows.extend(by_both(stage, cloud, &format!("{PAPERS_POINTS} points"), sharp)?);
             for views in self.effort.views.iter().filter(|_| px > 0) {
                 eprintln!("surfel: {}: {views} views", stage.name);
-                rows.push(stage.measured_views(&self.small_ready, *views)?);
+                rows.push(stage.measured_views(cloud, *views)?);
             }
         }
         self.notes.push(format!("The lenses blur by up to {} px.", blurs.join(", ")));
-        compare_times(&mut rows, |row, other| {
-            let (of_views, sharp) = (row.series == "lens views", other.scene == lens_name(0));
-            if of_views {
-                other.scene == row.scene && other.series == "blended"
-            } else {
-                sharp && other.series == row.series
-            }
-        });
         let title = "Depth of field: 97000 points, 400×400";
         let ratio =
             "of the sharp frame by the same procedure; of lens views: of the blended frame with this lens";
@@ -313,25 +307,34 @@ fn sampled(surface: &Surface, method: Method, count: usize) -> Result<ColouredCl
     ColouredCloud::of(surface, &matt, &options)
 }
 
-/// A frame by each procedure, with the defaults.
-fn by_both(stage: &Stage, cloud: &Cloud, setting: &str) -> Result<Vec<Measured>, SurfelError> {
+/// A frame by each procedure, with the defaults; its time beside that of another scene or cloud, if one is given.
+fn by_both(
+    stage: &Stage,
+    cloud: &Cloud,
+    setting: &str,
+    compared: Option<(&Stage, &Cloud)>,
+) -> Result<Vec<Measured>, SurfelError> {
     eprintln!("surfel: {}: {setting}", stage.name);
-    let row = |procedure| stage.measured(cloud, setting.to_owned(), &stage.options(procedure));
+    let row = |procedure| row(stage, cloud, setting.to_owned(), &stage.options(procedure), compared);
     PROCEDURES.into_iter().map(row).collect()
+}
+
+fn row(
+    stage: &Stage,
+    cloud: &Cloud,
+    setting: String,
+    options: &Options,
+    compared: Option<(&Stage, &Cloud)>,
+) -> Result<Measured, SurfelError> {
+    match compared {
+        Some(other) => stage.compared(cloud, setting, options, other),
+        None => stage.measured(cloud, setting, options),
+    }
 }
 
 /// Levels are of the octree, not of the procedure: one of them has to do, except at the default.
 fn procedures_at(level: f32) -> impl Iterator<Item = Procedure> {
     PROCEDURES.into_iter().take(if level == DEFAULT_LEVEL { 2 } else { 1 })
-}
-
-/// Sets each row's ratio to the first row that it is compared with.
-fn compare_times(rows: &mut [Measured], is_compared: impl Fn(&Measured, &Measured) -> bool) {
-    let of = |row: &Measured| {
-        rows.iter().find(|other| is_compared(row, other)).map(|other| Ratio::of_timings(row.cpu, other.cpu))
-    };
-    let ratios: Vec<_> = rows.iter().map(of).collect();
-    rows.iter_mut().zip(ratios).for_each(|(row, ratio)| row.ratio = ratio);
 }
 
 /// Pixels.

@@ -66,7 +66,8 @@ impl Measured {
 
     fn line(&self) -> String {
         let e = &self.error;
-        let ratio = self.ratio.map_or("–".to_owned(), |ratio| format!("{:.3}", ratio.value));
+        let ratio =
+            self.ratio.map_or("–".to_owned(), |ratio| format!("{:.3} ± {:.3}", ratio.value, ratio.spread));
         format!(
             "| {} | {} | {} | {} | {:.2} | {:.2} | {ratio} | {:.2} | {:.4} | {:.4} | {:.2} | {:.3} |\n",
             self.scene,
@@ -248,24 +249,27 @@ fn same_table(same: &[Same]) -> String {
     text
 }
 
-/// The whole report; `setup` says what was drawn.
-pub(crate) fn markdown(setup: &str, sections: &[Section], same: &[Same]) -> String {
+/// The whole report; `setup` says what was drawn, `two_sheets` is the section about surfaces close to each other.
+pub(crate) fn markdown(setup: &str, sections: &[Section], two_sheets: &str, same: &[Same]) -> String {
     let mut text = format!(
         "# Point clouds: time against error\n\n`cargo run --release -p studies -- surfel` made this ({}). {setup}\n\n\
          *Blended* is `Procedure::Blended`, *paper* is `Procedure::Paper`. *CPU ms*: processor time of a frame on one thread, *wall \
          ms*: time of a frame on all cores. *Points drawn* counts links. *PSNR* and \
          *SSIM*: sRGB, over the surface's box and 8 pixels around. Depth, normals and holes are compared with rays through the pixels' centres, \
          through the middle of a lens, over pixels more than 2 inside the outline; depth is in spacings of the cloud. \
-         *Holes*: such pixels without a surface. Clouds are blue noise unless the row says otherwise.\n\n## Goals\n\nA ratio of times may be off by half of the ranges of both; one that is nearer to its bound than that is undecided.\n\n{}{LIMITS}\n\
+         *Holes*: such pixels without a surface. Clouds are blue noise unless the row says otherwise.\n\n## Goals\n\nA ratio of times is the median of fifteen pairs of frames, drawn in turns, and half of what the middle half of them differ by; one that is nearer to its bound than that is undecided.\n\n{}{LIMITS}\n\
          ## Beside the paper\n\n{}",
         provenance(),
         goals(sections, same),
         paper_table(sections),
     );
     for section in sections {
-        let ratio = section.ratio.map_or(String::new(), |r| format!("*Ratio*: CPU time, in that {r}.\n\n"));
+        let ratio = section.ratio.map_or(String::new(), |r| {
+            format!("*Ratio*: CPU time, in that {r}; frames of both were drawn in turns.\n\n")
+        });
         let _ = write!(text, "\n## {}\n\n{ratio}{HEAD}", section.title);
         section.rows.iter().for_each(|m| text += &m.line());
     }
+    let _ = write!(text, "\n## Two surfaces close to each other\n\n{two_sheets}");
     text + "\n## What must not change a picture\n\n97000 points.\n\n" + &same_table(same)
 }

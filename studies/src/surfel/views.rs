@@ -7,7 +7,7 @@ use crate::common::picture_layers::PictureLayers;
 use crate::surfel::lens_camera::LensCamera;
 use crate::surfel::lens_samples::LensSamples;
 use crate::surfel::measured::Measured;
-use crate::surfel::stage::{Stage, drawn, times, view};
+use crate::surfel::stage::{Stage, drawn, in_turns, times, view};
 
 /// Where the spread of places on the lens begins.
 const SEED: u64 = 1;
@@ -84,9 +84,12 @@ impl Stage {
         let size = [self.camera.width, self.camera.height].map(|n| n as usize);
         let mut mean = Mean::default();
         let times = times(|| mean.take(cloud, &options, &views, size))?;
+        let blended = self.options(Procedure::Blended);
+        let ratio = in_turns(|| mean.take(cloud, &options, &views, size), self.frames(cloud, &blended))?;
         let (sharp, _) = drawn(cloud, &self.camera, &options)?;
         let picture = PictureLayers { colour: mean.colour, ..sharp };
-        Ok(self.row(cloud, ("lens views", format!("{count} views")), mean.points, times, &picture))
+        let row = self.row(cloud, ("lens views", format!("{count} views")), mean.points, times, &picture);
+        Ok(Measured { ratio: Some(ratio), ..row })
     }
 }
 
