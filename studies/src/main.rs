@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Instant;
 
 mod clouds;
 mod common;
@@ -107,11 +108,17 @@ fn run_quick(studies: &[Study]) -> Outcome {
     let mut passed = true;
     for study in studies {
         let Some(quick) = study.quick else { continue };
-        let start = std::time::Instant::now();
-        passed &= quick(&out_dir)?;
-        eprintln!("{}: {:.0} s", study.name, start.elapsed().as_secs_f64());
+        passed &= timed(study, quick, &out_dir)?;
     }
     Ok(passed)
+}
+
+/// Runs a study one way, and tells how long it took.
+fn timed(study: &Study, run: fn(&Path) -> Outcome, out_dir: &Path) -> Outcome {
+    let start = Instant::now();
+    let outcome = run(out_dir);
+    eprintln!("{}: {:.0} s", study.name, start.elapsed().as_secs_f64());
+    outcome
 }
 
 fn usage() -> String {
@@ -176,7 +183,7 @@ fn main() -> ExitCode {
         }
     };
     let chosen = STUDIES.iter().filter(|s| name == "all" || s.name == name);
-    let codes: Vec<ExitCode> = chosen.map(|study| code((study.run)(&out_dir))).collect();
+    let codes: Vec<ExitCode> = chosen.map(|study| timed(study, study.run, &out_dir)).map(code).collect();
     codes.into_iter().find(|c| *c != ExitCode::SUCCESS).unwrap_or(ExitCode::SUCCESS)
 }
 

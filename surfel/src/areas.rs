@@ -6,6 +6,7 @@
 //! each kernel. (To make it 1 at the points alone looks simpler, but there each kernel has its peak: for points on
 //! rays, all areas are then 5 % too large, and the sum at other places ripples by 0.090 where it does by 0.071 here.)
 
+use crate::camera::THICKNESS;
 use crate::neighbours::{Places, Sides};
 use glam::Vec3;
 use pointillist_parallel as parallel;
@@ -29,6 +30,10 @@ pub(crate) const SIGMA_PER_RADIUS: f64 = 0.75;
 /// The sweeps do not oscillate. Most of what is left is ripple between the points, which no areas remove; wider
 /// kernels do.
 const SWEEPS: usize = 3;
+
+/// Height above the tangent plane of a point, in parts of its kernel's radius, beyond which another belongs to another surface, as it does where
+/// a picture is made. Two sheets that are farther apart would else have half of their area each, and be seen through.
+const SAME_SURFACE: f64 = THICKNESS as f64 / (2.0 * SIGMA_PER_RADIUS);
 
 /// Largest ratio of an area to the mean of the first guesses in its kernel: without it, areas of points on a border
 /// would grow to fill what lies beyond.
@@ -81,6 +86,8 @@ pub(crate) fn of_cloud(places: &Places, normals: &[Vec3], radii: &[f32], two_sid
 struct Around {
     /// Radius of the side's kernel, places' units.
     kernel: f64,
+    /// Height above its tangent plane within which others belong to the same surface.
+    thickness: f64,
     /// The sides, itself among them, whose kernels have a place in common with this one unless they are wider.
     sides: Vec<u32>,
 }
@@ -93,7 +100,7 @@ fn around(places: &Places, sides: &Sides, side: usize, kernel: f64) -> Around {
     let normal = sides.normals[side];
     let all = near.iter().flat_map(|n| sides.seen_from(normal, n.place));
     let facing = all.filter(|s| normal.dot(s.1) > 0.0).map(|s| s.0 as u32).collect();
-    Around { kernel: kernel.min(full).max(RADII.0), sides: facing }
+    Around { kernel: kernel.min(full).max(RADII.0), thickness: SAME_SURFACE * kernel, sides: facing }
 }
 
 /// `∫ Kᵢ Kⱼ` of two kernels, or of one with itself.
@@ -114,7 +121,11 @@ fn overlaps(places: &Places, sides: &Sides, around: &[Around]) -> Vec<Overlap> {
                 continue;
             }
             let offset = at(other as usize) - at(side);
-            let across2 = offset.length_squared() - offset.dot(sides.normals[side]).powi(2);
+            let height = offset.dot(sides.normals[side]);
+            if height.abs() > around[side].thickness {
+                continue;
+            }
+            let across2 = offset.length_squared() - height.powi(2);
             let integral = correlation(across2.max(0.0), 0.5 * (wide * wide + narrow * narrow));
             if integral > 0.0 {
                 list.push(Overlap { sides: [side as u32, other], integral });

@@ -14,7 +14,7 @@ const BLURRED_PLANE: f32 = 2.0;
 /// How far behind the nearest disc another may lie and still belong to the same surface, as a sum of four lengths, all
 /// found by experiment: these multiples of the disc's radius and of its blur radius, and the change of depth of a
 /// slanted surface over these multiples of a pixel and of the blur radius.
-const THICKNESS: f32 = 1.5;
+pub(crate) const THICKNESS: f32 = 1.1;
 const BLURRED_DISC_THICKNESS: f32 = 1.75;
 const SLANTED_THICKNESS: f32 = 1.5;
 const BLURRED_THICKNESS: f32 = 0.7;

@@ -459,6 +459,21 @@ fn light_passes_sheets_by_the_product_of_what_they_let_through() {
     }
 }
 
+/// Points of both once shared the area of one surface, so that the nearer sheet let half of the farther one through.
+#[test]
+fn a_sheet_a_little_more_than_a_spacing_behind_another_does_not_show_through() {
+    // The spacing is 0.8.
+    for behind in [0.75, 1.0, 1.3] {
+        let points = sheet(0.0, [1.0, 0.0, 0.0], 1.0).and(&sheet(-behind, [0.0, 1.0, 0.0], 1.0));
+        let options = with(|o| (o.ambient, o.level) = (1.0, 0.0));
+        let drawn = frame(&points, &flat_view(), &options).unwrap();
+        for i in middle(&drawn, 40.0) {
+            let got = drawn.color()[i];
+            assert!(got[0] > 0.995 && got[1] < 0.005, "{behind}, pixel {i}: {got:?}");
+        }
+    }
+}
+
 #[test]
 fn points_that_are_not_seen_color_nothing_at_any_level() {
     let points = OwnedPoints::plane(DVec3::ZERO, DVec3::X * 0.4, DVec3::Y * 0.4, 300, 300);

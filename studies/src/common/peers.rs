@@ -6,7 +6,7 @@ use std::process::Command;
 use glam::Vec3;
 
 use super::picture::Picture;
-use super::timing::{Clock, Timing, timed_part};
+use super::timing::{Clock, Ratio, Timing, ratio_of, timed_part};
 
 /// A program that a variable names, or that `studies/peers/build` made under this name.
 pub(crate) fn find(variable: &str, name: &str) -> Option<PathBuf> {
@@ -21,22 +21,51 @@ pub(crate) fn draw(
     size: [u32; 2],
     sides: &[u32],
 ) -> std::io::Result<Vec<(Timing, Picture)>> {
+    with_files(scene, |scene, out| {
+        let drawn = sides.iter().map(|side| {
+            let (time, picture) =
+                timed_part(Clock::Wall, || match draw_once(program, scene, *side, out, size) {
+                    Ok((seconds, picture)) => (seconds, Ok(picture)),
+                    Err(error) => (0.0, Err(error)),
+                });
+            picture.map(|picture| (time, picture))
+        });
+        drawn.collect()
+    })
+}
+
+/// How much longer than the renderer something takes that says its own processor seconds, both in turns.
+pub(crate) fn ratio_to(
+    program: &Path,
+    scene: &str,
+    size: [u32; 2],
+    side: u32,
+    ours: impl FnMut() -> f64,
+) -> std::io::Result<Ratio> {
+    with_files(scene, |scene, out| {
+        let mut done = Ok(());
+        let theirs = || match draw_once(program, scene, side, out, size) {
+            Ok((seconds, _)) => seconds,
+            Err(error) => {
+                done = Err(error);
+                f64::NAN
+            }
+        };
+        let ratio = ratio_of(ours, theirs);
+        done.map(|()| ratio)
+    })
+}
+
+/// Gives work a file with this text and the name of another, and removes both.
+fn with_files<T>(scene: &str, work: impl FnOnce(&Path, &Path) -> std::io::Result<T>) -> std::io::Result<T> {
     let file = |name: &str| std::env::temp_dir().join(format!("peer-{}-{name}", std::process::id()));
     let [scene_file, out] = [file("scene.txt"), file("picture.f32")];
     std::fs::write(&scene_file, scene)?;
-    let drawn = sides.iter().map(|side| {
-        let (time, picture) =
-            timed_part(Clock::Wall, || match draw_once(program, &scene_file, *side, &out, size) {
-                Ok((seconds, picture)) => (seconds, Ok(picture)),
-                Err(error) => (0.0, Err(error)),
-            });
-        picture.map(|picture| (time, picture))
-    });
-    let drawn = drawn.collect::<std::io::Result<_>>();
+    let result = work(&scene_file, &out);
     std::fs::remove_file(&scene_file)?;
-    let drawn = drawn?;
+    let result = result?;
     std::fs::remove_file(&out)?;
-    Ok(drawn)
+    Ok(result)
 }
 
 fn draw_once(

@@ -175,7 +175,7 @@ pub(crate) fn ratio(clock: Clock, mut work: impl FnMut(), mut other: impl FnMut(
 }
 
 /// [`ratio`] of work that says how long it took.
-fn ratio_of(mut work: impl FnMut() -> f64, mut other: impl FnMut() -> f64) -> Ratio {
+pub(crate) fn ratio_of(mut work: impl FnMut() -> f64, mut other: impl FnMut() -> f64) -> Ratio {
     /// Pairs of runs, an odd number; the first pair warms up and does not count.
     const PAIRS: usize = 15;
     let mut pair = |_| {

@@ -1,13 +1,15 @@
 //! Frames beside a plain C program that does the least the method needs: `studies/peers/points/floor.c`.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
+use cpu_time::ThreadTime;
 use glam::DVec3;
 use pointillist_ibpr::{Cloud, Culling, Frame, IbprError, Normals, Options, Passes, Renderer, Scale, View};
 
 use crate::common::peers;
 use crate::common::report::on_one_thread;
-use crate::common::timing::{Clock, Timing, timed_by};
+use crate::common::timing::{Clock, Ratio, Timing, timed_by};
 use crate::common::true_surface::{ALBEDO, AMBIENT, LIGHT};
 use crate::ibpr::scans::RangeScan;
 use crate::ibpr::settings::defaults;
@@ -19,7 +21,7 @@ const FLOOR: &str = "POINTILLIST_POINTS_FLOOR";
 const BUFFER: f32 = 2.7;
 
 /// Frames of a run of the program, which says how long one in the middle took.
-const FRAMES: u32 = 20;
+const FRAMES: u32 = 9;
 
 /// Neighbours on one surface differ by less in depth, spacings: the paper's.
 const STEP: f64 = 5.0;
@@ -57,24 +59,22 @@ pub(super) fn section(subject: &Subject<'_>) -> Result<String, Box<dyn std::erro
         return Ok(text + &peers::skipped("The floor", FLOOR) + "\n");
     };
     let size = [subject.view.width(), subject.view.height()];
-    let drawn = peers::draw(&program, &scene(subject), size, &[FRAMES])?;
+    let scene = scene(subject);
+    let drawn = peers::draw(&program, &scene, size, &[FRAMES])?;
     let (floor, picture) = drawn.first().ok_or("a picture for each number of frames")?;
     let shown = picture.pixels.iter().filter(|c| **c != DVec3::ZERO).count();
     let _ = write!(
         text,
         "`studies/peers/points/floor.c`: depth and sums of all points, normals from eight triangles, faces, colour and depth of each pixel, on one thread, compiled for this \
-         processor with floating point as the compiler likes. σ = 0, S = {BUFFER}. *Pixels*: those that show something.\n\n\
+         processor with floating point as the compiler likes. σ = 0, S = {BUFFER}. *Pixels*: those that show something. *Of the floor*: median of fifteen pairs of runs in turns, and half of what the middle half of them differ by.\n\n\
          | program | pixels | CPU ms | of the floor |\n| --- | ---: | ---: | ---: |\n| the floor | {shown} | {:.1} | 1 |\n",
         floor.in_ms()
     );
     for (name, options) in settings() {
         let (time, shown) = on_one_thread(|| ours(subject, &options))?;
-        let _ = writeln!(
-            text,
-            "| `ibpr`, {name} | {shown} | {:.1} | {:.2} |",
-            time.in_ms(),
-            time.seconds / floor.seconds
-        );
+        let Ratio { value, spread } = in_turns(subject, &options, (&program, &scene, size))?;
+        let _ =
+            writeln!(text, "| `ibpr`, {name} | {shown} | {:.1} | {value:.2} ± {spread:.2} |", time.in_ms());
     }
     Ok(text + LIMITS)
 }
@@ -91,6 +91,29 @@ fn ours(subject: &Subject<'_>, options: &Options) -> Result<(Timing, usize), Ibp
     let (time, done) = timed_by(Clock::Processor, draw);
     done?;
     Ok((time, frame.color().iter().filter(|c| c[3] > 0.0).count()))
+}
+
+/// How much longer our frames take than those of the program with this scene and size, both in turns.
+fn in_turns(
+    subject: &Subject<'_>,
+    options: &Options,
+    (program, scene, size): (&Path, &str, [u32; 2]),
+) -> Result<Ratio, Box<dyn std::error::Error + Send + Sync>> {
+    let (mut renderer, mut frame, mut done) = (Renderer::new(), Frame::default(), Ok(()));
+    let now = || ThreadTime::now().as_duration().as_secs_f64();
+    let mut one = || {
+        let begin = now();
+        done = done.and_then(|()| renderer.draw(subject.cloud, subject.view, options, &mut frame));
+        now() - begin
+    };
+    let ours = || {
+        let mut seconds: Vec<f64> = (0..FRAMES).map(|_| one()).collect();
+        seconds.sort_by(f64::total_cmp);
+        seconds[seconds.len() / 2]
+    };
+    let ratio = on_one_thread(|| peers::ratio_to(program, scene, size, FRAMES, ours))?;
+    done?;
+    Ok(ratio)
 }
 
 /// The scene as the program reads it.

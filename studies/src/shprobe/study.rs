@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use pointillist_shprobe::place;
 
@@ -46,7 +45,7 @@ struct Wish {
     pictures: Option<PathBuf>,
 }
 
-/// Measures and writes `shprobe.md`, `shprobe.csv` and charts.
+/// Measures and writes `shprobe.md`, `shprobe-light.md`, `shprobe.csv` and charts.
 pub(crate) fn run(out_dir: &Path) -> Outcome {
     let pictures = std::env::var_os("POINTILLIST_PICTURES").map(PathBuf::from);
     measure(&Wish { quick: false, pictures }, out_dir)
@@ -83,7 +82,7 @@ pub(crate) fn run_with(out_dir: &Path, arguments: &[&str]) -> Outcome {
             print!("{text}");
             true
         }),
-        ["light"] => light(out_dir),
+        ["light"] => light(&Wish::default(), out_dir),
         ["bounces"] => bounces::measure(false).map(|found| {
             print!("{}", found.text);
             true
@@ -119,29 +118,24 @@ fn run_site(name: &str, arguments: &[&str]) -> Outcome {
 }
 
 fn measure(wish: &Wish, out_dir: &Path) -> Outcome {
-    let start = Instant::now();
     std::fs::create_dir_all(out_dir)?;
     let mut report = Report::default();
     projection(&mut report, out_dir)?;
     maps(&mut report, wish)?;
     points(&mut report, wish)?;
-    bounced(&mut report, wish)?;
     placement(&mut report, wish, out_dir)?;
-    walls(&mut report, wish)?;
     if let Some(folder) = &wish.pictures {
         report.section("Moving through Sponza", &pictures::all(folder)?);
     }
     write(out_dir, "shprobe.md", &report.markdown())?;
-    eprintln!("shprobe: {:.0} s", start.elapsed().as_secs_f64());
-    Ok(true)
+    light(wish, out_dir)
 }
 
-/// Measures light on surfaces and what look-ups cost, and writes `shprobe-light.md`: what `shprobe` measures without placement in buildings and without peers.
-fn light(out_dir: &Path) -> Outcome {
-    let wish = Wish::default();
+/// Measures light on surfaces and what look-ups cost, and writes `shprobe-light.md`.
+fn light(wish: &Wish, out_dir: &Path) -> Outcome {
     let mut report = Report::default();
-    bounced(&mut report, &wish)?;
-    walls(&mut report, &wish)?;
+    bounced(&mut report, wish)?;
+    walls(&mut report, wish)?;
     lighting(&mut report)?;
     let text = format!(
         "# Light between probes, on surfaces and in free space\n\n`cargo run --release -p studies -- shprobe light` made this ({}). Errors are root mean squares over those of what \
@@ -253,7 +247,7 @@ fn points(report: &mut Report, wish: &Wish) -> Result<(), Fault> {
     report.section("Dividing space", &format!("{peer}\n\n{building}"));
     let text = "Weights are computed, too; the peer only finds the cell. Queries are in the inner four fifths of the cube.\n\n";
     report.section("Finding positions", &format!("{text}{finding}"));
-    lighting(report)
+    Ok(())
 }
 
 fn bounced(report: &mut Report, wish: &Wish) -> Result<(), Fault> {

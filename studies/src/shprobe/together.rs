@@ -175,8 +175,8 @@ pub(crate) fn run_parts(out_dir: &Path, folder: Option<&Path>, parts: &[&str]) -
 const SEEN: &str = "\
      The pictures: [two rooms](../../docs/together-rooms.jpg), [Sponza](../../docs/together-sponza.jpg), \
      [Šibenik](../../docs/together-sibenik.jpg), each by paths, by radiosity, by 86 and by 192 probes. What is to be seen in them at full size, \
-     plain and brightened by two stops: in the two rooms, by probes, nothing but soft brighter and darker places beside the foot of the doorway; by 192 probes a bright dash under the foremost capital of Sponza, \
-     which no probe sees: one that sees it by a fifth, from behind a column, has four fifths of the say there; the foot of the door on the left is too bright there; and in Šibenik, by probes, some specks at ledges of the left wall, and all of it too dark.\n";
+     plain and brightened by two stops: in the two rooms, by probes, nothing but soft brighter and darker places beside the foot of the doorway; by 192 probes the underside of the foremost capital \
+     of Sponza and the reveal and foot of the door on the left are too bright, since probes metres away see them, but not what stands close around them (ARCHITECTURE.md says what was tried); and in Šibenik, by probes, some specks at ledges of the left wall, and all of it too dark.\n";
 
 fn building(site: &Site, folder: Option<&Path>, text: &mut String) -> Result<(), Fault> {
     let reference = Reference::new(&site.scene, PATHS);

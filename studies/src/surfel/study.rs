@@ -2,7 +2,6 @@
 
 use std::f32::consts::TAU;
 use std::path::Path;
-use std::time::Instant;
 
 use glam::{DVec3, Quat, Vec3};
 use pointillist_surfel::{
@@ -78,7 +77,6 @@ pub(crate) fn run_quick(out_dir: &Path) -> Outcome {
 }
 
 fn measure(effort: Effort, out_dir: &Path) -> Outcome {
-    let start = Instant::now();
     let mut bench = Bench::new(effort)?;
     let mut sections = vec![];
     sections.extend(bench.front_sections()?);
@@ -93,7 +91,6 @@ fn measure(effort: Effort, out_dir: &Path) -> Outcome {
     eprintln!("surfel: two sheets");
     let two_sheets = sheets::table()?;
     write(out_dir, "surfel.md", &markdown(&bench.setup(), &sections, &two_sheets, &same))?;
-    eprintln!("surfel: {:.0} s", start.elapsed().as_secs_f64());
     // A picture that depends on threads or on the order of points is a fault, however fast.
     Ok(same.iter().all(|s| s.same_bytes || s.may_differ))
 }
