@@ -103,7 +103,9 @@ fn in_turns(
     let now = || ThreadTime::now().as_duration().as_secs_f64();
     let mut one = || {
         let begin = now();
-        done = done.and_then(|()| renderer.draw(subject.cloud, subject.view, options, &mut frame));
+        if done.is_ok() {
+            done = renderer.draw(subject.cloud, subject.view, options, &mut frame);
+        }
         now() - begin
     };
     let ours = || {
