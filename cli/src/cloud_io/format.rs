@@ -87,6 +87,10 @@ fn refusal(name: &str, extension: &str) -> InputError {
             "this is a mesh or a scene, not a cloud",
             "`pointillist sample FILE -o cloud.ply` puts points all over it; `pointillist render FILE` draws it",
         ),
+        "conf" => (
+            "this is a list of scans, not a cloud",
+            "`pointillist scan FILE` draws it, with each scan in its place",
+        ),
         _ => (
             "neither the name nor the first bytes say what kind of cloud this is",
             "known are .ply, .ply.gz, .xyz, .txt, .asc, .pts, .csv, .las, .laz, .e57 and .conf",

@@ -392,6 +392,7 @@ fn broken_text_names_its_line() {
     refused("a.xyz", b"1 2 3\n1 \xff 3\n", &["a.xyz:2:3", "not UTF-8"]);
     refused("a.xyz", "3\n1 2 3\n", &["line 1 announces 3", "1 follow"]);
     refused("a.png", "1 2 3\n", &["what kind of cloud"]);
+    refused("a.conf", "bmesh a.ply 0 0 0 0 0 0 1\n", &["list of scans", "pointillist scan"]);
 }
 
 #[test]
