@@ -19,23 +19,20 @@ const SPACING_PX: f64 = 3.0;
 /// Pixels of pictures, of which the middle half of each side is looked at.
 const SIZE: u32 = 96;
 
-/// Between the view and the sheets' normal.
-const SLANTS_DEG: [f64; 4] = [0.0, 45.0, 60.0, 75.0];
-
 /// Between the sheets, along the view, in spacings; the least that has no more than this share of the farther sheet is told.
 const STEP: f64 = 0.1;
-const FARTHEST: f64 = 10.0;
+const FARTHEST: f64 = 5.0;
 const SHARE: f64 = 0.01;
 
-/// A row of the table for each slant.
-pub(crate) fn table() -> Result<String, SurfelError> {
+/// A row of the table for each angle between the view and the sheets' normal.
+pub(crate) fn table(slants_deg: &[f64]) -> Result<String, SurfelError> {
     let mut text = format!(
         "Two sheets of points one spacing apart, {SPACING_PX} px where they lie across the view, up to {JITTER} of one off their lattice. \
          *Least distance*: along the view, in spacings, from which on no more than {} % of a pixel's colour is the farther sheet's, in the mean.\n\n\
          | view to normal, ° | least distance | at half of it, % | at a quarter, % |\n| ---: | ---: | ---: | ---: |\n",
         100.0 * SHARE
     );
-    for slant in SLANTS_DEG {
+    for &slant in slants_deg {
         // Not by bisection: the share need not fall all the way.
         let steps = (FARTHEST / STEP) as u32;
         let mut least = FARTHEST;

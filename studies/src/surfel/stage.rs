@@ -31,14 +31,26 @@ pub(crate) struct Effort {
     pub(crate) most_points: usize,
     /// Numbers of views from all over the lens.
     pub(crate) views: &'static [u32],
+    /// Between the view and the normal of two sheets, degrees.
+    pub(crate) slants_deg: &'static [f64],
 }
 
 impl Effort {
-    pub(crate) const FULL: Self =
-        Self { rays: [64, 256], method: Method::Poisson, most_points: 1_274_573, views: &[4, 16, 64] };
+    pub(crate) const FULL: Self = Self {
+        rays: [64, 256],
+        method: Method::Poisson,
+        most_points: 1_274_573,
+        views: &[4, 16, 64],
+        slants_deg: &[0.0, 45.0, 60.0, 75.0],
+    };
     /// Enough to see that all works.
-    pub(crate) const QUICK: Self =
-        Self { rays: [4, 16], method: Method::Ldi, most_points: 500_000, views: &[4, 16] };
+    pub(crate) const QUICK: Self = Self {
+        rays: [4, 16],
+        method: Method::Ldi,
+        most_points: 500_000,
+        views: &[4, 16],
+        slants_deg: &[0.0],
+    };
 }
 
 /// Processor seconds on one thread, and seconds on all.

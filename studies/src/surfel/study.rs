@@ -89,7 +89,7 @@ fn measure(effort: Effort, out_dir: &Path) -> Outcome {
     write_csv(out_dir, "surfel", &COLUMNS, &rows)?;
     chart_of(out_dir, "surfel", "colour, RMSE of sRGB", &rows)?;
     eprintln!("surfel: two sheets");
-    let two_sheets = sheets::table()?;
+    let two_sheets = sheets::table(effort.slants_deg)?;
     write(out_dir, "surfel.md", &markdown(&bench.setup(), &sections, &two_sheets, &same))?;
     // A picture that depends on threads or on the order of points is a fault, however fast.
     Ok(same.iter().all(|s| s.same_bytes || s.may_differ))
