@@ -13,16 +13,13 @@ const HEIGHT: f64 = 2.3;
 /// A point for each pixel or so.
 const POINTS: usize = 40_000;
 
-/// Pixels between the outline and those that must be covered: an edge of a sum of kernels is about two wide.
-const EDGE_PX: f64 = 2.0;
+/// Pixels between the outline and those that must be covered. An edge of a sum of kernels is about two wide, a little more where points lie
+/// apart: in 3000 views, 76 pixels that are 2 inside the outline are below 0.97, and 19 that are 2.5 inside.
+const EDGE_PX: f64 = 2.5;
 
-/// The least opacity of a pixel that is covered.
-const COVERED: f32 = 0.97;
-
-/// The least opacity, and the most pixels below [`COVERED`], of any view: between points that lie apart an edge is a little wider, and sums of
-/// kernels ripple. In 3000 views there are 76 such pixels, the least 0.896. Normals that turn away beside the outline leave less than 0.6.
-const THINNEST: f32 = 0.88;
-const MOST_THIN: usize = 4;
+/// The least opacity that is no hole. Between points that lie apart, sums of kernels ripple: in those 3000 views 0.9407 is the least.
+/// Normals that turn away beside the outline leave less than 0.6.
+const COVERED: f32 = 0.93;
 
 /// The corners of a unit sphere of five bands, of ten quadrilaterals each.
 fn corners() -> Vec<DVec3> {
@@ -72,8 +69,8 @@ fn is_inside(view: &View, pixel: DVec2) -> bool {
 
 static SOLID: LazyLock<Cloud> = LazyLock::new(|| cloud(&solid()).unwrap());
 
-/// The opacities of the pixels inside.
-fn opacities_inside(cloud: &Cloud, towards: DVec3) -> Vec<f32> {
+/// The least opacity of the pixels inside.
+fn least_inside(cloud: &Cloud, towards: DVec3) -> f32 {
     let camera = Projection::Orthographic { height: HEIGHT };
     let view = look_at(towards * 5.0, DVec3::ZERO, camera, SIZE, SIZE).unwrap();
     let frame = drawn(cloud, &view, &Options::default()).unwrap();
@@ -81,11 +78,7 @@ fn opacities_inside(cloud: &Cloud, towards: DVec3) -> Vec<f32> {
     pixels
         .filter(|&(x, y)| is_inside(&view, dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5)))
         .map(|(x, y)| frame.color()[(y * SIZE + x) as usize][3])
-        .collect()
-}
-
-fn least_inside(cloud: &Cloud, towards: DVec3) -> f32 {
-    opacities_inside(cloud, towards).into_iter().fold(1.0, f32::min)
+        .fold(1.0, f32::min)
 }
 
 #[test]
@@ -135,8 +128,7 @@ proptest! {
     fn no_view_of_a_coarse_solid_shows_holes(x in -1.0..1.0f64, y in -1.0..1.0f64, z in -1.0..1.0f64) {
         let towards = dvec3(x, y, z).try_normalize().filter(|t| t.y.abs() < 0.99);
         prop_assume!(towards.is_some());
-        let mut thin = opacities_inside(&SOLID, towards.unwrap_or(DVec3::X));
-        thin.retain(|&opacity| opacity <= COVERED);
-        prop_assert!(thin.len() <= MOST_THIN && thin.iter().all(|&opacity| opacity > THINNEST), "{:?}", thin);
+        let least = least_inside(&SOLID, towards.unwrap_or(DVec3::X));
+        prop_assert!(least > COVERED, "{}", least);
     }
 }
