@@ -7,15 +7,20 @@ use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
 /// Keeps the nearest depth of all `splats` in the first layer.
-pub(crate) fn nearest(layer: &mut Layer, splats: &[Splat]) {
+///
+/// Depths count for more towards the rim of a kernel, by up to the disc's thickness times `softness`. Seen nearly
+/// edge-on, the plane of a disc at a crease stands out before the facet beyond, where its kernel is next to nothing: as
+/// the nearest depth there it would put that facet's discs into the next layer, apart from those of the crease.
+pub(crate) fn nearest(layer: &mut Layer, splats: &[Splat], softness: f32) {
     let (depths, splats) = (&mut layer.depths[..], splats.iter());
-    Arch::new().dispatch(Nearest::<true, _> { depths, splats, open: &Open::NOWHERE });
+    Arch::new().dispatch(Nearest::<true, _> { depths, splats, softness, open: &Open::NOWHERE });
 }
 
-/// Keeps the nearest depth behind the floor, in blocks that are `open`, of the splats with these numbers.
+/// Keeps the nearest depth behind the floor, in blocks that are `open`, of the splats with these numbers, which are
+/// soft.
 pub(crate) fn nearest_behind(layer: &mut Layer, splats: &[Splat], numbers: &[u32], open: &Open) {
     let splats = numbers.iter().map(|&i| &splats[i as usize]);
-    Arch::new().dispatch(Nearest::<false, _> { depths: &mut layer.depths, splats, open });
+    Arch::new().dispatch(Nearest::<false, _> { depths: &mut layer.depths, splats, softness: SOFT, open });
 }
 
 /// Puts the sharpness of the disc that is nearest into the first of the sums; the largest of those that are equally
@@ -44,12 +49,19 @@ pub(crate) fn farthest(layer: &Layer, column: usize, rows: Range<usize>) -> f32 
     Arch::new().dispatch(Farthest { depths: &layer.depths, column, rows })
 }
 
+/// `softness` of discs that are kernels.
+pub(crate) const SOFT: f32 = 1.0;
+
+/// That of discs with hard edges, which are surface up to there.
+pub(crate) const HARD: f32 = 0.0;
+
 /// Within a kernel h is at most 1/(1 − √½) = 3.4; rounding could make it anything where planes are edge-on.
 const LARGEST_H: f32 = 4.0;
 
 struct Nearest<'a, const FIRST: bool, I> {
     depths: &'a mut [Depths],
     splats: I,
+    softness: f32,
     open: &'a Open,
 }
 
@@ -60,8 +72,10 @@ impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<
     // instructions.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let (none, nothing) = (simd.splat_f32s(0.0), simd.splat_f32s(f32::INFINITY));
+        let (none, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
+        let nothing = simd.splat_f32s(f32::INFINITY);
         for s in self.splats {
+            let softness = simd.splat_f32s(s.thickness * self.softness);
             for column in s.blocks() {
                 for (i, ramp) in S::as_simd_f32s(&RAMP).0.iter().enumerate() {
                     let mut strip = Strip::new(simd, s, column, *ramp);
@@ -75,6 +89,9 @@ impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<
                         let (rest, depth) = strip.at::<FIRST>(simd, s, floor);
                         strip.step(simd);
                         let is_there = simd.greater_than_f32s(rest, none);
+                        // `rest` may exceed 1, where the plane comes towards the eye.
+                        let rim = simd.max_f32s(simd.sub_f32s(one, rest), none);
+                        let depth = simd.add_f32s(depth, simd.mul_f32s(softness, rim));
                         let near = &mut S::as_mut_simd_f32s(&mut block.near).0[i];
                         // A minimum instead of a choice between the old and the new value: the latter would become a
                         // masked store, which takes longer than all the rest.

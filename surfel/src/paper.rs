@@ -16,7 +16,7 @@
 
 use crate::camera::Camera;
 use crate::frame::Band;
-use crate::grid::{HEIGHT, TileRect};
+use crate::grid::{SHOWN_HEIGHT, TileRect};
 use crate::kernel;
 use crate::layer::{LANES, Layer, PITCH, Touched};
 use crate::project::Projector;
@@ -111,7 +111,7 @@ impl PaperTile {
                 self.projector.project(scene, selected, &shape, rect, &mut self.splats);
             }
             self.layer.clear_near(&Touched::ALL);
-            kernel::nearest(&mut self.layer, self.splats.as_slice());
+            kernel::nearest(&mut self.layer, self.splats.as_slice(), kernel::HARD);
             kernel::sharpness_of_nearest(&mut self.layer, self.splats.as_slice());
             for row in 0..rect.height {
                 for column in 0..rect.width {
@@ -298,5 +298,5 @@ pub(crate) fn reshape(cells: &mut Vec<PaperPixel>, width: usize, height: usize) 
 
 /// Rows of cells for each band of tiles.
 pub(crate) fn rows(cells: &mut [PaperPixel], width: usize) -> impl Iterator<Item = &mut [PaperPixel]> {
-    cells.chunks_mut(width * HEIGHT)
+    cells.chunks_mut(width * SHOWN_HEIGHT)
 }

@@ -4,7 +4,7 @@ use crate::camera::Camera;
 use crate::cloud::Cloud;
 use crate::error::SurfelError;
 use crate::frame::{Frame, FrameCounts};
-use crate::grid::{HEIGHT, TileRect, WIDTH};
+use crate::grid::{SHOWN_HEIGHT, SHOWN_WIDTH, TileRect};
 use crate::options::{Options, Procedure};
 use crate::paper::{self, PaperPixel, PaperTile};
 use crate::scene::Scene;
@@ -64,6 +64,7 @@ impl Renderer {
             Procedure::Blended => tiles_of(&wanted),
             Procedure::Paper => tiles_of(&view.picture()),
         };
+        let tiles = tiles.in_ring([width as usize, height as usize]);
         let mut counts = FrameCounts::default();
         let lists = (&mut self.selected, &mut self.stack);
         select::select(cloud, &camera, options, &tiles, lists, &mut counts);
@@ -86,6 +87,7 @@ impl Renderer {
     }
 
     fn blend(&self, scene: &Scene<'_>, wanted: &PixelRect, frame: &mut Frame) {
+        let picture = [frame.width(), frame.height()];
         parallel::for_each_mut_heavy(&mut frame.bands(), |band| {
             let is_wanted = |rect: &TileRect| {
                 let meets = |from: usize, size: usize, [low, high]: [u32; 2]| {
@@ -95,18 +97,18 @@ impl Renderer {
                     && meets(rect.y, rect.height, [wanted.y0, wanted.y1])
             };
             let of_band: Vec<Selected> = if is_wanted(&band.whole()) {
-                nodes_in(&self.selected, &band.whole()).collect()
+                nodes_in(&self.selected, &band.whole().in_ring(picture)).collect()
             } else {
                 vec![]
             };
             self.tiles.with(|tile| {
                 for number in 0..band.drawn.len() {
                     let rect = band.rect(number);
-                    let nodes = nodes_in(&of_band, &rect);
-                    if !is_wanted(&rect) || nodes.clone().next().is_none() {
+                    if !is_wanted(&rect) || nodes_in(&of_band, &rect).next().is_none() {
                         band.clear(number);
                     } else {
-                        tile.draw(scene, &rect, nodes, band);
+                        let drawn = rect.in_ring(picture);
+                        tile.draw(scene, &drawn, nodes_in(&of_band, &drawn), (band, number));
                     }
                 }
             });
@@ -132,11 +134,14 @@ impl Renderer {
     }
 }
 
-/// The pixels of all tiles that meet a window, as far as they may lie beyond the picture.
+/// The pixels that all tiles that meet a window show, as far as they may lie beyond the picture.
 fn tiles_of(window: &PixelRect) -> TileRect {
-    let (x, y) = (window.x0 as usize / WIDTH * WIDTH, window.y0 as usize / HEIGHT * HEIGHT);
-    let width = (window.x1 as usize).next_multiple_of(WIDTH) - x;
-    let height = (window.y1 as usize).next_multiple_of(HEIGHT) - y;
+    let (x, y) = (
+        window.x0 as usize / SHOWN_WIDTH * SHOWN_WIDTH,
+        window.y0 as usize / SHOWN_HEIGHT * SHOWN_HEIGHT,
+    );
+    let width = (window.x1 as usize).next_multiple_of(SHOWN_WIDTH) - x;
+    let height = (window.y1 as usize).next_multiple_of(SHOWN_HEIGHT) - y;
     TileRect { x, y, width, height }
 }
 

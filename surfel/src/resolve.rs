@@ -25,10 +25,17 @@ pub(crate) fn resolve<const FIRST: bool, const WANTED: bool, const CLEAR: bool>(
     Arch::new().dispatch(Resolve::<FIRST, WANTED, CLEAR> { layer, pixels, rect, touched })
 }
 
-/// Puts the pixels of a tile into the picture.
-pub(crate) fn write(pixels: &[Pixels], shader: &Shader, rect: &TileRect, band: &mut Band<'_>) {
-    band.drawn[rect.x / WIDTH] = true;
-    Arch::new().dispatch(Write { pixels, shader, rect, band });
+/// Puts those of the pixels of `rect` that tile `number` shows into the picture.
+pub(crate) fn write(
+    pixels: &[Pixels],
+    shader: &Shader,
+    rect: &TileRect,
+    (band, number): (&mut Band<'_>, usize),
+) {
+    band.drawn[number] = true;
+    let shown = band.rect(number);
+    let first = [shown.x - rect.x, shown.y - rect.y];
+    Arch::new().dispatch(Write { pixels, shader, first, shown, band });
 }
 
 struct Resolve<'a, const FIRST: bool, const WANTED: bool, const CLEAR: bool> {
@@ -313,13 +320,14 @@ impl<S: Simd> Weights<S> {
 }
 
 impl Pixels {
+    /// From lane `first` on.
     #[inline(always)]
-    fn write(&self, shader: &Shader, colors: &mut [[f32; 4]], depths: &mut [f32]) {
+    fn write(&self, first: usize, shader: &Shader, colors: &mut [[f32; 4]], depths: &mut [f32]) {
         let [red, green, blue, alpha] = &self.color;
-        for (i, color) in colors.iter_mut().enumerate() {
+        for (color, i) in colors.iter_mut().zip(first..) {
             *color = [red[i], green[i], blue[i], alpha[i]];
         }
-        for (depth, &bent) in depths.iter_mut().zip(&self.depth) {
+        for (depth, &bent) in depths.iter_mut().zip(&self.depth[first..]) {
             *depth = shader.depth(bent);
         }
     }
@@ -328,7 +336,9 @@ impl Pixels {
 struct Write<'a, 'b> {
     pixels: &'a [Pixels],
     shader: &'a Shader,
-    rect: &'a TileRect,
+    /// The first pixel that is shown: column, row.
+    first: [usize; 2],
+    shown: TileRect,
     band: &'a mut Band<'b>,
 }
 
@@ -337,24 +347,25 @@ impl NullaryFnOnce for Write<'_, '_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { pixels, shader, rect, band } = self;
-        for row in 0..rect.height {
-            let from = &pixels[row * PITCH..];
-            let to = row * band.width + rect.x..row * band.width + rect.x + rect.width;
-            let colors = band.color[to.clone()].chunks_mut(LANES);
-            let depths = band.depth[to.clone()].chunks_mut(LANES);
-            for ((pixels, colors), depths) in from.iter().zip(colors).zip(depths) {
+        let Self { pixels, shader, first: [first, first_row], shown, band } = self;
+        let in_first_block = (LANES - first).min(shown.width);
+        for row in 0..shown.height {
+            let from = &pixels[(first_row + row) * PITCH..];
+            let to = row * band.width + shown.x..row * band.width + shown.x + shown.width;
+            let (some_colors, colors) = band.color[to.clone()].split_at_mut(in_first_block);
+            let (some_depths, depths) = band.depth[to.clone()].split_at_mut(in_first_block);
+            from[0].write(first, shader, some_colors, some_depths);
+            let blocks = colors.chunks_mut(LANES).zip(depths.chunks_mut(LANES));
+            for (pixels, (colors, depths)) in from[1..].iter().zip(blocks) {
                 // Whole blocks apart: copies of a length known to the compiler need no call.
                 match (<&mut [_; LANES]>::try_from(&mut *colors), <&mut [_; LANES]>::try_from(&mut *depths)) {
-                    (Ok(colors), Ok(depths)) => pixels.write(shader, colors, depths),
-                    _ => pixels.write(shader, colors, depths),
+                    (Ok(colors), Ok(depths)) => pixels.write(0, shader, colors, depths),
+                    _ => pixels.write(0, shader, colors, depths),
                 }
             }
             let Some(normals) = &mut band.normal else { continue };
-            for (pixels, normals) in from.iter().zip(normals[to].chunks_mut(LANES)) {
-                for (i, normal) in normals.iter_mut().enumerate() {
-                    *normal = shader.in_world(pixels.normal.map(|n| n[i]).into());
-                }
+            for (normal, i) in normals[to].iter_mut().zip(first..) {
+                *normal = shader.in_world(from[i / LANES].normal.map(|n| n[i % LANES]).into());
             }
         }
     }

@@ -56,13 +56,13 @@ impl Default for Tile {
 }
 
 impl Tile {
-    /// Draws `nodes`, those with parts in the tile, the nearest first.
+    /// Draws `nodes`, those with parts in `rect`, the nearest first, and puts what tile `number` shows into its band.
     pub(crate) fn draw(
         &mut self,
         scene: &Scene<'_>,
         rect: &TileRect,
         nodes: impl Iterator<Item = Selected> + Clone,
-        band: &mut Band<'_>,
+        (band, number): (&mut Band<'_>, usize),
     ) {
         self.splats.clear();
         self.hidden.clear();
@@ -77,11 +77,11 @@ impl Tile {
             }
             let first = self.splats.as_slice().len();
             self.project(scene, rect, &selected);
-            kernel::nearest(&mut self.layer, &self.splats.as_slice()[first..]);
+            kernel::nearest(&mut self.layer, &self.splats.as_slice()[first..], kernel::SOFT);
             self.forget_farthest(&selected, rect);
         }
         if self.splats.as_slice().is_empty() {
-            band.clear(rect.x / WIDTH);
+            band.clear(number);
             return;
         }
         match (scene.normals, scene.cloud.has_opacities()) {
@@ -90,7 +90,7 @@ impl Tile {
             // Rarer: one more copy of the kernels is not worth what it saves.
             (_, true) => self.draw_layers::<true, true>(scene, rect, touched),
         }
-        write(&self.pixels, &scene.shader, rect, band);
+        write(&self.pixels, &scene.shader, rect, (band, number));
     }
 
     /// Composites all layers, beginning with the splats of the first, which touch these pixels; with extras if they
