@@ -25,6 +25,7 @@ mod surfel;
 
 use common::machine::results_folder;
 use common::report::{Outcome, trial_folder};
+use common::standing::stands;
 use common::timing::take_one_run_each;
 
 /// Something that is measured and written to files of its name.
@@ -126,7 +127,7 @@ fn usage() -> String {
     for Study { name, what, .. } in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n  mutants     how many faults tests see, from the runs of `.ci/mutants`\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too; `together DIR PART…` does some parts alone. `radiosity PART…` runs parts alone, such as `buildings` and `growth`; `clouds POINTS` ends with that size, and `ibpr floor` prints that part.\n"
+    text + "  all         all of these\n  stale       those of these that other sources made than the present ones: `all`, or its rest, where some were made already\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n  mutants     how many faults tests see, from the runs of `.ci/mutants`\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too; `together DIR PART…` does some parts alone. `radiosity PART…` runs parts alone, such as `buildings` and `growth`; `clouds POINTS` ends with that size, and `ibpr floor` prints that part.\n"
 }
 
 fn main() -> ExitCode {
@@ -176,13 +177,17 @@ fn main() -> ExitCode {
             return code(shprobe::together::run_parts(&out_dir, Some(Path::new(folder)), &arguments[2..]));
         }
         ["shprobe", _, ..] => return code(shprobe::run_with(&out_dir, &arguments[1..])),
-        [name] if name == "all" || STUDIES.iter().any(|s| s.name == name) => name,
+        [name] if ["all", "stale"].contains(&name) || STUDIES.iter().any(|s| s.name == name) => name,
         _ => {
             eprint!("{}", usage());
             return ExitCode::from(2);
         }
     };
-    let chosen = STUDIES.iter().filter(|s| name == "all" || s.name == name);
+    let chosen = STUDIES.iter().filter(|study| match name {
+        "all" => true,
+        "stale" => !stands(&out_dir, study.name),
+        _ => study.name == name,
+    });
     let codes: Vec<ExitCode> = chosen.map(|study| timed(study, study.run, &out_dir)).map(code).collect();
     codes.into_iter().find(|c| *c != ExitCode::SUCCESS).unwrap_or(ExitCode::SUCCESS)
 }

@@ -12,20 +12,25 @@ use proptest::test_runner::{Config, FileFailurePersistence, RngSeed};
 /// Seed of every property test, unless `PROPTEST_RNG_SEED` gives another.
 const SEED: u64 = 0x706f_696e_7473;
 
-/// Cases that `PROPTEST_CASES` is relative to: proptest's own default.
-const USUAL_CASES: u32 = 256;
+/// The variable that says how many times as many cases each property test has.
+const TIMES: &str = "TESTKIT_TIMES";
 
 /// How a property test runs: `cases` cases from a fixed seed, so that the same source gives the same result on every run.
 ///
-/// Exploring is asked for by proptest's own variables: `PROPTEST_RNG_SEED` is the seed, and `PROPTEST_CASES` scales the number of
-/// cases (256: as many as in a plain run, 2560: ten times as many). `.ci/explore` sets both. Seeds of failures are
-/// kept beside the test's source in `*.proptest-regressions` and run first from then on.
+/// `.ci/explore` explores: `PROPTEST_RNG_SEED` is the seed, and `TESTKIT_TIMES` multiplies the number of cases, so that tests keep
+/// their shares of the time. (proptest's own `PROPTEST_CASES` would give all tests the same number, those whose cases take a
+/// second, too; it stands in the place of both.) Seeds of failures are kept beside the test's source in
+/// `*.proptest-regressions` and run first from then on.
+///
+/// # Panics
+/// If `TESTKIT_TIMES` is no whole number above 0.
 #[must_use]
 pub fn config(cases: u32) -> Config {
     let given = Config::default();
-    let scaled = u64::from(cases) * u64::from(given.cases) / u64::from(USUAL_CASES);
+    let times = times(std::env::var(TIMES).ok().as_deref());
     Config {
-        cases: u32::try_from(scaled).unwrap_or(u32::MAX).max(1),
+        cases: cases.saturating_mul(times),
+        max_global_rejects: given.max_global_rejects.saturating_mul(times),
         rng_seed: match given.rng_seed {
             RngSeed::Random => RngSeed::Fixed(SEED),
             fixed => fixed,
@@ -33,6 +38,12 @@ pub fn config(cases: u32) -> Config {
         failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("proptest-regressions"))),
         ..given
     }
+}
+
+fn times(given: Option<&str>) -> u32 {
+    let Some(text) = given else { return 1 };
+    let number = text.parse().ok().filter(|n| *n > 0);
+    number.unwrap_or_else(|| panic!("{TIMES} is `{text}`, not a whole number above 0"))
 }
 
 /// Ends the case of a property test with what is wrong if a fact, a `Result<(), String>`, does not hold.
@@ -45,6 +56,7 @@ macro_rules! holds {
 
 #[cfg(test)]
 mod tests {
+    use super::times;
     use std::path::{Path, PathBuf};
 
     fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -56,6 +68,14 @@ mod tests {
             } else if name.ends_with(".rs") {
                 found.push(path);
             }
+        }
+    }
+
+    #[test]
+    fn cases_are_multiplied_by_a_whole_number() {
+        assert_eq!([None, Some("1"), Some("40")].map(times), [1, 1, 40]);
+        for text in ["", "0", "-1", "1.5", "many"] {
+            assert!(std::panic::catch_unwind(|| times(Some(text))).is_err(), "{text}");
         }
     }
 

@@ -26,5 +26,6 @@ pub(crate) mod report;
 pub(crate) mod rooms;
 pub(crate) mod scenes;
 pub(crate) mod similarity;
+pub(crate) mod standing;
 pub(crate) mod timing;
 pub(crate) mod true_surface;

@@ -20,6 +20,18 @@ fn commit() -> String {
     format!("commit {hash}{changed}")
 }
 
+/// Whether any source differs from those of a commit, or the commit is unknown. Results, prose and tests are no sources.
+pub(crate) fn differs_from(commit: &str) -> bool {
+    let sources = [
+        ":/",
+        ":!/studies/results",
+        ":!/.ci",
+        ":(top,exclude,glob)**/*.md",
+        ":(top,exclude,glob)*/tests/**",
+    ];
+    output("git", &[&["diff", "--quiet", commit, "--"], &sources[..]].concat()).is_none()
+}
+
 /// UTC, as 2026-11-25.
 fn today() -> String {
     OffsetDateTime::now_utc().date().to_string()
