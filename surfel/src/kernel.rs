@@ -72,8 +72,7 @@ impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<
     // instructions.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let (none, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
-        let nothing = simd.splat_f32s(f32::INFINITY);
+        let (none, nothing) = (simd.splat_f32s(0.0), simd.splat_f32s(f32::INFINITY));
         for s in self.splats {
             let softness = simd.splat_f32s(s.thickness * self.softness);
             for column in s.blocks() {
@@ -89,9 +88,10 @@ impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<
                         let (rest, depth) = strip.at::<FIRST>(simd, s, floor);
                         strip.step(simd);
                         let is_there = simd.greater_than_f32s(rest, none);
-                        // `rest` may exceed 1, where the plane comes towards the eye.
-                        let rim = simd.max_f32s(simd.sub_f32s(one, rest), none);
-                        let depth = simd.add_f32s(depth, simd.mul_f32s(softness, rim));
+                        // Never nearer than it is: `rest` may exceed 1, where the plane comes towards the eye.
+                        let soft =
+                            simd.sub_f32s(simd.add_f32s(depth, softness), simd.mul_f32s(softness, rest));
+                        let depth = simd.max_f32s(soft, depth);
                         let near = &mut S::as_mut_simd_f32s(&mut block.near).0[i];
                         // A minimum instead of a choice between the old and the new value: the latter would become a
                         // masked store, which takes longer than all the rest.

@@ -136,10 +136,8 @@ impl Renderer {
 
 /// The pixels that all tiles that meet a window show, as far as they may lie beyond the picture.
 fn tiles_of(window: &PixelRect) -> TileRect {
-    let (x, y) = (
-        window.x0 as usize / SHOWN_WIDTH * SHOWN_WIDTH,
-        window.y0 as usize / SHOWN_HEIGHT * SHOWN_HEIGHT,
-    );
+    let (x, y) =
+        (window.x0 as usize / SHOWN_WIDTH * SHOWN_WIDTH, window.y0 as usize / SHOWN_HEIGHT * SHOWN_HEIGHT);
     let width = (window.x1 as usize).next_multiple_of(SHOWN_WIDTH) - x;
     let height = (window.y1 as usize).next_multiple_of(SHOWN_HEIGHT) - y;
     TileRect { x, y, width, height }

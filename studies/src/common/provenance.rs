@@ -22,13 +22,8 @@ fn commit() -> String {
 
 /// Whether any source differs from those of a commit, or the commit is unknown. Results, prose and tests are no sources.
 pub(crate) fn differs_from(commit: &str) -> bool {
-    let sources = [
-        ":/",
-        ":!/studies/results",
-        ":!/.ci",
-        ":(top,exclude,glob)**/*.md",
-        ":(top,exclude,glob)*/tests/**",
-    ];
+    let sources =
+        [":/", ":!/studies/results", ":!/.ci", ":(top,exclude,glob)**/*.md", ":(top,exclude,glob)*/tests/**"];
     output("git", &[&["diff", "--quiet", commit, "--"], &sources[..]].concat()).is_none()
 }
 
