@@ -47,8 +47,8 @@ impl Cloud {
     ) -> Self {
         let (cubes, generations) = octree::divide(codes);
         let mut links = links::make(&cubes, &generations, &attributes);
-        if attributes.colors.is_some() && attributes.opacities.is_none() {
-            sharpen::sharpen(&cubes, &mut links);
+        if let (Some(colors), None) = (&attributes.colors, &attributes.opacities) {
+            sharpen::sharpen(&cubes, &mut links, colors);
         }
         let pairs = pairs::arrange(&cubes, &mut attributes, &mut links);
         let mut nodes = nodes(&cubes, &generations, &links, &attributes, two_sided);

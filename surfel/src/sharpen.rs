@@ -35,8 +35,10 @@ struct Place {
     link: u32,
 }
 
-/// Sharpens the colors of all links. Nothing with opacities: their edges would have to be sharpened alike.
-pub(crate) fn sharpen(cubes: &[Cube], links: &mut [Vec<Link>]) {
+/// Sharpens the colors of all links, within the range of those of points. Nothing with opacities: their edges would have to
+/// be sharpened alike.
+pub(crate) fn sharpen(cubes: &[Cube], links: &mut [Vec<Link>], of_points: &[[f32; 3]]) {
+    let range = range(of_points);
     let lists = cubes.iter().zip(&*links).zip(0..);
     let of_cube = |((cube, list), number): ((&Cube, &Vec<Link>), u32)| {
         let (level, cells) = (cube.level, list.iter().map(|l| cell(cube.level, l)).collect::<Vec<_>>());
@@ -53,13 +55,19 @@ pub(crate) fn sharpen(cubes: &[Cube], links: &mut [Vec<Link>]) {
                     around.add(link, &links[place.cube as usize][place.link as usize]);
                 }
             }
-            around.sharpened(link)
+            around.sharpened(link).clamp(range[0], range[1])
         })
         .collect::<Vec<_>>()
     });
     for (link, color) in links.iter_mut().flatten().zip(colors.into_iter().flatten()) {
         link.color = color;
     }
+}
+
+/// Least and largest of each channel.
+fn range(colors: &[[f32; 3]]) -> [Vec3; 2] {
+    let nothing = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+    colors.iter().map(|c| Vec3::from(*c)).fold(nothing, |[low, high], c| [low.min(c), high.max(c)])
 }
 
 /// The cell of a link in the grid of a level.
@@ -115,7 +123,7 @@ impl Around {
         let surrounded = 1.0 - self.way.length() / self.length;
         let amount = AMOUNT * 2.0 * VARIANCE * link.area * self.weight / self.length2;
         let change = (link.color - mean) * (amount.min(MOST) * surrounded * surrounded);
-        // Neither below 0 nor as far above: what is dark between bright links must not make these brighter on the whole.
+        // Not below 0, and not farther above than that: what is dark between bright links must not make these brighter on the whole.
         let change = change.clamp(-link.color, link.color);
         if change.is_finite() { link.color + change } else { link.color }
     }
@@ -132,8 +140,8 @@ const MOST: f32 = 1.5;
 mod tests {
     use super::*;
 
-    /// Links a step apart on a plane of 16 × 16 of them, in one cube.
-    fn sharpened(color: impl Fn(u32, u32) -> f32) -> Vec<f32> {
+    /// Links a step apart on a plane of 16 × 16 of them, in one cube; colors of points have this range.
+    fn sharpened(range: [f32; 2], color: impl Fn(u32, u32) -> f32) -> Vec<f32> {
         let step = 1 << 26;
         let link = |i: u32| Link {
             point: i,
@@ -146,14 +154,14 @@ mod tests {
         };
         let cube = Cube { points: 0..256, level: 3, children: 1..2 };
         let mut links = [(0..256).map(link).collect::<Vec<_>>()];
-        sharpen(&[cube], &mut links);
+        sharpen(&[cube], &mut links, &range.map(|c| [c; 3]));
         links[0].iter().map(|l| l.color.x).collect()
     }
 
     #[test]
     fn slopes_stay_and_waves_grow() {
-        let slope = sharpened(|x, y| 1.0 + 0.1 * x as f32 + 0.05 * y as f32);
-        let wave = sharpened(|x, _| 1.0 + 0.5 * (x as f32 * std::f32::consts::FRAC_PI_2).cos());
+        let slope = sharpened([0.0, 9.0], |x, y| 1.0 + 0.1 * x as f32 + 0.05 * y as f32);
+        let wave = sharpened([0.0, 2.0], |x, _| 1.0 + 0.5 * (x as f32 * std::f32::consts::FRAC_PI_2).cos());
         for (x, y) in (1..15).flat_map(|x| (1..15).map(move |y| (x, y))) {
             let i = (y * 16 + x) as usize;
             let (x, y) = (x as f32, y as f32);
@@ -169,9 +177,9 @@ mod tests {
 
     #[test]
     fn colors_stay_within_bounds() {
-        let spot = sharpened(|x, y| if (x, y) == (7, 7) { 100.0 } else { 0.0 });
-        assert!(spot.iter().all(|c| (0.0..=200.0).contains(c)), "{spot:?}");
-        let even = sharpened(|_, _| 0.3);
+        let spot = sharpened([0.0, 100.0], |x, y| if (x, y) == (7, 7) { 100.0 } else { 0.0 });
+        assert!(spot.iter().all(|c| (0.0..=100.0).contains(c)), "{spot:?}");
+        let even = sharpened([0.0, 1.0], |_, _| 0.3);
         assert!(even.iter().all(|c| (c - 0.3).abs() < 1e-6), "{even:?}");
     }
 }
