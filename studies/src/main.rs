@@ -49,7 +49,7 @@ impl Study {
 }
 
 const STUDIES: [Study; 16] = [
-    Study::new("dice", "areas of a triangle in the cells of a grid", run_dice).with_quick(run_dice),
+    Study::new("dice", "areas of a triangle in the cells of a grid", dice::run).with_quick(dice::run_quick),
     Study::new(
         "micropoint",
         "pictures against point sampling; foliage; shadows across texels",
@@ -96,11 +96,6 @@ const STUDIES: [Study; 16] = [
     Study::new("skip", "what costs nothing where it has nothing to do", skip::run),
     Study::new("report", "report.html, one page of all that is there", report::run).with_quick(report::run),
 ];
-
-fn run_dice(out_dir: &Path) -> Outcome {
-    dice::run(out_dir)?;
-    Ok(true)
-}
 
 /// Small sizes of those that have such, into the temporary folder; `false` if one of them failed.
 fn run_quick(studies: &[Study]) -> Outcome {

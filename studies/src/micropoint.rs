@@ -61,7 +61,11 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     }
     write_csv(out_dir, "micropoint", &[], &rows)?;
     chart(out_dir, "micropoint", &rows)?;
-    write(out_dir, "micropoint.md", &(markdown(&rows) + &growth::section() + &bumps::section()))?;
+    write(
+        out_dir,
+        "micropoint.md",
+        &(markdown(&rows) + &growth::section(&growth::COUNTS) + &bumps::section(bumps::SAMPLES)),
+    )?;
     Ok(foliage::run(out_dir)? && checker::run(out_dir)?)
 }
 
@@ -79,7 +83,7 @@ pub(crate) fn run_quick(out_dir: &Path) -> Outcome {
             let _ = writeln!(text, "| {scene} | {setting} | {rmse:.2e} | {largest:.2e} | {time} |");
         }
     }
-    text += &(growth::section() + &bumps::section());
+    text += &(growth::section(growth::FEW) + &bumps::section(bumps::FEW_SAMPLES));
     print!("{text}");
     write(out_dir, "micropoint.md", &text)?;
     Ok(true)

@@ -15,8 +15,9 @@ use std::fmt::Write as _;
 /// Pixels on a side.
 const SIZE: u32 = 96;
 
-/// Samples of the reference along a side of a pixel: 4096 in all.
-const SAMPLES: u32 = 64;
+/// Samples of the reference along a side of a pixel: 4096 in all, and fewer for a trial.
+pub(super) const SAMPLES: u32 = 64;
+pub(super) const FEW_SAMPLES: u32 = 32;
 
 /// Texels on a side of the height map.
 const TEXELS: u32 = 128;
@@ -35,13 +36,13 @@ const BANDS: [(u32, u32, &str); 4] =
     [(60, 96, "near"), (42, 60, "middle"), (33, 42, "far"), (26, 33, "very far")];
 
 /// The section: errors by distance, with as many cells and with as many samples.
-pub(super) fn section() -> String {
+pub(super) fn section(side: u32) -> String {
     let scene = scene();
-    let reference = sampled(&scene, SAMPLES);
+    let reference = sampled(&scene, side);
     let mut text = format!(
         "\n## Bumpy metal\n\nA plane of rough metal (roughness {ROUGHNESS}) under a height map, lit from before the eye, against {} samples a pixel. Errors are \
          relative to the mean radiance of the band.\n\n| method | seconds |",
-        SAMPLES * SAMPLES
+        side * side
     );
     BANDS
         .iter()

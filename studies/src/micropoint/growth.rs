@@ -8,19 +8,22 @@ use pointillist_micropoint::MicropointOptions;
 use std::fmt::Write as _;
 
 /// Stripes, each four times as many as before. Most of the parts that are added lie in the few rows at the horizon.
-const COUNTS: [u32; 5] = [50, 200, 800, 3200, 12_800];
+pub(super) const COUNTS: [u32; 5] = [50, 200, 800, 3200, 12_800];
 
 /// Pixels on a side.
 const SIZE: u32 = 256;
 
-/// The section: a table of counts and seconds with the exponent between each count and the one before.
-pub(super) fn section() -> String {
+/// For a trial.
+pub(super) const FEW: &[u32] = COUNTS.split_at(3).0;
+
+/// The section: a table of these counts and seconds with the exponent between each count and the one before.
+pub(super) fn section(counts: &[u32]) -> String {
     let mut text = String::from(
         "\n## Parts in a cell\n\nStripes to the horizon, ever more of them; the exponent is that of time against stripes since the row above.\n\n\
          | stripes | seconds | exponent |\n| ---: | ---: | ---: |\n",
     );
     let mut before: Option<(u32, f64)> = None;
-    for count in COUNTS {
+    for &count in counts {
         let scene = scenes::stripes(SIZE, count);
         let draw = || draw::emissive(&scene, MicropointOptions::DEFAULT).expect("the scene is valid");
         let (time, _) = on_one_thread(|| timed(draw));
