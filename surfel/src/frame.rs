@@ -1,6 +1,6 @@
 //! The picture, in tiles. `ibpr/src/frame.rs` says why `pointillist-ibpr` has one of its own.
 
-use crate::grid::{SHOWN_HEIGHT, SHOWN_WIDTH, TileRect};
+use crate::grid::{HEIGHT, TileRect, WIDTH};
 
 /// A drawn frame: layers of `width · height` entries, row by row from the top left pixel.
 ///
@@ -95,22 +95,22 @@ impl Frame {
             color: vec![[0.0; 4]; n],
             depth: vec![f32::INFINITY; n],
             normal: vec![[0.0; 3]; normal_count],
-            drawn: vec![false; width.div_ceil(SHOWN_WIDTH) * height.div_ceil(SHOWN_HEIGHT)],
+            drawn: vec![false; width.div_ceil(WIDTH) * height.div_ceil(HEIGHT)],
             counts: FrameCounts::default(),
         };
     }
 
     /// The frame in rows of tiles.
     pub(crate) fn bands(&mut self) -> Vec<Band<'_>> {
-        let n = self.width * SHOWN_HEIGHT;
+        let n = self.width * HEIGHT;
         let mut normals = self.normal.chunks_mut(n);
         let layers = self.color.chunks_mut(n).zip(self.depth.chunks_mut(n));
-        let drawn = self.drawn.chunks_mut(self.width.div_ceil(SHOWN_WIDTH));
+        let drawn = self.drawn.chunks_mut(self.width.div_ceil(WIDTH));
         layers
             .zip(drawn)
             .enumerate()
             .map(|(i, ((color, depth), drawn))| Band {
-                first_row: i * SHOWN_HEIGHT,
+                first_row: i * HEIGHT,
                 width: self.width,
                 color,
                 depth,
@@ -139,7 +139,7 @@ impl Band<'_> {
 
     /// Columns of a tile.
     fn columns(&self, tile: usize) -> std::ops::Range<usize> {
-        tile * SHOWN_WIDTH..((tile + 1) * SHOWN_WIDTH).min(self.width)
+        tile * WIDTH..((tile + 1) * WIDTH).min(self.width)
     }
 
     /// All tiles as one.

@@ -1,15 +1,15 @@
 //! Tiles of a picture: their size, and where they lie.
 
-/// Pixels that a tile draws: sums and depths fit into the second-level cache.
+/// Pixels that a tile shows: sums and depths fit into the second-level cache.
 pub(crate) const WIDTH: usize = 128;
 pub(crate) const HEIGHT: usize = 64;
 
 /// Pixels around those that a tile shows, which it draws too: `resolve` looks at the neighbours of a pixel.
 const RING: usize = 1;
 
-/// Pixels that a tile shows.
-pub(crate) const SHOWN_WIDTH: usize = WIDTH - 2 * RING;
-pub(crate) const SHOWN_HEIGHT: usize = HEIGHT - 2 * RING;
+/// Pixels that a tile draws.
+pub(crate) const DRAWN_WIDTH: usize = WIDTH + 2 * RING;
+pub(crate) const DRAWN_HEIGHT: usize = HEIGHT + 2 * RING;
 
 /// Side, in pixels, of the squares for which the farthest depth is kept, to skip hidden nodes.
 pub(crate) const SQUARE: usize = 16;

@@ -1,6 +1,5 @@
 //! Draws discs into a tile: nearest depths first, then weighted sums.
 
-use crate::grid::SQUARE;
 use crate::layer::{Depths, Extras, LANES, Layer, Open, PITCH, RAMP, Sums};
 use crate::splat::Splat;
 use pulp::{Arch, Simd, WithSimd};
@@ -44,9 +43,9 @@ pub(crate) fn add<const FIRST: bool, const WANTED: bool, const CLEAR: bool>(
     Arch::new().dispatch(Add::<FIRST, WANTED, CLEAR, _> { layer, splats, numbers, behind, open, slack });
 }
 
-/// The farthest of the nearest depths in some rows of a square: +∞ if a pixel has none, or lies beyond the picture.
-pub(crate) fn farthest(layer: &Layer, column: usize, rows: Range<usize>) -> f32 {
-    Arch::new().dispatch(Farthest { depths: &layer.depths, column, rows })
+/// The farthest of the nearest depths in these columns and rows of pixels, which begin with a block: +∞ if one has none.
+pub(crate) fn farthest(layer: &Layer, columns: Range<usize>, rows: Range<usize>) -> f32 {
+    Arch::new().dispatch(Farthest { depths: &layer.depths, columns, rows })
 }
 
 /// `softness` of discs that are kernels.
@@ -105,7 +104,7 @@ impl<'s, const FIRST: bool, I: Iterator<Item = &'s Splat>> WithSimd for Nearest<
 
 struct Farthest<'a> {
     depths: &'a [Depths],
-    column: usize,
+    columns: Range<usize>,
     rows: Range<usize>,
 }
 
@@ -114,12 +113,15 @@ impl WithSimd for Farthest<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f32 {
-        let mut farthest = simd.splat_f32s(f32::NEG_INFINITY);
+        let nothing = simd.splat_f32s(f32::NEG_INFINITY);
+        let mut farthest = nothing;
         for row in self.rows {
-            let first = row * PITCH + self.column * SQUARE / LANES;
-            for block in &self.depths[first..first + SQUARE / LANES] {
-                for near in S::as_simd_f32s(&block.near).0 {
-                    farthest = simd.max_f32s(*near, farthest);
+            for column in self.columns.start / LANES..self.columns.end.div_ceil(LANES) {
+                let count = simd.splat_f32s((self.columns.end - column * LANES) as f32);
+                let near = S::as_simd_f32s(&self.depths[row * PITCH + column].near).0;
+                for (near, ramp) in near.iter().zip(S::as_simd_f32s(&RAMP).0) {
+                    let near = simd.select_f32s(simd.less_than_f32s(*ramp, count), *near, nothing);
+                    farthest = simd.max_f32s(near, farthest);
                 }
             }
         }

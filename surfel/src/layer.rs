@@ -1,13 +1,13 @@
 //! Working memory of a tile, in blocks of pixels that are computed together.
 
-use crate::grid::{HEIGHT, SQUARE, WIDTH};
+use crate::grid::{DRAWN_HEIGHT, DRAWN_WIDTH, SQUARE};
 use std::ops::Range;
 
 /// Pixels of a block, next to one another in a row: a whole number of vectors of any processor.
 pub(crate) const LANES: usize = 8;
 
-/// Blocks from row to row.
-pub(crate) const PITCH: usize = WIDTH / LANES;
+/// Blocks from row to row: whole squares.
+pub(crate) const PITCH: usize = DRAWN_WIDTH.next_multiple_of(SQUARE) / LANES;
 
 /// A value for each pixel of a block.
 pub(crate) type Lanes = [f32; LANES];
@@ -78,7 +78,7 @@ pub(crate) struct Layer {
 
 impl Layer {
     pub(crate) fn new() -> Self {
-        let count = PITCH * HEIGHT;
+        let count = PITCH * DRAWN_HEIGHT;
         let depths = Depths { near: [0.0; LANES], floor: [0.0; LANES] };
         Self {
             depths: vec![depths; count],
@@ -111,10 +111,10 @@ impl Layer {
 
 /// Blocks of a tile with pixels that let light through: a bit for each column of blocks, in each row.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Open([u16; HEIGHT]);
+pub(crate) struct Open([u32; DRAWN_HEIGHT]);
 
 impl Open {
-    pub(crate) const NOWHERE: Self = Self([0; HEIGHT]);
+    pub(crate) const NOWHERE: Self = Self([0; DRAWN_HEIGHT]);
 
     /// Adds a block.
     #[inline(always)]
@@ -134,7 +134,7 @@ impl Open {
     /// Whether any of these blocks is open.
     #[inline(always)]
     pub(crate) fn meets(&self, columns: Range<usize>, rows: Range<usize>) -> bool {
-        let bits = ((1u32 << columns.end) - (1u32 << columns.start)) as u16;
+        let bits = (1u32 << columns.end) - (1u32 << columns.start);
         self.0[rows].iter().fold(0, |all, open| all | open) & bits != 0
     }
 }
@@ -148,8 +148,8 @@ pub(crate) struct Touched {
 }
 
 impl Touched {
-    pub(crate) const NOTHING: Self = Self { columns: [PITCH, 0], rows: [HEIGHT, 0] };
-    pub(crate) const ALL: Self = Self { columns: [0, PITCH], rows: [0, HEIGHT] };
+    pub(crate) const NOTHING: Self = Self { columns: [PITCH, 0], rows: [DRAWN_HEIGHT, 0] };
+    pub(crate) const ALL: Self = Self { columns: [0, PITCH], rows: [0, DRAWN_HEIGHT] };
 
     /// Adds columns and rows of pixels, the last not included.
     pub(crate) fn add(&mut self, columns: [usize; 2], rows: [usize; 2]) {
@@ -173,7 +173,8 @@ impl Touched {
         let outwards = |[first, last]: [usize; 2], side: usize| {
             [first / side * side, last.next_multiple_of(side).max(first / side * side)]
         };
-        Self { columns: outwards(self.columns, SQUARE / LANES), rows: outwards(self.rows, SQUARE) }
+        let rows = outwards(self.rows, SQUARE).map(|row| row.min(DRAWN_HEIGHT));
+        Self { columns: outwards(self.columns, SQUARE / LANES), rows }
     }
 
     /// Indices of all other blocks of the first `height` rows of a tile.

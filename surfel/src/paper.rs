@@ -16,7 +16,7 @@
 
 use crate::camera::Camera;
 use crate::frame::Band;
-use crate::grid::{SHOWN_HEIGHT, TileRect};
+use crate::grid::{HEIGHT, TileRect};
 use crate::kernel;
 use crate::layer::{LANES, Layer, PITCH, Touched};
 use crate::project::Projector;
@@ -298,5 +298,5 @@ pub(crate) fn reshape(cells: &mut Vec<PaperPixel>, width: usize, height: usize) 
 
 /// Rows of cells for each band of tiles.
 pub(crate) fn rows(cells: &mut [PaperPixel], width: usize) -> impl Iterator<Item = &mut [PaperPixel]> {
-    cells.chunks_mut(width * SHOWN_HEIGHT)
+    cells.chunks_mut(width * HEIGHT)
 }

@@ -4,7 +4,7 @@ use crate::camera::Camera;
 use crate::cloud::Cloud;
 use crate::error::SurfelError;
 use crate::frame::{Frame, FrameCounts};
-use crate::grid::{SHOWN_HEIGHT, SHOWN_WIDTH, TileRect};
+use crate::grid::{HEIGHT, TileRect, WIDTH};
 use crate::options::{Options, Procedure};
 use crate::paper::{self, PaperPixel, PaperTile};
 use crate::scene::Scene;
@@ -136,10 +136,9 @@ impl Renderer {
 
 /// The pixels that all tiles that meet a window show, as far as they may lie beyond the picture.
 fn tiles_of(window: &PixelRect) -> TileRect {
-    let (x, y) =
-        (window.x0 as usize / SHOWN_WIDTH * SHOWN_WIDTH, window.y0 as usize / SHOWN_HEIGHT * SHOWN_HEIGHT);
-    let width = (window.x1 as usize).next_multiple_of(SHOWN_WIDTH) - x;
-    let height = (window.y1 as usize).next_multiple_of(SHOWN_HEIGHT) - y;
+    let (x, y) = (window.x0 as usize / WIDTH * WIDTH, window.y0 as usize / HEIGHT * HEIGHT);
+    let width = (window.x1 as usize).next_multiple_of(WIDTH) - x;
+    let height = (window.y1 as usize).next_multiple_of(HEIGHT) - y;
     TileRect { x, y, width, height }
 }
 

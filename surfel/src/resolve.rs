@@ -1,7 +1,7 @@
 //! From the sums of a layer to the colors of its pixels, a block at a time.
 
 use crate::frame::Band;
-use crate::grid::{TileRect, WIDTH};
+use crate::grid::TileRect;
 use crate::layer::{LANES, Lanes, Layer, Open, PITCH, Pixels, Touched};
 use crate::shade::{INDEPENDENT, LEAST_LIGHT, Shader, opacity};
 use crate::vector::{Real, Vector};
@@ -189,7 +189,7 @@ fn keep<S: Simd, const FIRST: bool>(new: Vector<S>, mask: S::m32s, empty: f32, k
 }
 
 /// A value of each pixel of a row. With a block of room on either side.
-type Line = [f32; WIDTH + 2 * LANES];
+type Line = [f32; (PITCH + 2) * LANES];
 
 /// Sums and least weights of three pixels above one another, for each column of a row. Only pixels that were open
 /// before this layer count: the weights that it would have in others are unknown, and these do not count as its edge.
@@ -205,7 +205,7 @@ struct Lines {
 impl Lines {
     #[inline(always)]
     fn new() -> Self {
-        let zero = [0.0; WIDTH + 2 * LANES];
+        let zero = [0.0; (PITCH + 2) * LANES];
         Self { sums: zero, least: zero, counts: zero, above: zero }
     }
 

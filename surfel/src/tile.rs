@@ -5,7 +5,7 @@
 //! order of discs, up to the rounding of sums, and that is fixed by the order of nodes.
 
 use crate::frame::Band;
-use crate::grid::{HEIGHT, SQUARE, TileRect, WIDTH};
+use crate::grid::{DRAWN_HEIGHT, DRAWN_WIDTH, SQUARE, TileRect};
 use crate::kernel;
 use crate::layer::{Layer, Open, PITCH, Pixels, Touched};
 use crate::project::Projector;
@@ -24,7 +24,7 @@ const MOST_LAYERS: usize = 4;
 const MOST_CLEAR_LAYERS: usize = 16;
 
 /// Squares of a tile: columns, rows.
-const SQUARES: [usize; 2] = [WIDTH / SQUARE, HEIGHT / SQUARE];
+const SQUARES: [usize; 2] = [DRAWN_WIDTH.div_ceil(SQUARE), DRAWN_HEIGHT.div_ceil(SQUARE)];
 
 /// Working memory for tiles.
 pub(crate) struct Tile {
@@ -48,7 +48,7 @@ impl Default for Tile {
             splats: Splats::default(),
             behind: vec![],
             layer: Layer::new(),
-            pixels: vec![Pixels::EMPTY; PITCH * HEIGHT],
+            pixels: vec![Pixels::EMPTY; PITCH * DRAWN_HEIGHT],
             farthest: [[None; SQUARES[0]]; SQUARES[1]],
             hidden: vec![],
         }
@@ -196,8 +196,10 @@ impl Tile {
     }
 
     fn farthest(&mut self, rect: &TileRect, column: usize, row: usize) -> f32 {
-        *self.farthest[row][column]
-            .get_or_insert_with(|| kernel::farthest(&self.layer, column, rows_of_square(rect, row)))
+        *self.farthest[row][column].get_or_insert_with(|| {
+            let [columns, rows] = pixels_of_square(rect, [column, row]);
+            kernel::farthest(&self.layer, columns, rows)
+        })
     }
 
     fn forget_farthest(&mut self, selected: &Selected, rect: &TileRect) {
@@ -220,9 +222,10 @@ fn within([first, last]: [u16; 2], start: usize, size: usize) -> [usize; 2] {
     [end(first), end(last) + 1]
 }
 
-/// Rows of pixels.
-fn rows_of_square(rect: &TileRect, row: usize) -> Range<usize> {
-    row * SQUARE..((row + 1) * SQUARE).min(rect.height)
+/// Columns and rows of pixels.
+fn pixels_of_square(rect: &TileRect, [column, row]: [usize; 2]) -> [Range<usize>; 2] {
+    let span = |square: usize, size: usize| square * SQUARE..((square + 1) * SQUARE).min(size);
+    [span(column, rect.width), span(row, rect.height)]
 }
 
 /// The squares of a tile that a node touches.
