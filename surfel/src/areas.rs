@@ -39,6 +39,13 @@ const SAME_SURFACE: f64 = THICKNESS as f64 / (2.0 * SIGMA_PER_RADIUS);
 /// would grow to fill what lies beyond.
 const MOST_GROWTH: f64 = 2.0;
 
+/// Power of the cosine between two normals that `∫ Kᵢ Kⱼ` is multiplied by. Seen along the normal of one, the other's
+/// kernel reaches over the fold between them by less than on a plane. Without it, the sum of kernels falls below a half
+/// beside the folds of the Stanford bunny, and the background shows there: single pixels below 0.97 (0.5) in covered
+/// surroundings, of 100,000 points in 12 views of 1024² pixels, with a power of 0, 1, 2, 4 and 8: 2136 (216),
+/// 1765 (190), 1513 (155), 1211 (123), 867 (100). More makes edges fatter where surfaces fold.
+const FOLDED: i32 = 4;
+
 /// Most places that a kernel meets. Where there are more, a narrower kernel gives their areas as well, and the time
 /// stays linear for discs that are far too large.
 const MOST_NEAR: usize = 64;
@@ -110,10 +117,13 @@ struct Overlap {
 }
 
 /// The integrals of all pairs that have a place in common, each pair once: with the wider kernel, or the first of
-/// equally wide ones. Distances are taken in the tangent plane of that one.
+/// equally wide ones.
+///
+/// Distances are those along the surface, as on a sheet of paper folded between the two. Seen along the normal of one,
+/// what lies beyond the fold is foreshortened, and would look as dense as that.
 fn overlaps(places: &Places, sides: &Sides, around: &[Around]) -> Vec<Overlap> {
     parallel::flat_map(around.len(), |side, list| {
-        let wide = around[side].kernel;
+        let (wide, normal) = (around[side].kernel, sides.normals[side]);
         let at = |side: usize| places.at(sides.places[side] as usize);
         for &other in &around[side].sides {
             let narrow = around[other as usize].kernel;
@@ -121,12 +131,16 @@ fn overlaps(places: &Places, sides: &Sides, around: &[Around]) -> Vec<Overlap> {
                 continue;
             }
             let offset = at(other as usize) - at(side);
-            let height = offset.dot(sides.normals[side]);
+            let height = offset.dot(normal);
             if height.abs() > around[side].thickness {
                 continue;
             }
-            let across2 = offset.length_squared() - height.powi(2);
-            let integral = correlation(across2.max(0.0), 0.5 * (wide * wide + narrow * narrow));
+            let other_normal = sides.normals[other as usize];
+            let cosine = normal.dot(other_normal).abs();
+            let across = |height: f64| (offset.length_squared() - height.powi(2)).max(0.0).sqrt();
+            let along = (across(height) + across(offset.dot(other_normal))) / (1.0 + cosine);
+            let flat = correlation(along.powi(2), 0.5 * (wide * wide + narrow * narrow));
+            let integral = flat * cosine.powi(FOLDED);
             if integral > 0.0 {
                 list.push(Overlap { sides: [side as u32, other], integral });
             }
