@@ -44,6 +44,11 @@ impl Surface {
         Self::bunny("the Stanford Bunny, Loop-subdivided once", 1).unwrap_or_else(Self::bumpy)
     }
 
+    /// The Stanford Bunny as it comes, facets and all; without the data a sphere with bumps.
+    pub(crate) fn rough_bunny_or_bumpy() -> Self {
+        Self::bunny("the Stanford Bunny", 0).unwrap_or_else(Self::bumpy)
+    }
+
     fn bunny(name: &'static str, rounds: usize) -> Option<Self> {
         let path = data::folder()?.join("meshes/bunny/bun_zipper.ply");
         let mesh = read_ply("bun_zipper.ply", &std::fs::read(path).ok()?).ok()?;

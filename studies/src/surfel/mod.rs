@@ -9,6 +9,7 @@ mod lens_scenes;
 mod measured;
 mod same;
 mod sheets;
+mod specks;
 mod stage;
 mod study;
 mod tables;

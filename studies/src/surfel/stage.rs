@@ -33,6 +33,8 @@ pub(crate) struct Effort {
     pub(crate) views: &'static [u32],
     /// Between the view and the normal of two sheets, degrees.
     pub(crate) slants_deg: &'static [f64],
+    /// Numbers of points of a rough surface in which specks are counted.
+    pub(crate) speckled: &'static [usize],
 }
 
 impl Effort {
@@ -42,6 +44,7 @@ impl Effort {
         most_points: 1_274_573,
         views: &[4, 16, 64],
         slants_deg: &[0.0, 45.0, 60.0, 75.0],
+        speckled: &[50_000, 100_000, 400_000],
     };
     /// Enough to see that all works.
     pub(crate) const QUICK: Self = Self {
@@ -50,6 +53,7 @@ impl Effort {
         most_points: 500_000,
         views: &[4, 16],
         slants_deg: &[0.0],
+        speckled: &[50_000],
     };
 }
 

@@ -19,6 +19,7 @@ use crate::surfel::lens_scenes::{above, front, front_from, lens_name};
 use crate::surfel::measured::Measured;
 use crate::surfel::same::{Same, compare};
 use crate::surfel::sheets;
+use crate::surfel::specks;
 use crate::surfel::stage::{Effort, PROCEDURES, Stage, at_level};
 use crate::surfel::tables::{COLUMNS, Section, csv_rows, markdown};
 
@@ -90,7 +91,9 @@ fn measure(effort: Effort, out_dir: &Path) -> Outcome {
     chart_of(out_dir, "surfel", "colour, RMSE of sRGB", &rows)?;
     eprintln!("surfel: two sheets");
     let two_sheets = sheets::table(effort.slants_deg)?;
-    write(out_dir, "surfel.md", &markdown(&bench.setup(), &sections, &two_sheets, &same))?;
+    let specks = specks::table(effort.speckled)?;
+    let others = [("Two surfaces close to each other", two_sheets), ("Specks", specks)];
+    write(out_dir, "surfel.md", &markdown(&bench.setup(), &sections, &others, &same))?;
     // A picture that depends on threads or on the order of points is a fault, however fast.
     Ok(same.iter().all(|s| s.same_bytes || s.may_differ))
 }

@@ -249,8 +249,13 @@ fn same_table(same: &[Same]) -> String {
     text
 }
 
-/// The whole report; `setup` says what was drawn, `two_sheets` is the section about surfaces close to each other.
-pub(crate) fn markdown(setup: &str, sections: &[Section], two_sheets: &str, same: &[Same]) -> String {
+/// The whole report; `setup` says what was drawn, `others` are the titles and texts of sections without frames.
+pub(crate) fn markdown(
+    setup: &str,
+    sections: &[Section],
+    others: &[(&str, String)],
+    same: &[Same],
+) -> String {
     let mut text = format!(
         "# Point clouds: time against error\n\n`cargo run --release -p studies -- surfel` made this ({}). {setup}\n\n\
          *Blended* is `Procedure::Blended`, *paper* is `Procedure::Paper`. *CPU ms*: processor time of a frame on one thread, *wall \
@@ -270,6 +275,8 @@ pub(crate) fn markdown(setup: &str, sections: &[Section], two_sheets: &str, same
         let _ = write!(text, "\n## {}\n\n{ratio}{HEAD}", section.title);
         section.rows.iter().for_each(|m| text += &m.line());
     }
-    let _ = write!(text, "\n## Two surfaces close to each other\n\n{two_sheets}");
+    for (title, section) in others {
+        let _ = write!(text, "\n## {title}\n\n{section}");
+    }
     text + "\n## What must not change a picture\n\n97000 points.\n\n" + &same_table(same)
 }
