@@ -23,12 +23,6 @@ const ROUNDING: f64 = 1e-9;
 /// the surface has a crease between them: each side has to be covered by its own discs, but only up to the crease.
 const SAME_SURFACE: f64 = 0.5;
 
-/// A neighbour whose plane is inclined cuts the cell farther out, by 1/cos² of the angle and at most by this: seen along
-/// the normal of one side of a fold, the discs of the other side are foreshortened and reach over it by less than they
-/// do on a plane. Single pixels that show the background beside the folds of the bunny (see `areas.rs`; those below a
-/// half): 1211 (123) without it, 892 (54) with 1/cos and 713 (25) with 1/cos².
-const MOST_FOLDED: f64 = 2.0;
-
 /// Points between two calls of `done`.
 const TOLD: usize = 1 << 14;
 
@@ -183,10 +177,8 @@ impl VoronoiCell {
             if n.distance2 > 4.0 * cell.farthest2() {
                 return (cell, true);
             }
-            let cosine = normal.dot(n.normal);
-            if cosine > SAME_SURFACE {
-                let farther = cosine.powi(-2).clamp(1.0, MOST_FOLDED);
-                cell.cut(flat(n.offset), 0.5 * farther * n.distance2);
+            if normal.dot(n.normal) > SAME_SURFACE {
+                cell.cut(flat(n.offset), 0.5 * n.distance2);
             } else {
                 cell.cut_at_crease(flat(n.offset), flat(n.normal), n.offset.dot(n.normal));
             }

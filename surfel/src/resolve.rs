@@ -13,6 +13,10 @@ const LEAST_WEIGHT: f32 = 1e-30;
 /// A pixel next to one with less weight than this lies on an edge.
 const LEAST_INSIDE: f32 = 0.25;
 
+/// Where edges need to be made steeper than this, kernels are wider than a pixel, and gaps of a pixel are none of the
+/// surface's. Between finer points one may see through.
+const LEAST_WIDE: f32 = 1.0;
+
 /// Composites a layer behind what is in `pixels` (nothing before the `FIRST` layer), and clears its sums. Returns the
 /// blocks in which pixels that it touched are not yet opaque. Normals are kept if they are `WANTED`, and opacities
 /// looked at if the cloud is `CLEAR`.
@@ -72,7 +76,8 @@ impl<const FIRST: bool, const WANTED: bool, const CLEAR: bool> WithSimd
                     let is_there = weight.exceeds(LEAST_WEIGHT);
                     let inverse = weight.if_set(is_there, 1.0).inverse();
                     let mean = |sums: &Lanes| vector(sums) * inverse;
-                    let alpha = opacity(lines.evened::<S, FIRST>(weight, column, i), mean(sharpness));
+                    let sharpness = mean(sharpness);
+                    let alpha = opacity(lines.evened::<S, FIRST>(weight, sharpness, column, i), sharpness);
                     let under = Under { alpha, is_there, i };
                     let color = [mean(&color[0]), mean(&color[1]), mean(&color[2])];
                     let pixels = &mut pixels[index];
@@ -194,6 +199,8 @@ type Line = [f32; (PITCH + 2) * LANES];
 /// Sums and least weights of three pixels above one another, for each column of a row. Only pixels that were open
 /// before this layer count: the weights that it would have in others are unknown, and these do not count as its edge.
 struct Lines {
+    /// The row above, the row itself and the one below. Untouched after the first layer.
+    rows: [Line; 3],
     sums: Line,
     least: Line,
     /// How many of the three were open.
@@ -206,7 +213,7 @@ impl Lines {
     #[inline(always)]
     fn new() -> Self {
         let zero = [0.0; (PITCH + 2) * LANES];
-        Self { sums: zero, least: zero, counts: zero, above: zero }
+        Self { rows: [zero; 3], sums: zero, least: zero, counts: zero, above: zero }
     }
 
     /// Takes the weights of a row and its neighbours, one row after the other. Beyond the tile they are those of its
@@ -234,7 +241,11 @@ impl Lines {
                 let sum = above.weight + below.weight + own.weight;
                 lanes_mut::<S>(&mut self.sums, column)[i] = sum.lanes;
                 let mut least = above.weight.min(below.weight).min(own.weight);
-                if !FIRST {
+                if FIRST {
+                    for (line, row) in self.rows.iter_mut().zip([&above, &own, &below]) {
+                        lanes_mut::<S>(line, column)[i] = row.weight.lanes;
+                    }
+                } else {
                     let above_open =
                         if is_first { above.open } else { own.open.with(lanes::<S>(&self.above, column)[i]) };
                     least = own.least(own.open).min(above.least(above_open)).min(below.least(below.open));
@@ -245,18 +256,31 @@ impl Lines {
                 lanes_mut::<S>(&mut self.least, column)[i] = least.lanes;
             }
         }
-        for line in [&mut self.sums, &mut self.least, &mut self.counts] {
+        let [above, own, below] = &mut self.rows;
+        for line in [&mut self.sums, &mut self.least, &mut self.counts, above, own, below] {
             line[LANES - 1] = line[LANES];
             line[LANES + rect.width] = line[LANES + rect.width - 1];
         }
     }
 
-    /// The weights of a vector of pixels, or, inside a surface, those of the 3×3 pixels around each if they are larger.
+    /// The weights of a vector of pixels, those across gaps if they are larger, or, inside a surface, the means of the 3×3
+    /// pixels around each if they are.
     ///
     /// Weights vary between points, which the larger mean evens out. Over a blurred edge weights fall linearly, and the
     /// mean equals the weight in the middle.
     #[inline(always)]
-    fn evened<S: Simd, const FIRST: bool>(&self, own: Vector<S>, column: usize, i: usize) -> Vector<S> {
+    fn evened<S: Simd, const FIRST: bool>(
+        &self,
+        own: Vector<S>,
+        sharpness: Vector<S>,
+        column: usize,
+        i: usize,
+    ) -> Vector<S> {
+        let own = if FIRST {
+            self.across::<S>(own, column, i).or_where_unset(sharpness.exceeds(LEAST_WIDE), own.lanes)
+        } else {
+            own
+        };
         let [left, middle, right] = around(&self.sums, own, column, i);
         let sum = left + right + middle;
         let mean = if FIRST {
@@ -268,6 +292,20 @@ impl Lines {
         let [left, middle, right] = around(&self.least, own, column, i);
         let least = left.min(right).min(middle);
         mean.max(own).or_where_unset(least.exceeds(LEAST_INSIDE), own.lanes)
+    }
+
+    /// The weights of a vector of pixels, or for each the lesser of two opposite neighbours' if that is larger.
+    ///
+    /// It fills gaps as wide as a pixel and leaves edges where they are: on one side of an edge weights are less, and
+    /// along it they are the same.
+    #[inline(always)]
+    fn across<S: Simd>(&self, own: Vector<S>, column: usize, i: usize) -> Vector<S> {
+        let above = around(&self.rows[0], own, column, i);
+        let beside = around(&self.rows[1], own, column, i);
+        let below = around(&self.rows[2], own, column, i);
+        let straight = beside[0].min(beside[2]).max(above[1].min(below[1]));
+        let diagonal = above[0].min(below[2]).max(above[2].min(below[0]));
+        own.max(straight).max(diagonal)
     }
 }
 

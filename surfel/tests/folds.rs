@@ -1,0 +1,65 @@
+//! Surfaces with folds: seen along one side, the points of the other are foreshortened and look dense.
+
+use glam::{DVec3, dvec2, dvec3};
+use pointillist_surfel::invariants::{OwnedPoints, cloud, drawn, look_at};
+use pointillist_surfel::{Options, Projection};
+
+/// Points on a side of the fold and along half of it, one unit apart, each up to this far off its place.
+const SIDE: i32 = 30;
+const OFF: f64 = 0.35;
+
+/// Discs that leave no gap.
+const RADIUS: f32 = 0.85;
+
+/// Pixels on a side of the picture, and from point to point.
+const SIZE: u32 = 64;
+const SPACING_PX: f64 = 2.0;
+
+/// Numbers from 0 to 1.
+fn random(mut state: u64) -> impl FnMut() -> f64 {
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Two half planes that meet in the y axis, inclined to the x axis by half the angle each.
+fn folded(angle: f64, seed: u64) -> OwnedPoints {
+    let (sin, cos) = (0.5 * angle).sin_cos();
+    let mut next = random(seed);
+    let mut off = || OFF * (2.0 * next() - 1.0);
+    let (mut positions, mut normals) = (vec![], vec![]);
+    for (i, j) in (-SIDE..SIDE).flat_map(|i| (-SIDE..SIDE).map(move |j| (i, j))) {
+        let at = dvec2(f64::from(i) + 0.5 + off(), f64::from(j) + off());
+        let side = at.x.signum();
+        positions.push(dvec3(cos * at.x, at.y, -sin * at.x.abs()));
+        normals.push(dvec3(side * sin, 0.0, cos).as_vec3());
+    }
+    let radii = Some(vec![RADIUS; positions.len()]);
+    OwnedPoints { positions, normals: Some(normals), radii, ..OwnedPoints::default() }
+}
+
+/// Pixels about the fold that are not opaque, of 20 surfaces, seen from between the middle, 0, and along one side, 1.
+fn specks(angle_deg: f64, seen: f64) -> usize {
+    let angle = angle_deg.to_radians();
+    let (x, z) = (0.5 * seen * angle).sin_cos();
+    let camera = Projection::Orthographic { height: f64::from(SIZE) / SPACING_PX };
+    let view = look_at(100.0 * dvec3(x, 0.0, z), DVec3::ZERO, camera, SIZE, SIZE).unwrap();
+    let middle = SIZE as usize / 2;
+    let of_surface = |seed: u64| {
+        let cloud = cloud(&folded(angle, 7919 * seed + 1)).unwrap();
+        let frame = drawn(&cloud, &view, &Options::default()).unwrap();
+        let rows = frame.color().chunks_exact(frame.width()).skip(8).take(SIZE as usize - 16);
+        rows.flat_map(|row| &row[middle - 10..middle + 10]).filter(|color| color[3] < 0.97).count()
+    };
+    (0..20).map(of_surface).sum()
+}
+
+#[test]
+fn folds_are_as_opaque_as_planes() {
+    for angle_deg in [0.0, 20.0, 40.0, 60.0] {
+        for seen in [0.0, 0.5] {
+            assert_eq!(specks(angle_deg, seen), 0, "folded by {angle_deg}°, seen from {seen}");
+        }
+    }
+}
