@@ -112,9 +112,10 @@ struct Overlap {
 /// The integrals of all pairs that have a place in common, each pair once: with the wider kernel, or the first of
 /// equally wide ones.
 ///
-/// Distances are those in the tangent planes, or through space where these are inclined to each other: seen along the
-/// normal of one side of a fold, what lies on the other is foreshortened and would look as dense as that. (Distances along
-/// the folded surface are longer still. They leave fewer gaps, but edges become fat where a surface is thin.)
+/// Distances are those in the tangent planes, or, where these are inclined to each other, half way between those and the ones
+/// through space, in squares: seen along the normal of one side of a fold, what lies on the other is foreshortened and would
+/// look as dense as that. Longer distances give larger areas, which leave fewer gaps at folds, but edges become fat where a
+/// surface is thin.
 fn overlaps(places: &Places, sides: &Sides, around: &[Around]) -> Vec<Overlap> {
     parallel::flat_map(around.len(), |side, list| {
         let (wide, normal) = (around[side].kernel, sides.normals[side]);
@@ -133,7 +134,7 @@ fn overlaps(places: &Places, sides: &Sides, around: &[Around]) -> Vec<Overlap> {
             let cosine = normal.dot(other_normal).abs();
             let across = |height: f64| (offset.length_squared() - height.powi(2)).max(0.0).sqrt();
             let mean = 0.5 * (across(height) + across(offset.dot(other_normal)));
-            let distance2 = mean * mean * 2.0 / (1.0 + cosine);
+            let distance2 = mean * mean * (0.5 + 1.0 / (1.0 + cosine));
             let integral = correlation(distance2, 0.5 * (wide * wide + narrow * narrow));
             if integral > 0.0 {
                 list.push(Overlap { sides: [side as u32, other], integral });
