@@ -199,8 +199,9 @@ type Line = [f32; (PITCH + 2) * LANES];
 /// Sums and least weights of three pixels above one another, for each column of a row. Only pixels that were open
 /// before this layer count: the weights that it would have in others are unknown, and these do not count as its edge.
 struct Lines {
-    /// The row above, the row itself and the one below. Untouched after the first layer.
+    /// Weights and nearest depths of the row above, the row itself and the one below. Untouched after the first layer.
     rows: [Line; 3],
+    near: [Line; 3],
     sums: Line,
     least: Line,
     /// How many of the three were open.
@@ -213,7 +214,7 @@ impl Lines {
     #[inline(always)]
     fn new() -> Self {
         let zero = [0.0; (PITCH + 2) * LANES];
-        Self { rows: [zero; 3], sums: zero, least: zero, counts: zero, above: zero }
+        Self { rows: [zero; 3], near: [zero; 3], sums: zero, least: zero, counts: zero, above: zero }
     }
 
     /// Takes the weights of a row and its neighbours, one row after the other. Beyond the tile they are those of its
@@ -245,6 +246,10 @@ impl Lines {
                     for (line, row) in self.rows.iter_mut().zip([&above, &own, &below]) {
                         lanes_mut::<S>(line, column)[i] = row.weight.lanes;
                     }
+                    for (line, row) in self.near.iter_mut().zip(rows) {
+                        let near = &layer.depths[row * PITCH + column].near;
+                        lanes_mut::<S>(line, column)[i] = S::as_simd_f32s(near).0[i];
+                    }
                 } else {
                     let above_open =
                         if is_first { above.open } else { own.open.with(lanes::<S>(&self.above, column)[i]) };
@@ -256,8 +261,8 @@ impl Lines {
                 lanes_mut::<S>(&mut self.least, column)[i] = least.lanes;
             }
         }
-        let [above, own, below] = &mut self.rows;
-        for line in [&mut self.sums, &mut self.least, &mut self.counts, above, own, below] {
+        let Self { rows, near, sums, least, counts, .. } = self;
+        for line in rows.iter_mut().chain(near).chain([sums, least, counts]) {
             line[LANES - 1] = line[LANES];
             line[LANES + rect.width] = line[LANES + rect.width - 1];
         }
@@ -296,17 +301,38 @@ impl Lines {
 
     /// The weights of a vector of pixels, or for each the lesser of two opposite neighbours' if that is larger.
     ///
-    /// It fills gaps as wide as a pixel and leaves edges where they are: on one side of an edge weights are less, and
-    /// along it they are the same.
+    /// It fills gaps as wide as a pixel and leaves edges where they are: on one side of an edge weights are less or of
+    /// another surface, and along it they are the same.
     #[inline(always)]
     fn across<S: Simd>(&self, own: Vector<S>, column: usize, i: usize) -> Vector<S> {
-        let above = around(&self.rows[0], own, column, i);
-        let beside = around(&self.rows[1], own, column, i);
-        let below = around(&self.rows[2], own, column, i);
-        let straight = beside[0].min(beside[2]).max(above[1].min(below[1]));
-        let diagonal = above[0].min(below[2]).max(above[2].min(below[0]));
-        own.max(straight).max(diagonal)
+        let [above, beside, below] = &self.rows;
+        let above = around(above, own, column, i);
+        let beside = around(beside, own, column, i);
+        let below = around(below, own, column, i);
+        let [near_above, near_beside, near_below] = &self.near;
+        let near_above = around(near_above, own, column, i);
+        let near_beside = around(near_beside, own, column, i);
+        let near_below = around(near_below, own, column, i);
+        let near = near_beside[1];
+        own.max(between(near, [beside[0], beside[2]], [near_beside[0], near_beside[2]]))
+            .max(between(near, [above[1], below[1]], [near_above[1], near_below[1]]))
+            .max(between(near, [above[0], below[2]], [near_above[0], near_below[2]]))
+            .max(between(near, [above[2], below[0]], [near_above[2], near_below[0]]))
     }
+}
+
+/// The lesser weight of two opposite neighbours of pixels with a surface at these nearest depths; 0 where that of one of the
+/// two lies behind it.
+///
+/// From pixel to pixel a surface goes farther as it came nearer. Beside an edge one neighbour is of the surface and the
+/// other of what is behind: they are farther in the mean by half of what they differ by. In a gap, depths count for more
+/// than beside it (see `kernel::nearest`).
+#[inline(always)]
+fn between<S: Simd>(near: Vector<S>, weights: [Vector<S>; 2], nears: [Vector<S>; 2]) -> Vector<S> {
+    let ([a, b], [near_a, near_b]) = (weights, nears);
+    let apart = near_a.max(near_b) - near_a.min(near_b);
+    let is_behind = (near_a + near_b - near * 2.0).is_above(apart * 0.5);
+    near.like(0.0).or_where_unset(is_behind, a.min(b).lanes)
 }
 
 /// The vectors of a block in a line.

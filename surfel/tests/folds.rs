@@ -1,6 +1,7 @@
-//! Surfaces with folds: seen along one side, the points of the other are foreshortened and look dense.
+//! Surfaces with folds and edges: what is one surface has no gaps, and what is in front of another covers no more of it for
+//! that.
 
-use glam::{DVec3, dvec2, dvec3};
+use glam::{DVec3, Vec3, dvec2, dvec3};
 use pointillist_surfel::invariants::{OwnedPoints, cloud, drawn, look_at};
 use pointillist_surfel::{Options, Projection};
 
@@ -61,5 +62,44 @@ fn folds_are_as_opaque_as_planes() {
         for seen in [0.0, 0.5] {
             assert_eq!(specks(angle_deg, seen), 0, "folded by {angle_deg}°, seen from {seen}");
         }
+    }
+}
+
+/// Two sheets across the view: a red one that ends at x = 0, and a white one behind it, or nothing.
+fn edge(behind: bool, seed: u64) -> OwnedPoints {
+    let mut next = random(seed);
+    let mut off = || OFF * (2.0 * next() - 1.0);
+    let (mut positions, mut colors) = (vec![], vec![]);
+    for (i, j) in (-SIDE..SIDE).flat_map(|i| (-SIDE..SIDE).map(move |j| (i, j))) {
+        let at = dvec2(f64::from(i) + 0.5 + off(), f64::from(j) + off());
+        if at.x < 0.0 {
+            positions.push(at.extend(0.0));
+            colors.push([1.0, 0.0, 0.0]);
+        }
+        let at = dvec2(f64::from(i) + 0.5 + off(), f64::from(j) + off());
+        if behind {
+            positions.push(at.extend(-20.0));
+            colors.push([1.0, 1.0, 1.0]);
+        }
+    }
+    let (normals, radii) = (Some(vec![Vec3::Z; positions.len()]), Some(vec![RADIUS; positions.len()]));
+    OwnedPoints { positions, normals, radii, colors: Some(colors), ..OwnedPoints::default() }
+}
+
+#[test]
+fn edges_before_a_surface_are_where_they_are_before_nothing() {
+    let camera = Projection::Orthographic { height: f64::from(SIZE) / SPACING_PX };
+    let view = look_at(100.0 * DVec3::Z, DVec3::ZERO, camera, SIZE, SIZE).unwrap();
+    let mut options = Options::default();
+    options.ambient = 1.0;
+    // Red that is not white, per row, in pixels.
+    let covered = |behind: bool, seed: u64| {
+        let frame = drawn(&cloud(&edge(behind, seed)).unwrap(), &view, &options).unwrap();
+        let red: f32 = frame.color().iter().map(|color| color[0] - color[1]).sum();
+        red / SIZE as f32
+    };
+    for seed in (1..200).step_by(20) {
+        let [alone, before] = [false, true].map(|behind| covered(behind, seed));
+        assert!((alone - before).abs() < 0.1, "{alone} pixels alone, {before} before a surface");
     }
 }
