@@ -36,7 +36,7 @@ const COVERED: f32 = 0.999;
 /// What was counted in all views.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
-    /// Pixels that show the surface, its middle at least.
+    /// Pixels that are at least half opaque.
     covered: usize,
     specks: usize,
     holes: usize,
