@@ -4,8 +4,8 @@
 pub(crate) const WIDTH: usize = 128;
 pub(crate) const HEIGHT: usize = 64;
 
-/// Pixels around those that a tile shows, which it draws too: `resolve` looks at the neighbours of a pixel.
-const RING: usize = 1;
+/// Pixels around those that a tile shows, which it draws too: `resolve` looks at the neighbours of a pixel, and at theirs.
+pub(crate) const RING: usize = 2;
 
 /// Pixels that a tile draws.
 pub(crate) const DRAWN_WIDTH: usize = WIDTH + 2 * RING;

@@ -1,11 +1,12 @@
 //! From the sums of a layer to the colors of its pixels, a block at a time.
 
 use crate::frame::Band;
-use crate::grid::TileRect;
+use crate::grid::{RING, TileRect};
 use crate::layer::{LANES, Lanes, Layer, Open, PITCH, Pixels, Touched};
 use crate::shade::{INDEPENDENT, LEAST_LIGHT, Shader, opacity};
 use crate::vector::{Real, Vector};
 use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
+use std::ops::Range;
 
 /// Weights below this count as 0: their inverse could overflow.
 const LEAST_WEIGHT: f32 = 1e-30;
@@ -13,9 +14,14 @@ const LEAST_WEIGHT: f32 = 1e-30;
 /// A pixel next to one with less weight than this lies on an edge.
 const LEAST_INSIDE: f32 = 0.25;
 
-/// Where edges need to be made steeper than this, kernels are wider than a pixel, and gaps of a pixel are none of the
-/// surface's. Between finer points one may see through.
-const LEAST_WIDE: f32 = 1.0;
+/// Gaps that are none of a surface's: how steep edges need to be made where kernels are that wide, and how far the pixels
+/// that hold the surface on either side lie from one in the gap. From the first on, kernels are wider than a pixel, and
+/// gaps of a pixel are filled; from the second on (discs with a radius of a pixel) those of two and three. Between finer
+/// points one may see through. (Where kernels are narrower, the steepness is 1, up to rounding.)
+const GAPS: [(f32, &[[isize; 2]]); 2] = [(1.01, &[[1, 1]]), (1.44, &[[2, 2], [1, 2], [2, 1]])];
+
+/// Columns and rows from a pixel to those neighbours that have another on the opposite side.
+const DIRECTIONS: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
 
 /// Composites a layer behind what is in `pixels` (nothing before the `FIRST` layer), and clears its sums. Returns the
 /// blocks in which pixels that it touched are not yet opaque. Normals are kept if they are `WANTED`, and opacities
@@ -77,7 +83,11 @@ impl<const FIRST: bool, const WANTED: bool, const CLEAR: bool> WithSimd
                     let inverse = weight.if_set(is_there, 1.0).inverse();
                     let mean = |sums: &Lanes| vector(sums) * inverse;
                     let sharpness = mean(sharpness);
-                    let alpha = opacity(lines.evened::<S, FIRST>(weight, sharpness, column, i), sharpness);
+                    let mut evened = lines.evened::<S, FIRST>(weight, column, i);
+                    if FIRST {
+                        evened = lines.filled(simd, [weight, evened], sharpness, [row, column, i]);
+                    }
+                    let alpha = opacity(evened, sharpness);
                     let under = Under { alpha, is_there, i };
                     let color = [mean(&color[0]), mean(&color[1]), mean(&color[2])];
                     let pixels = &mut pixels[index];
@@ -196,12 +206,16 @@ fn keep<S: Simd, const FIRST: bool>(new: Vector<S>, mask: S::m32s, empty: f32, k
 /// A value of each pixel of a row. With a block of room on either side.
 type Line = [f32; (PITCH + 2) * LANES];
 
+/// The rows around one, and itself in the middle.
+const AROUND: usize = 2 * RING + 1;
+
 /// Sums and least weights of three pixels above one another, for each column of a row. Only pixels that were open
 /// before this layer count: the weights that it would have in others are unknown, and these do not count as its edge.
 struct Lines {
-    /// Weights and nearest depths of the row above, the row itself and the one below. Untouched after the first layer.
-    rows: [Line; 3],
-    near: [Line; 3],
+    /// Weights and nearest depths of the rows around, each at its number modulo [`AROUND`]. Untouched after the first
+    /// layer.
+    rows: [Line; AROUND],
+    near: [Line; AROUND],
     sums: Line,
     least: Line,
     /// How many of the three were open.
@@ -214,7 +228,8 @@ impl Lines {
     #[inline(always)]
     fn new() -> Self {
         let zero = [0.0; (PITCH + 2) * LANES];
-        Self { rows: [zero; 3], near: [zero; 3], sums: zero, least: zero, counts: zero, above: zero }
+        let (rows, near) = ([zero; AROUND], [zero; AROUND]);
+        Self { rows, near, sums: zero, least: zero, counts: zero, above: zero }
     }
 
     /// Takes the weights of a row and its neighbours, one row after the other. Beyond the tile they are those of its
@@ -228,64 +243,89 @@ impl Lines {
         touched: &Touched,
         row: usize,
     ) {
-        let rows = [row.saturating_sub(1), row, (row + 1).min(rect.height - 1)];
-        let is_first = row == 0 || row == touched.rows().start;
+        let is_first = row == touched.rows().start;
         let columns = touched.columns();
-        let first = columns.start.saturating_sub(1);
-        let last = (columns.end + 1).min(rect.width.div_ceil(LANES));
-        for column in first..last {
-            for i in 0..LANES / S::F32_LANES {
-                // No closures: a function compiled on its own would not use the wide instructions.
-                let above = Weights::<S>::new::<FIRST>(simd, layer, rows[0] * PITCH + column, i);
-                let own = Weights::<S>::new::<FIRST>(simd, layer, rows[1] * PITCH + column, i);
-                let below = Weights::<S>::new::<FIRST>(simd, layer, rows[2] * PITCH + column, i);
-                let sum = above.weight + below.weight + own.weight;
-                lanes_mut::<S>(&mut self.sums, column)[i] = sum.lanes;
-                let mut least = above.weight.min(below.weight).min(own.weight);
-                if FIRST {
-                    for (line, row) in self.rows.iter_mut().zip([&above, &own, &below]) {
-                        lanes_mut::<S>(line, column)[i] = row.weight.lanes;
-                    }
-                    for (line, row) in self.near.iter_mut().zip(rows) {
-                        let near = &layer.depths[row * PITCH + column].near;
-                        lanes_mut::<S>(line, column)[i] = S::as_simd_f32s(near).0[i];
-                    }
-                } else {
-                    let above_open =
-                        if is_first { above.open } else { own.open.with(lanes::<S>(&self.above, column)[i]) };
-                    least = own.least(own.open).min(above.least(above_open)).min(below.least(below.open));
-                    let count = above_open + own.open + below.open;
-                    lanes_mut::<S>(&mut self.counts, column)[i] = count.lanes;
-                    lanes_mut::<S>(&mut self.above, column)[i] = own.open.lanes;
-                }
-                lanes_mut::<S>(&mut self.least, column)[i] = least.lanes;
+        let columns = columns.start.saturating_sub(1)..(columns.end + 1).min(rect.width.div_ceil(LANES));
+        if FIRST {
+            let new = if is_first { 0 } else { AROUND - 1 };
+            for number in row + new..row + AROUND {
+                self.take_row(layer, rect, columns.clone(), number);
             }
+            self.add_rows(simd, columns, row);
+        } else {
+            let rows = [row.saturating_sub(1), row, (row + 1).min(rect.height - 1)];
+            self.add_open(simd, layer, columns, (rows, is_first));
+            widen(&mut self.counts, rect);
         }
-        let Self { rows, near, sums, least, counts, .. } = self;
-        for line in rows.iter_mut().chain(near).chain([sums, least, counts]) {
-            line[LANES - 1] = line[LANES];
-            line[LANES + rect.width] = line[LANES + rect.width - 1];
+        widen(&mut self.sums, rect);
+        widen(&mut self.least, rect);
+    }
+
+    /// Takes the weights and nearest depths of row `number` − [`RING`].
+    #[inline(always)]
+    fn take_row(&mut self, layer: &Layer, rect: &TileRect, columns: Range<usize>, number: usize) {
+        let row = number.saturating_sub(RING).min(rect.height - 1);
+        let weights = &mut self.rows[number % AROUND];
+        let near = &mut self.near[number % AROUND];
+        let line = (columns.start + 1) * LANES..(columns.end + 1) * LANES;
+        let blocks = row * PITCH + columns.start..row * PITCH + columns.end;
+        for (to, sums) in weights[line.clone()].chunks_exact_mut(LANES).zip(&layer.sums[blocks.clone()]) {
+            to.copy_from_slice(&sums.0[0]);
+        }
+        for (to, depths) in near[line].chunks_exact_mut(LANES).zip(&layer.depths[blocks]) {
+            to.copy_from_slice(&depths.near);
+        }
+        widen(weights, rect);
+        widen(near, rect);
+    }
+
+    /// Adds up three rows about this one, all of whose pixels are open.
+    #[inline(always)]
+    fn add_rows<S: Simd>(&mut self, simd: S, columns: Range<usize>, row: usize) {
+        let [above, own, below] = [RING - 1, RING, RING + 1].map(|i| &self.rows[(row + i) % AROUND]);
+        for column in columns {
+            for i in 0..LANES / S::F32_LANES {
+                let weight = |line: &Line| Vector::new(simd, lanes::<S>(line, column)[i]);
+                let (above, own, below) = (weight(above), weight(own), weight(below));
+                lanes_mut::<S>(&mut self.sums, column)[i] = (above + below + own).lanes;
+                lanes_mut::<S>(&mut self.least, column)[i] = above.min(below).min(own).lanes;
+            }
         }
     }
 
-    /// The weights of a vector of pixels, those across gaps if they are larger, or, inside a surface, the means of the 3×3
-    /// pixels around each if they are.
+    /// Adds up three rows, as far as they are open; whether the middle one `is_first` of the layer.
+    #[inline(always)]
+    fn add_open<S: Simd>(
+        &mut self,
+        simd: S,
+        layer: &Layer,
+        columns: Range<usize>,
+        ([above, row, below], is_first): ([usize; 3], bool),
+    ) {
+        for column in columns {
+            for i in 0..LANES / S::F32_LANES {
+                // No closures: a function compiled on its own would not use the wide instructions.
+                let above = Weights::<S>::new(simd, layer, above * PITCH + column, i);
+                let own = Weights::<S>::new(simd, layer, row * PITCH + column, i);
+                let below = Weights::<S>::new(simd, layer, below * PITCH + column, i);
+                let above_open =
+                    if is_first { above.open } else { own.open.with(lanes::<S>(&self.above, column)[i]) };
+                let least = own.least(own.open).min(above.least(above_open)).min(below.least(below.open));
+                let sum = above.weight + below.weight + own.weight;
+                lanes_mut::<S>(&mut self.sums, column)[i] = sum.lanes;
+                lanes_mut::<S>(&mut self.least, column)[i] = least.lanes;
+                lanes_mut::<S>(&mut self.counts, column)[i] = (above_open + own.open + below.open).lanes;
+                lanes_mut::<S>(&mut self.above, column)[i] = own.open.lanes;
+            }
+        }
+    }
+
+    /// The weights of a vector of pixels, or, inside a surface, the means of the 3×3 pixels around each if they are larger.
     ///
     /// Weights vary between points, which the larger mean evens out. Over a blurred edge weights fall linearly, and the
     /// mean equals the weight in the middle.
     #[inline(always)]
-    fn evened<S: Simd, const FIRST: bool>(
-        &self,
-        own: Vector<S>,
-        sharpness: Vector<S>,
-        column: usize,
-        i: usize,
-    ) -> Vector<S> {
-        let own = if FIRST {
-            self.across::<S>(own, column, i).or_where_unset(sharpness.exceeds(LEAST_WIDE), own.lanes)
-        } else {
-            own
-        };
+    fn evened<S: Simd, const FIRST: bool>(&self, own: Vector<S>, column: usize, i: usize) -> Vector<S> {
         let [left, middle, right] = around(&self.sums, own, column, i);
         let sum = left + right + middle;
         let mean = if FIRST {
@@ -299,40 +339,83 @@ impl Lines {
         mean.max(own).or_where_unset(least.exceeds(LEAST_INSIDE), own.lanes)
     }
 
-    /// The weights of a vector of pixels, or for each the lesser of two opposite neighbours' if that is larger.
+    /// The weights of a vector of pixels, evened, where their own leave gaps raised to the lesser of two on opposite sides.
     ///
-    /// It fills gaps as wide as a pixel and leaves edges where they are: on one side of an edge weights are less or of
-    /// another surface, and along it they are the same.
+    /// It fills gaps as wide as kernels, up to three pixels, and leaves edges where they are: on one side of an edge
+    /// weights are less or of another surface, and along it they are the same.
     #[inline(always)]
-    fn across<S: Simd>(&self, own: Vector<S>, column: usize, i: usize) -> Vector<S> {
-        let [above, beside, below] = &self.rows;
-        let above = around(above, own, column, i);
-        let beside = around(beside, own, column, i);
-        let below = around(below, own, column, i);
-        let [near_above, near_beside, near_below] = &self.near;
-        let near_above = around(near_above, own, column, i);
-        let near_beside = around(near_beside, own, column, i);
-        let near_below = around(near_below, own, column, i);
-        let near = near_beside[1];
-        own.max(between(near, [beside[0], beside[2]], [near_beside[0], near_beside[2]]))
-            .max(between(near, [above[1], below[1]], [near_above[1], near_below[1]]))
-            .max(between(near, [above[0], below[2]], [near_above[0], near_below[2]]))
-            .max(between(near, [above[2], below[0]], [near_above[2], near_below[0]]))
+    fn filled<S: Simd>(
+        &self,
+        simd: S,
+        [own, weight]: [Vector<S>; 2],
+        sharpness: Vector<S>,
+        place: [usize; 3],
+    ) -> Vector<S> {
+        let is_clear = Vector::all(simd, 1.0).is_above(opacity(weight, sharpness));
+        let is_gap = simd.and_m32s(is_clear, own.exceeds(LEAST_INSIDE));
+        let mut filled = weight;
+        for (least_wide, distances) in GAPS {
+            let is_wide = simd.and_m32s(is_gap, sharpness.exceeds(least_wide));
+            if simd.first_true_m32s(is_wide) == S::F32_LANES {
+                break;
+            }
+            let near = self.neighbour(own, [0, 0], place).near;
+            for &[left, right] in distances {
+                for [x, y] in DIRECTIONS {
+                    let a = self.neighbour(weight, [-left * x, -left * y], place);
+                    let b = self.neighbour(weight, [right * x, right * y], place);
+                    let share = left as f32 / (left + right) as f32;
+                    let across = between(near, [a, b], [1.0 - share, share]);
+                    filled = filled.max(across.if_set(is_wide, 0.0));
+                }
+            }
+        }
+        filled
+    }
+
+    /// What is so many columns and rows from a vector of pixels.
+    #[inline(always)]
+    fn neighbour<S: Simd>(
+        &self,
+        own: Vector<S>,
+        [x, y]: [isize; 2],
+        [row, column, i]: [usize; 3],
+    ) -> Neighbour<S> {
+        let line = (row + RING).wrapping_add_signed(y) % AROUND;
+        let first = ((column + 1) * LANES).wrapping_add_signed(x);
+        let vector = |line: &Line| own.with(S::as_simd_f32s(&line[first..first + LANES]).0[i]);
+        Neighbour { weight: vector(&self.rows[line]), near: vector(&self.near[line]) }
     }
 }
 
-/// The lesser weight of two opposite neighbours of pixels with a surface at these nearest depths; 0 where that of one of the
-/// two lies behind it.
+/// Weights and nearest depths of a vector of pixels.
+#[derive(Clone, Copy)]
+struct Neighbour<S: Simd> {
+    weight: Vector<S>,
+    near: Vector<S>,
+}
+
+/// The lesser weight of two on opposite sides of pixels with a surface at these nearest depths; 0 where that of one of the
+/// two lies behind it. A plane through both has the mean of their depths with these shares.
 ///
-/// From pixel to pixel a surface goes farther as it came nearer. Beside an edge one neighbour is of the surface and the
-/// other of what is behind: they are farther in the mean by half of what they differ by. In a gap, depths count for more
-/// than beside it (see `kernel::nearest`).
+/// From pixel to pixel a surface goes farther as it came nearer. Beside an edge one side is of the surface and the other
+/// of what is behind: they are farther in the mean by a third or more of what they differ by. In a gap, depths count for
+/// more than beside it (see `kernel::nearest`).
 #[inline(always)]
-fn between<S: Simd>(near: Vector<S>, weights: [Vector<S>; 2], nears: [Vector<S>; 2]) -> Vector<S> {
-    let ([a, b], [near_a, near_b]) = (weights, nears);
-    let apart = near_a.max(near_b) - near_a.min(near_b);
-    let is_behind = (near_a + near_b - near * 2.0).is_above(apart * 0.5);
-    near.like(0.0).or_where_unset(is_behind, a.min(b).lanes)
+fn between<S: Simd>(near: Vector<S>, [a, b]: [Neighbour<S>; 2], shares: [f32; 2]) -> Vector<S> {
+    let apart = a.near.max(b.near) - a.near.min(b.near);
+    let mean = a.near * shares[0] + b.near * shares[1];
+    let is_behind = (mean - near).is_above(apart * 0.25);
+    near.like(0.0).or_where_unset(is_behind, a.weight.min(b.weight).lanes)
+}
+
+/// Repeats the outermost pixels of a tile beyond it.
+#[inline(always)]
+fn widen(line: &mut Line, rect: &TileRect) {
+    for i in 0..RING {
+        line[LANES - 1 - i] = line[LANES];
+        line[LANES + rect.width + i] = line[LANES + rect.width - 1];
+    }
 }
 
 /// The vectors of a block in a line.
@@ -366,13 +449,10 @@ struct Weights<S: Simd> {
 impl<S: Simd> Weights<S> {
     /// Vector `i` of a block.
     #[inline(always)]
-    fn new<const FIRST: bool>(simd: S, layer: &Layer, block: usize, i: usize) -> Self {
+    fn new(simd: S, layer: &Layer, block: usize, i: usize) -> Self {
         let weight = Vector::new(simd, S::as_simd_f32s(&layer.sums[block].0[0]).0[i]);
-        let mut open = Vector::all(simd, 1.0);
-        if !FIRST {
-            let floor = Vector::new(simd, S::as_simd_f32s(&layer.depths[block].floor).0[i]);
-            open = Vector::all(simd, 0.0).if_set(floor.exceeds(f32::MAX), 1.0);
-        }
+        let floor = Vector::new(simd, S::as_simd_f32s(&layer.depths[block].floor).0[i]);
+        let open = Vector::all(simd, 0.0).if_set(floor.exceeds(f32::MAX), 1.0);
         Self { weight, open }
     }
 

@@ -1,9 +1,10 @@
 //! Surfaces with folds and edges: what is one surface has no gaps, and what is in front of another covers no more of it for
 //! that.
 
-use glam::{DVec3, Vec3, dvec2, dvec3};
+use glam::{DVec2, DVec3, Vec3, dvec2, dvec3};
 use pointillist_surfel::invariants::{OwnedPoints, cloud, drawn, look_at};
 use pointillist_surfel::{Options, Projection};
+use std::f64::consts::FRAC_PI_4;
 
 /// Points on a side of the fold and along half of it, one unit apart, each up to this far off its place.
 const SIDE: i32 = 30;
@@ -101,5 +102,34 @@ fn edges_before_a_surface_are_where_they_are_before_nothing() {
     for seed in (1..200).step_by(20) {
         let [alone, before] = [false, true].map(|behind| covered(behind, seed));
         assert!((alone - before).abs() < 0.1, "{alone} pixels alone, {before} before a surface");
+    }
+}
+
+/// Share of the picture that bars cover, as wide and as far apart as this, turned by an eighth; points lie so many pixels
+/// apart. All lengths in pixels.
+fn covered_by_bars(bar: f64, gap: f64, spacing: f64) -> f64 {
+    let mut next = random(77);
+    let mut off = || OFF * (2.0 * next() - 1.0);
+    let count = (1.5 * f64::from(SIZE) / spacing) as i32;
+    let places =
+        (-count..count).flat_map(|i| (-count..count).map(move |j| dvec2(f64::from(i), f64::from(j))));
+    let places = places.map(|place| spacing * (place + dvec2(off(), off())));
+    let of_bars = places.filter(|place| place.x.rem_euclid(bar + gap) < bar);
+    let positions: Vec<_> = of_bars.map(|at| DVec2::from_angle(FRAC_PI_4).rotate(at).extend(0.0)).collect();
+    let (normals, radii) = (vec![Vec3::Z; positions.len()], vec![RADIUS * spacing as f32; positions.len()]);
+    let points =
+        OwnedPoints { positions, normals: Some(normals), radii: Some(radii), ..OwnedPoints::default() };
+    let camera = Projection::Orthographic { height: f64::from(SIZE) };
+    let view = look_at(100.0 * DVec3::Z, DVec3::ZERO, camera, SIZE, SIZE).unwrap();
+    let frame = drawn(&cloud(&points).unwrap(), &view, &Options::default()).unwrap();
+    frame.color().iter().map(|color| f64::from(color[3])).sum::<f64>() / f64::from(SIZE * SIZE)
+}
+
+#[test]
+fn gaps_between_bars_stay_open() {
+    for (bar, gap, spacing, most) in [(2.0, 2.0, 0.8, 0.75), (6.0, 3.0, 1.3, 0.85)] {
+        let covered = covered_by_bars(bar, gap, spacing);
+        let exact = bar / (bar + gap);
+        assert!((exact..most).contains(&covered), "{covered}, not {exact}, by bars {gap} px apart");
     }
 }
