@@ -122,7 +122,7 @@ fn usage() -> String {
     for Study { name, what, .. } in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n  stale       those of these that other sources made than the present ones: `all`, or its rest, where some were made already\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n  mutants     how many faults tests see, from the runs of `.ci/mutants`\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too; `together DIR PART…` does some parts alone. `radiosity PART…` runs parts alone, such as `buildings` and `growth`; `clouds POINTS` ends with that size, and `ibpr floor` prints that part.\n"
+    text + "  all         all of these\n  stale       those of these that other sources made than the present ones: `all`, or its rest, where some were made already\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n  mutants     how many faults tests see, from the runs of `.ci/mutants`\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too; `together DIR PART…` does some parts alone. `radiosity PART…` runs parts alone, such as `buildings` and `growth`; `clouds POINTS` ends with that size, and `ibpr floor` and `ibpr relief` print those parts.\n"
 }
 
 fn main() -> ExitCode {
@@ -164,6 +164,7 @@ fn main() -> ExitCode {
             }
         },
         ["ibpr", "floor"] => return code(ibpr::run_floor()),
+        ["ibpr", "relief"] => return code(ibpr::run_relief()),
         ["micropoint", "foliage"] => return code(micropoint::foliage::run(&out_dir)),
         ["micropoint", "checker"] => return code(micropoint::checker::run(&out_dir)),
         ["shadow", "area"] => return code(shadow::area::run(&out_dir)),

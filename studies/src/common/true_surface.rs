@@ -4,6 +4,7 @@ use glam::{DVec3, dvec2};
 use pointillist_cli::mesh_io::read_ply;
 use pointillist_ibpr::{Projection, View};
 use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
 
 use crate::common::data;
 use crate::common::layers::Layers;
@@ -20,6 +21,30 @@ pub(crate) struct Surface {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     normals: Vec<DVec3>,
+}
+
+/// Lengths of the waves of relief and root mean squares of their heights, in diagonals of the box.
+const RELIEF: [[f64; 2]; 2] = [[0.06, 0.0014], [0.03, 0.0005]];
+
+/// A wave through space.
+struct Wave {
+    /// 2π over its length, along its direction.
+    vector: DVec3,
+    phase: f64,
+    height: f64,
+}
+
+/// Waves of one length in directions that are spread evenly over the sphere.
+fn waves([length, height]: [f64; 2]) -> impl Iterator<Item = Wave> {
+    const COUNT: u32 = 12;
+    let golden = PI * (3.0 - 5f64.sqrt());
+    (0..COUNT).map(move |i| {
+        let z = (f64::from(i) + 0.5) / f64::from(COUNT);
+        let (sin, cos) = (f64::from(i) * golden).sin_cos();
+        let direction = DVec3::new(cos * (1.0 - z * z).sqrt(), sin * (1.0 - z * z).sqrt(), z);
+        let phase = TAU * (f64::from(i * i) * 0.37).fract();
+        Wave { vector: direction * (TAU / length), phase, height: height * (2.0 / f64::from(COUNT)).sqrt() }
+    })
 }
 
 /// Where a ray meets the surface.
@@ -55,6 +80,18 @@ impl Surface {
         let finer = |(positions, triangles): (Vec<_>, Vec<_>), _| subdivided(&positions, &triangles);
         let (positions, triangles) = (0..rounds).fold((mesh.positions, mesh.triangles), finer);
         Some(Self::new(name, positions, triangles))
+    }
+
+    /// This surface with relief: waves of every direction along its normals, as steep as carving in stone.
+    pub(crate) fn in_relief(&self, name: &'static str) -> Self {
+        let waves: Vec<Wave> = RELIEF.into_iter().flat_map(waves).collect();
+        let raised = |(p, n): (&DVec3, &DVec3)| {
+            let at = *p / self.diagonal();
+            let height: f64 = waves.iter().map(|w| w.height * (w.vector.dot(at) + w.phase).sin()).sum();
+            *p + *n * (height * self.diagonal())
+        };
+        let positions = self.positions.iter().zip(&self.normals).map(raised).collect();
+        Self::new(name, positions, self.triangles.clone())
     }
 
     fn bumpy() -> Self {

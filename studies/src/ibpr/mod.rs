@@ -6,4 +6,4 @@ mod settings;
 mod study;
 mod tables;
 
-pub(crate) use study::{run, run_floor};
+pub(crate) use study::{run, run_floor, run_relief};

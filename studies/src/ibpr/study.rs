@@ -14,7 +14,7 @@ use crate::common::true_surface::{Surface, Truth, point_at};
 use crate::ibpr::floor::{self, Subject};
 use crate::ibpr::scans::{Faults, RangeScan, Survey};
 use crate::ibpr::settings::{Group, again, groups};
-use crate::ibpr::tables::{COLUMNS, Measured, markdown};
+use crate::ibpr::tables::{self, COLUMNS, Measured, RELIEF, markdown};
 
 /// Pixels on a side.
 const SIZE: u32 = 1024;
@@ -38,11 +38,7 @@ struct Bench {
 
 /// Measures and writes `ibpr.csv`, `ibpr.md`, `ibpr.svg` and `ibpr-depth.svg`.
 pub(crate) fn run(out_dir: &Path) -> Outcome {
-    let surface = Surface::bunny_or_bumpy();
-    let survey = Survey::new(&surface, POINTS);
-    let view = surface.view(SIZE);
-    let measure = Measure::new(Truth::new(&surface, &view), survey.spacing);
-    let bench = Bench { surface, survey, measure, view };
+    let bench = Bench::new(Surface::bunny_or_bumpy());
     let floor = beside_the_floor(&bench.survey, &bench.view)?;
     let mut results = vec![];
     for noise in NOISES {
@@ -59,6 +55,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
         results
             .extend(on_one_thread(|| bench.groups(name, faults, SEEDS[0], groups().drain(..1).collect()))?);
     }
+    results.extend(in_relief(&bench.surface)?);
     let empty = bench.measure.of(&bench.measure.truth().as_layers());
     assert!(empty.normal_mean < 1e-3 && empty.holes == 0.0, "the truth has no error: {empty:?}");
     let rows = |error: fn(&FrameError) -> f64| results.iter().map(|r| r.row(error)).collect::<Vec<_>>();
@@ -69,6 +66,25 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     let text = markdown(&bench.setup(), &results) + &floor;
     write(out_dir, "ibpr.md", &text)?;
     Ok(true)
+}
+
+/// Prints the section about relief alone.
+pub(crate) fn run_relief() -> Outcome {
+    print!("{}", tables::in_relief(&in_relief(&Surface::bunny_or_bumpy())?));
+    Ok(true)
+}
+
+/// The defaults on scans of the same surface with relief.
+fn in_relief(surface: &Surface) -> Result<Vec<Measured>, IbprError> {
+    let bench = Bench::new(surface.in_relief("the same in relief"));
+    let mut results = vec![];
+    for noise in NOISES {
+        eprintln!("ibpr: relief, noise {noise}");
+        let (name, faults) = (format!("{RELIEF}σ = {noise}"), Faults { noise, ..Faults::default() });
+        let default = groups().drain(..1).collect();
+        results.extend(on_one_thread(|| bench.groups(&name, faults, SEEDS[0], default))?);
+    }
+    Ok(results)
 }
 
 /// Prints the section about the floor alone.
@@ -105,6 +121,13 @@ fn faulty() -> Vec<(&'static str, Faults)> {
 }
 
 impl Bench {
+    fn new(surface: Surface) -> Self {
+        let survey = Survey::new(&surface, POINTS);
+        let view = surface.view(SIZE);
+        let measure = Measure::new(Truth::new(&surface, &view), survey.spacing);
+        Self { surface, survey, measure, view }
+    }
+
     /// What was drawn, in words.
     fn setup(&self) -> String {
         let points = self.survey.measured(Faults::default(), SEEDS[0]);
