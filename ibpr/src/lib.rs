@@ -80,6 +80,7 @@ mod raster;
 mod render;
 mod rules;
 mod scan;
+mod seams;
 mod shade;
 mod solid_row;
 mod spacing;

@@ -19,6 +19,7 @@ use crate::parallel::*;
 use crate::pixels::{Nearest, Stack};
 use crate::raster::{Pixels, Strip};
 use crate::rules::Rules;
+use crate::seams;
 use crate::shade::{RowsOut, Shader};
 use crate::stray;
 use crate::wanted::Wanted;
@@ -45,6 +46,8 @@ pub struct Renderer {
     passes: [Pass; 2],
     memory: PassScratch,
     strips: Pool<StripScratch>,
+    /// Of each strip, the pixels that a surface covers in part, and nothing behind it.
+    lone_rims: Vec<Vec<usize>>,
 }
 
 /// Working memory of a pass.
@@ -110,14 +113,24 @@ impl Renderer {
         };
         let wanted = Wanted::new(options, [width, height]);
         let strip_rows = if options.translucency.is_some() { STACK_ROWS } else { STRIP_ROWS };
-        let drawn = wanted.with_surroundings(options, [width, height]).in_strips(strip_rows, height as usize);
+        let lit = wanted.with_surroundings(options, [width, height]);
+        // With the neighbours that seams are closed by.
+        let drawn = lit.wider(1, [width, height]).in_strips(strip_rows, height as usize);
         for (pass, map) in self.passes.iter_mut().zip(&maps) {
             let Some(map) = map else { continue };
             pass.make(cloud, &self.visible, map, options, &drawn, &mut self.memory);
         }
         frame.reshape(width as usize, height as usize, options.surface_layers);
         frame.counts = counts;
-        self.draw_faces(cloud, &maps, options, &drawn, frame);
+        let mut rims = std::mem::take(&mut self.lone_rims);
+        rims.resize(frame.height.div_ceil(strip_rows), vec![]);
+        rims.iter_mut().for_each(Vec::clear);
+        self.draw_faces(cloud, &maps, options, &drawn, (frame, &mut rims));
+        let strip = strip_rows * frame.width;
+        let of_picture =
+            rims.iter().enumerate().flat_map(|(i, rims)| rims.iter().map(move |rim| i * strip + rim));
+        seams::close(frame, of_picture, &lit);
+        self.lone_rims = rims;
         if let Some(dome) = &options.eye_dome {
             eye_dome::apply(frame, dome, &wanted);
         }
@@ -157,7 +170,7 @@ impl Renderer {
         maps: &[Option<BufferMap>; 2],
         options: &Options,
         drawn: &Wanted,
-        frame: &mut Frame,
+        (frame, rims): (&mut Frame, &mut [Vec<usize>]),
     ) {
         let [Some(map), _] = maps else { return };
         let drawing = Drawing {
@@ -177,16 +190,17 @@ impl Renderer {
             }
             self.strips.with(|scratch| drawing.strip(scratch, i * rows, out));
         };
-        let base = chunks(&mut frame.color, n).zip(chunks(&mut frame.depth, n));
+        let base = chunks(&mut frame.color, n).zip(chunks(&mut frame.depth, n)).zip(chunks(rims, 1));
         if options.surface_layers {
             base.zip(chunks(&mut frame.normal, n)).zip(chunks(&mut frame.count, n)).enumerate().for_each(
-                |(i, (((color, depth), normal), count))| {
-                    draw(i, &mut RowsOut { color, depth, surface: Some((normal, count)) });
+                |(i, ((((color, depth), rims), normal), count))| {
+                    let surface = Some((normal, count));
+                    draw(i, &mut RowsOut { color, depth, surface, lone_rims: &mut rims[0] });
                 },
             );
         } else {
-            base.enumerate().for_each(|(i, (color, depth))| {
-                draw(i, &mut RowsOut { color, depth, surface: None });
+            base.enumerate().for_each(|(i, ((color, depth), rims))| {
+                draw(i, &mut RowsOut { color, depth, surface: None, lone_rims: &mut rims[0] });
             });
         }
     }

@@ -95,8 +95,12 @@ impl Shader {
             Arch::new().dispatch(SolidRow { shader: self, place, surfaces, color, depth });
         }
         for (column, i) in (place.0..).zip(range) {
-            if !plain || pixels.rim_cover[i] > 0.0 {
+            let has_rim = pixels.rim_cover[i] > 0.0;
+            if !plain || has_rim {
                 self.write(&self.nearest(pixels, i, (column, place.1), colored), out, i);
+            }
+            if has_rim && pixels.solid[i][0] == f32::INFINITY {
+                out.lone_rims.push(i);
             }
         }
     }
@@ -197,6 +201,8 @@ pub(crate) struct RowsOut<'a> {
     pub(crate) depth: &'a mut [f32],
     /// Normals and counts, if asked for.
     pub(crate) surface: Option<(&'a mut [[f32; 3]], &'a mut [f32])>,
+    /// Gets the numbers of pixels that a surface covers in part, and nothing behind it.
+    pub(crate) lone_rims: &'a mut Vec<usize>,
 }
 
 impl RowsOut<'_> {

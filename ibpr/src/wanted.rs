@@ -20,10 +20,14 @@ impl Wanted {
     }
 
     /// The same with what eye-dome lighting looks at around it.
-    pub(crate) fn with_surroundings(&self, options: &Options, [width, height]: [u32; 2]) -> Self {
-        let radius = options.eye_dome.map_or(0, |dome| dome.radius as usize);
+    pub(crate) fn with_surroundings(&self, options: &Options, picture: [u32; 2]) -> Self {
+        self.wider(options.eye_dome.map_or(0, |dome| dome.radius as usize), picture)
+    }
+
+    /// The same with so many more pixels on each side, as far as they are in a picture of this size.
+    pub(crate) fn wider(&self, by: usize, [width, height]: [u32; 2]) -> Self {
         let wider = |range: &Range<usize>, size: u32| {
-            range.start.saturating_sub(radius)..(range.end + radius).min(size as usize)
+            range.start.saturating_sub(by)..(range.end + by).min(size as usize)
         };
         Self { columns: wider(&self.columns, width), rows: wider(&self.rows, height) }
     }
