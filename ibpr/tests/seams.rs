@@ -22,6 +22,8 @@ fn a_ball_before_a_wall_lets_nothing_through() {
         let frame = frame(&[ball, wall], &view, &options).unwrap();
         let through = frame.color().iter().filter(|color| color[3] < 0.9999).count();
         assert_eq!(through, 0, "pixels of the background at a spacing of {spacing}");
-        assert!(frame.depth().iter().all(|depth| depth.is_finite()) && frame.count().iter().all(|n| *n > 0.0));
+        assert!(
+            frame.depth().iter().all(|depth| depth.is_finite()) && frame.count().iter().all(|n| *n > 0.0)
+        );
     }
 }
