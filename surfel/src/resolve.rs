@@ -342,18 +342,19 @@ impl Lines {
     /// The weights of a vector of pixels, evened, where their own leave gaps raised to the lesser of two on opposite sides.
     ///
     /// It fills gaps as wide as kernels, up to three pixels, and leaves edges where they are: on one side of an edge
-    /// weights are less or of another surface, and along it they are the same.
+    /// weights are less or of another surface, and along it they are the same. Gaps into which the surface hardly reaches
+    /// stay open, such as those between bars.
     #[inline(always)]
     fn filled<S: Simd>(
         &self,
         simd: S,
-        [own, weight]: [Vector<S>; 2],
+        [own, evened]: [Vector<S>; 2],
         sharpness: Vector<S>,
         place: [usize; 3],
     ) -> Vector<S> {
-        let is_clear = Vector::all(simd, 1.0).is_above(opacity(weight, sharpness));
+        let is_clear = Vector::all(simd, 1.0).is_above(opacity(evened, sharpness));
         let is_gap = simd.and_m32s(is_clear, own.exceeds(LEAST_INSIDE));
-        let mut filled = weight;
+        let mut filled = evened;
         for (least_wide, distances) in GAPS {
             let is_wide = simd.and_m32s(is_gap, sharpness.exceeds(least_wide));
             if simd.first_true_m32s(is_wide) == S::F32_LANES {
@@ -362,8 +363,8 @@ impl Lines {
             let near = self.neighbour(own, [0, 0], place).near;
             for &[left, right] in distances {
                 for [x, y] in DIRECTIONS {
-                    let a = self.neighbour(weight, [-left * x, -left * y], place);
-                    let b = self.neighbour(weight, [right * x, right * y], place);
+                    let a = self.neighbour(own, [-left * x, -left * y], place);
+                    let b = self.neighbour(own, [right * x, right * y], place);
                     let share = left as f32 / (left + right) as f32;
                     let across = between(near, [a, b], [1.0 - share, share]);
                     filled = filled.max(across.if_set(is_wide, 0.0));
