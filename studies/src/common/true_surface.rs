@@ -34,7 +34,7 @@ struct Wave {
     height: f64,
 }
 
-/// Waves of one length in directions that are spread evenly over the sphere.
+/// Waves of one length in directions that are spread evenly over half a sphere: opposite ones are the same waves.
 fn waves([length, height]: [f64; 2]) -> impl Iterator<Item = Wave> {
     const COUNT: u32 = 12;
     let golden = PI * (3.0 - 5f64.sqrt());
