@@ -1,13 +1,11 @@
 //! The buffer at screen/S: one averaged point per pixel, or one for each of several layers.
 
+use crate::border::PAD;
 use crate::buffer_map::BufferMap;
 use pointillist_view::View;
 
 /// Depths of neighbouring pixels of one surface differ by less than this many units (the paper's 5).
 pub(crate) const STEP: f32 = 5.0;
-
-/// Empty pixels around the buffer, so that windows need no test for its border.
-pub(crate) const PAD: usize = 4;
 
 /// Entries after the last row, so that the last pixels can be read as a whole vector.
 const TAIL: usize = 16;
@@ -103,7 +101,7 @@ impl Buffer {
         (row + PAD) * self.pitch + column + PAD
     }
 
-    /// Entries of the arrays without the rows above and below the picture.
+    /// Entries of the arrays without the empty rows above and below.
     pub(crate) fn inner(&self) -> std::ops::Range<usize> {
         PAD * self.pitch..(PAD + self.height) * self.pitch
     }

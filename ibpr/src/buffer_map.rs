@@ -1,5 +1,6 @@
 //! The linear map from the world to a buffer of any size.
 
+use crate::border::MARGIN;
 use glam::DVec3;
 use pointillist_view::{Projection, View};
 
@@ -8,7 +9,7 @@ pub(crate) fn depth_of(view: &View, p: DVec3) -> f64 {
     (p - view.eye()).dot(view.forward())
 }
 
-/// The map from the world to a buffer of the picture's shape with pixels of `scale` picture pixels.
+/// The map from the world to a buffer of the picture's shape and its [`MARGIN`], with pixels of `scale` picture pixels.
 ///
 /// Depth is kept as an offset from a reference depth near the object: a telephoto view of a far object
 /// then loses nothing when the rest is `f32`.
@@ -29,7 +30,7 @@ pub(crate) struct BufferMap {
 impl BufferMap {
     /// `reference` is a depth in world units.
     pub(crate) fn new(view: &View, scale: f64, reference: f64, unit: f64) -> Self {
-        let side = |pixels: u32| ((f64::from(pixels) / scale).ceil() as usize).max(1);
+        let side = |pixels: u32| ((f64::from(pixels) / scale).ceil() as usize).max(1) + 2 * MARGIN;
         let (width, height) = (side(view.width()), side(view.height()));
         Self { view: *view, width, height, scale, reference: reference / unit, unit }
     }
@@ -46,7 +47,7 @@ impl BufferMap {
 
     /// The principal point in buffer pixels.
     pub(crate) fn centre(&self) -> (f64, f64) {
-        let centre = self.view.centre_px() / self.scale;
+        let centre = self.view.centre_px() / self.scale + MARGIN as f64;
         (centre.x, centre.y)
     }
 

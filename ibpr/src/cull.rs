@@ -12,26 +12,27 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Incidence up to which a scanner measures (the paper's observation).
 const MOST_INCIDENCE_RAD: f64 = 75.0 * PI / 180.0;
 
-/// Indices of the blocks that may be seen, in the cloud's order, and the depth and the number of points
-/// of those in view, whether they face away or not.
+/// Depths and numbers of points of the blocks in view, whether they face away or not.
+pub(crate) fn depths(cloud: &Cloud, view: &View, depths: &mut Vec<(f64, usize)>) {
+    let frustum = Frustum::new(view, 0.0);
+    let in_view = cloud.blocks.iter().filter(|block| !frustum.misses(block));
+    depths.clear();
+    depths.extend(in_view.map(|block| (depth_of(view, block.origin), block.points.len())));
+}
+
+/// Indices of the blocks that may be seen in the picture or up to `margin` picture pixels beside it, in the cloud's order.
 pub(crate) fn visible(
     cloud: &Cloud,
     view: &View,
+    margin: f64,
     culling: Culling,
     blocks: &mut Vec<u32>,
-    depths: &mut Vec<(f64, usize)>,
     counts: &mut FrameCounts,
 ) {
     blocks.clear();
-    depths.clear();
-    *counts = FrameCounts::default();
-    let frustum = Frustum::new(view);
+    let frustum = Frustum::new(view, margin);
     for (i, block) in cloud.blocks.iter().enumerate() {
-        let outside = frustum.misses(block);
-        if !outside {
-            depths.push((depth_of(view, block.origin), block.points.len()));
-        }
-        let skipped = if outside {
+        let skipped = if frustum.misses(block) {
             &mut counts.blocks_outside
         } else if faces_away(block, view, culling) {
             &mut counts.blocks_facing_away
@@ -46,16 +47,16 @@ pub(crate) fn visible(
     }
 }
 
-/// Half-spaces that hold the view: n·(p − eye) ≥ offset.
+/// Half-spaces that hold the view and its margin: n·(p − eye) ≥ offset.
 struct Frustum {
     eye: DVec3,
     planes: [(DVec3, f64); 5],
 }
 
 impl Frustum {
-    fn new(view: &View) -> Self {
-        let half = 0.5 / view.focal_px();
-        let (x, y) = (half * f64::from(view.width()), half * f64::from(view.height()));
+    fn new(view: &View, margin: f64) -> Self {
+        let half = |pixels: u32| (0.5 * f64::from(pixels) + margin) / view.focal_px();
+        let (x, y) = (half(view.width()), half(view.height()));
         let (r, u, f) = (view.right(), view.up(), view.forward());
         let sides = match view.projection() {
             Projection::Perspective { .. } => {

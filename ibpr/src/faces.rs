@@ -4,6 +4,7 @@
 //! face: four a quadrilateral, three a triangle, as in the paper. Towards corners that are missing (or
 //! belong to another surface) the face reaches further, and the outline ([`crate::outline`]) decides how much of that is covered.
 
+use crate::border::MARGIN;
 use crate::buffer::STEP;
 use crate::buffer::{Buffer, Corner, DepthScale, SUBPIXEL, whole_steps};
 use crate::outline::Outline;
@@ -63,8 +64,8 @@ fn inside_whole_px(outlines: &[Outline], rules: &FaceRules, at: usize) -> f32 {
 pub(crate) fn quads_about(picture: &Range<usize>, pixel: f32, size: usize) -> Range<isize> {
     // A corner lies in its own pixel, and faces reach up to `UNDER` beyond.
     let reach = UNDER + 0.5 + 0.5 / pixel;
-    let first = picture.start as f32 / pixel;
-    let last = picture.end as f32 / pixel;
+    let first = picture.start as f32 / pixel + MARGIN as f32;
+    let last = picture.end as f32 / pixel + MARGIN as f32;
     (first - reach - 1.0).max(-1.0) as isize..(last + reach).min(size as f32) as isize
 }
 
@@ -80,7 +81,7 @@ pub(crate) fn columns_touched(
         let upper = buffer.at(0, 0).wrapping_add_signed(row * buffer.pitch as isize - 1);
         let quads = occupied(buffer, upper);
         if !quads.is_empty() {
-            // Of the picture, whose first pixel lies at 1 here.
+            // Of the buffer, whose first pixel lies at 1 here.
             (first, last) = (first.min(quads.start - upper), last.max(quads.end - upper));
         }
     }
@@ -88,8 +89,9 @@ pub(crate) fn columns_touched(
         return columns.start..columns.start;
     }
     // A quad ends one pixel after its own, in which its right corners may lie anywhere.
-    let start = ((first as f32 - 1.0 - UNDER) * pixel).max(0.0) as usize;
-    let end = ((last as f32 + 1.0 + UNDER) * pixel).ceil() as usize;
+    let picture = |column: f32| (column - MARGIN as f32) * pixel;
+    let start = picture(first as f32 - 1.0 - UNDER).max(0.0) as usize;
+    let end = picture(last as f32 + 1.0 + UNDER).ceil().max(0.0) as usize;
     let start = start.clamp(columns.start, columns.end);
     start..end.clamp(start, columns.end)
 }

@@ -5,7 +5,8 @@
 //! (pull); what is enclosed by its own surface there covers the gaps below it (push). A gap is a pixel
 //! without points, or one through which a surface further behind is seen.
 
-use crate::buffer::{Buffer, DepthScale, PAD};
+use crate::border::PAD;
+use crate::buffer::{Buffer, DepthScale};
 use crate::parallel::*;
 use std::ops::Range;
 

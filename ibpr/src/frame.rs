@@ -31,7 +31,7 @@ pub struct FrameCounts {
     pub blocks: usize,
     /// Their points.
     pub points: usize,
-    /// Blocks outside the view.
+    /// Blocks beyond the view and a few buffer pixels beside it.
     pub blocks_outside: usize,
     /// Blocks skipped because they face away.
     pub blocks_facing_away: usize,

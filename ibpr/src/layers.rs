@@ -5,7 +5,8 @@
 //! which points arrive; sorted first, the layers are the same for every order.
 
 use crate::block_view::{BlockView, walk};
-use crate::buffer::{BufferBand, PAD};
+use crate::border::PAD;
+use crate::buffer::BufferBand;
 use crate::cloud::Cloud;
 use crate::options::Translucency;
 use crate::project::Band;

@@ -50,6 +50,7 @@
 
 mod accumulate;
 mod block_view;
+mod border;
 mod buffer;
 mod buffer_map;
 mod cloud;

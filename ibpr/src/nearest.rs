@@ -1,7 +1,8 @@
 //! The nearest surface of each buffer pixel: the weighted mean of the points within γ of the nearest one.
 
 use crate::block_view::{BlockView, walk};
-use crate::buffer::{BufferBand, DepthScale, PAD};
+use crate::border::PAD;
+use crate::buffer::{BufferBand, DepthScale};
 use crate::cloud::Cloud;
 use crate::hidden::Limits;
 use crate::options::Weighting;

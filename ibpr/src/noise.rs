@@ -1,6 +1,7 @@
 //! How wide the windows of normals must be for the noise of the points.
 
-use crate::buffer::{Buffer, DepthScale, PAD};
+use crate::border::PAD;
+use crate::buffer::{Buffer, DepthScale};
 use crate::fit::{Chunk, LANES};
 use pulp::Arch;
 

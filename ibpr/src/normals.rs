@@ -1,6 +1,7 @@
 //! Normals of the averaged points, and the corners of faces.
 
-use crate::buffer::{Buffer, Corner, DepthScale, PAD, STEP, SUBPIXEL, whole_steps};
+use crate::border::{MARGIN, PAD};
+use crate::buffer::{Buffer, Corner, DepthScale, STEP, SUBPIXEL, whole_steps};
 use crate::buffer_map::BufferMap;
 use crate::fit::{Chunk, LANES};
 use crate::noise::{Histogram, radius_for_noise};
@@ -94,7 +95,7 @@ impl Camera {
     }
 
     fn corner(&self, x: f32, y: f32, q: f32, n: Vec3) -> Corner {
-        let step = |v: f32| whole_steps(v * self.steps);
+        let step = |v: f32| whole_steps((v - MARGIN as f32) * self.steps);
         Corner { x: step(x), y: step(y), surface: [q, n.x, n.y, n.z] }
     }
 }

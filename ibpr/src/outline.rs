@@ -5,7 +5,8 @@
 //! how far inside its outline a corner lies. A pixel with fewer points than its surroundings holds the surface in part. Where a surface is less
 //! than three pixels wide, it ends as far beyond its last corners as [`Options::outline`](crate::Options::outline) says.
 
-use crate::buffer::{Buffer, DepthScale, PAD, STEP};
+use crate::border::PAD;
+use crate::buffer::{Buffer, DepthScale, STEP};
 use crate::parallel::*;
 
 /// Pixels to each side that the blur looks at: as far as the buffer's border reaches.

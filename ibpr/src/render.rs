@@ -2,6 +2,7 @@
 
 use crate::accumulate::{self, BandScratch};
 use crate::block_view::{self, BlockView};
+use crate::border::MARGIN;
 use crate::buffer::{Buffer, DepthScale, STEP};
 use crate::buffer_map::{BufferMap, depth_of};
 use crate::cloud::Cloud;
@@ -96,9 +97,6 @@ impl Renderer {
         }
         options.check()?;
         let mut counts = FrameCounts::default();
-        // Translucent surfaces show those behind them, also those that face away.
-        let culling = if options.translucency.is_some() { Culling::None } else { options.culling };
-        cull::visible(cloud, view, culling, &mut self.visible, &mut self.depths, &mut counts);
         counts.scale = self.scale(cloud, view, options);
         self.memory.bands.fill(threads());
         self.strips.fill(threads());
@@ -111,6 +109,11 @@ impl Renderer {
                 [Some(BufferMap::new(view, scale, reference, cloud.unit)), Some(normal)]
             }
         };
+        // Translucent surfaces show those behind them, also those that face away.
+        let culling = if options.translucency.is_some() { Culling::None } else { options.culling };
+        let coarsest = maps.iter().flatten().map(|map| map.scale).fold(0.0, f64::max);
+        let margin = MARGIN as f64 * coarsest;
+        cull::visible(cloud, view, margin, culling, &mut self.visible, &mut counts);
         let wanted = Wanted::new(options, [width, height]);
         let strip_rows = if options.translucency.is_some() { STACK_ROWS } else { STRIP_ROWS };
         let lit = wanted.with_surroundings(options, [width, height]);
@@ -151,6 +154,7 @@ impl Renderer {
         };
         // The median depth of the points in view, so that few points close to the eye do not coarsen the buffer. Points
         // that face away are included, or culling would change the picture.
+        cull::depths(cloud, view, &mut self.depths);
         self.depths.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let half = self.depths.iter().map(|d| d.1).sum::<usize>() / 2;
         let mut seen = 0;

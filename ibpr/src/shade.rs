@@ -39,14 +39,14 @@ impl Shader {
                 Some(Vec3::new(d.dot(v.right()) as f32, d.dot(v.up()) as f32, -d.dot(v.forward()) as f32))
             }
         };
-        let (x, y) = map.centre();
+        let centre = v.centre_px().as_vec2();
         let ray_slope = if map.is_perspective() { 1.0 / v.focal_px() } else { 0.0 };
         Self {
             light,
             ambient: options.ambient,
             base: options.base,
             axes: [v.right().as_vec3(), v.up().as_vec3(), -v.forward().as_vec3()],
-            centre: ((x * map.scale) as f32, (y * map.scale) as f32),
+            centre: (centre.x, centre.y),
             ray_slope: ray_slope as f32,
             bend: map.bend(),
             reference: map.reference,

@@ -1,8 +1,8 @@
-//! Surfaces before surfaces: no background shows between them.
+//! Where surfaces are not to end: before other surfaces, and at the border of the picture.
 
 use glam::{DVec3, dvec3};
 use pointillist_ibpr::invariants::{OwnedScan, frame};
-use pointillist_ibpr::{Options, Projection, View};
+use pointillist_ibpr::{Options, Projection, Scale, Translucency, View};
 
 /// Pixels on a side.
 const SIZE: u32 = 200;
@@ -20,13 +20,37 @@ fn a_ball_before_a_wall_lets_nothing_through() {
         let (right, up) = (DVec3::X * spacing, DVec3::Y * spacing);
         let wall = OwnedScan::plane(dvec3(0.0, 0.0, -2.0), right, up, side, side).jittered(noise, seed + 10);
         let frame = frame(&[ball, wall], &view, &options).unwrap();
-        // Points beyond the picture are not drawn, so that the wall ends at its border, with an outline.
-        let inside = |i: &usize| {
-            [i % frame.width(), i / frame.width()].iter().all(|v| (8..SIZE as usize - 8).contains(v))
-        };
-        let pixels: Vec<usize> = (0..frame.color().len()).filter(inside).collect();
-        let through = pixels.iter().filter(|&&i| frame.color()[i][3] < 0.9999).count();
+        let through = frame.color().iter().filter(|c| c[3] < 0.9999).count();
         assert_eq!(through, 0, "pixels of the background at a spacing of {spacing}");
-        assert!(pixels.iter().all(|&i| frame.depth()[i].is_finite() && frame.count()[i] > 0.0));
+        assert!((0..frame.color().len()).all(|i| frame.depth()[i].is_finite() && frame.count()[i] > 0.0));
+    }
+}
+
+/// What lies beyond the picture is as much a part of the surfaces in it as if the picture were larger.
+#[test]
+fn a_picture_is_the_middle_of_a_larger_one() {
+    /// Pixels that the larger one has more on each side: whole buffer pixels.
+    const MORE: u32 = 60;
+    let view = |size: u32| {
+        let camera = Projection::Orthographic { height: 0.01 * f64::from(size) };
+        View::look_at(dvec3(1.0, 2.0, 5.0), DVec3::ZERO, DVec3::Y, camera, size, size).unwrap()
+    };
+    let ball = OwnedScan::sphere(DVec3::ZERO, 1.3, 0.01, DVec3::Z).jittered(DVec3::splat(0.003), 1);
+    for (scale, translucency) in [(2.5, None), (4.0, None), (2.5, Some(Translucency::new(0.5)))] {
+        let mut options = Options::default();
+        (options.surface_layers, options.translucency) = (true, translucency);
+        options.scale = Scale::Fixed(scale);
+        let [small, large] = [SIZE, SIZE + 2 * MORE]
+            .map(|size| frame(std::slice::from_ref(&ball), &view(size), &options).unwrap());
+        let mut worst = 0.0f32;
+        for i in 0..small.color().len() {
+            let (column, row) = (i % SIZE as usize + MORE as usize, i / SIZE as usize + MORE as usize);
+            let j = row * large.width() + column;
+            let apart = |c: usize| (small.color()[i][c] - large.color()[j][c]).abs();
+            let most = (0..4).map(apart).fold(0.0, f32::max);
+            worst = worst.max(most);
+        }
+        println!("S = {scale}, {translucency:?}: {worst}");
+        assert!(worst < 1e-3, "S = {scale}, {translucency:?}: colors differ by {worst}");
     }
 }
