@@ -96,8 +96,8 @@ impl Renderer {
             return Err(IbprError::TooLarge { width, height });
         }
         options.check()?;
-        let mut counts = FrameCounts::default();
-        counts.scale = self.scale(cloud, view, options);
+        let scale = self.scale(cloud, view, options);
+        let mut counts = FrameCounts { scale, ..FrameCounts::default() };
         self.memory.bands.fill(threads());
         self.strips.fill(threads());
         let reference = reference_depth(cloud, view);
