@@ -7,7 +7,7 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Two triangles under a lamp of so many points that its shadow takes about a second in 320 × 240 pixels.
+/// Two triangles under a lamp of so many points that its shadow takes some seconds in 320 × 240 pixels without optimisation, and a third of one with it.
 const SLOW: &str = r#"[camera]
 eye = [0, 0.5, 4]
 target = [0, 0.5, 0]
@@ -29,7 +29,7 @@ position = [1, 2, 3]
 edge_u = [0, 1, 0]
 edge_v = [1, 0, 0]
 radiance = [3, 3, 3]
-samples = 64
+samples = 16
 "#;
 
 /// What an interrupted command left.

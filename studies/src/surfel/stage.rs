@@ -35,7 +35,21 @@ pub(crate) struct Effort {
     pub(crate) slants_deg: &'static [f64],
     /// Numbers of points of a rough surface in which specks are counted.
     pub(crate) speckled: &'static [usize],
+    /// How far away the eye is, in distances of the front view, and how large the object looks then.
+    pub(crate) sizes: &'static [(f64, &'static str)],
+    /// Pixels between points.
+    pub(crate) levels: &'static [f32],
+    /// Largest radius of blur in pixels of the paper's picture, about, beginning with none.
+    pub(crate) blurs: &'static [u32],
+    /// Whether frames of another place, scale, order or number of threads are compared through a lens, too.
+    pub(crate) same_through_lens: bool,
 }
+
+/// The default of [`pointillist_surfel::Options::level`].
+pub(crate) const DEFAULT_LEVEL: f32 = 1.27;
+
+/// The lens of the reference picture blurs by so many pixels.
+pub(crate) const REFERENCE_BLUR: u32 = 16;
 
 impl Effort {
     pub(crate) const FULL: Self = Self {
@@ -45,6 +59,10 @@ impl Effort {
         views: &[4, 16, 64],
         slants_deg: &[0.0, 45.0, 60.0, 75.0],
         speckled: &[50_000, 100_000, 400_000],
+        sizes: &[(1.0, "full size"), (2.0, "1/2 size"), (4.0, "1/4 size"), (8.0, "1/8 size")],
+        levels: &[0.0, 0.5, 1.0, DEFAULT_LEVEL, 2.0, 3.0, 4.0],
+        blurs: &[0, 2, 6, REFERENCE_BLUR, 32],
+        same_through_lens: true,
     };
     /// Enough to see that all works.
     pub(crate) const QUICK: Self = Self {
@@ -54,6 +72,10 @@ impl Effort {
         views: &[4, 16],
         slants_deg: &[0.0],
         speckled: &[50_000],
+        sizes: &[(1.0, "full size"), (8.0, "1/8 size")],
+        levels: &[0.0, DEFAULT_LEVEL],
+        blurs: &[0, REFERENCE_BLUR],
+        same_through_lens: false,
     };
 }
 

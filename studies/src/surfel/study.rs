@@ -20,7 +20,7 @@ use crate::surfel::measured::Measured;
 use crate::surfel::same::{Same, compare};
 use crate::surfel::sheets;
 use crate::surfel::specks;
-use crate::surfel::stage::{Effort, PROCEDURES, Stage, at_level};
+use crate::surfel::stage::{DEFAULT_LEVEL, Effort, PROCEDURES, REFERENCE_BLUR, Stage, at_level};
 use crate::surfel::tables::{COLUMNS, Section, csv_rows, markdown};
 
 /// Points of the paper's cloud, and of the bunny's own ten scans together.
@@ -32,19 +32,8 @@ const PAPERS_SIZE: u32 = 400;
 const SIZE: u32 = 512;
 const LARGE_SIZE: u32 = 1024;
 
-/// Pixels between points, with the default in the middle.
-const LEVELS: [f32; 7] = [0.0, 0.5, 1.0, DEFAULT_LEVEL, 2.0, 3.0, 4.0];
-const DEFAULT_LEVEL: f32 = 1.27;
-
-/// How far away the eye is, in distances of the front view, and how large the object looks then.
-const SIZES: [(f64, &str); 4] = [(1.0, "full size"), (2.0, "1/2 size"), (4.0, "1/4 size"), (8.0, "1/8 size")];
-
 /// Radii of discs, in those that sampling gives.
 const RADII: [f32; 5] = [0.5, 0.75, 1.0, 1.5, 2.0];
-
-/// Largest radius of blur in pixels of the paper's picture, about; the lens of the reference picture blurs by 16.
-const BLURS: [u32; 5] = [0, 2, 6, 16, 32];
-const REFERENCE_BLUR: u32 = 16;
 
 /// By how much normals are turned to see what that costs.
 const OFF_DEG: [f32; 3] = [1.0, 2.0, 3.0];
@@ -207,14 +196,14 @@ impl Bench {
     /// Levels of detail at all sizes of the object.
     fn sizes(&self) -> Result<Section, SurfelError> {
         let mut rows: Vec<Measured> = vec![];
-        let stages = SIZES.map(|(distances, name)| {
+        let stages = Vec::from_iter(self.effort.sizes.iter().map(|&(distances, name)| {
             let setting = front_from(&self.surface, LARGE_SIZE, distances);
             Stage::new(name, &self.surface, setting, &self.effort)
-        });
+        }));
         let cloud = &self.large_ready;
         for (i, stage) in stages.iter().enumerate() {
             let full = (i > 0).then_some((&stages[0], cloud));
-            for level in LEVELS {
+            for &level in self.effort.levels {
                 for procedure in procedures_at(level) {
                     let options = at_level(level, stage.options(procedure));
                     rows.push(row(stage, cloud, format!("level {level}"), &options, full)?);
@@ -251,12 +240,13 @@ impl Bench {
     /// Depth of field against the mean of views from all over the lens.
     fn lenses(&mut self) -> Result<Section, SurfelError> {
         let (mut rows, mut blurs) = (vec![], vec![]);
-        let stages = BLURS.map(|px| {
+        let blur_px = self.effort.blurs;
+        let stages = Vec::from_iter(blur_px.iter().map(|&px| {
             let share = f64::from(px) / f64::from(REFERENCE_BLUR);
             let setting = above(&self.surface, PAPERS_SIZE, share);
             Stage::new(&lens_name(px), &self.surface, setting, &self.effort)
-        });
-        for (px, stage) in BLURS.into_iter().zip(&stages) {
+        }));
+        for (&px, stage) in blur_px.iter().zip(&stages) {
             if px == REFERENCE_BLUR {
                 self.note_reference(stage, "dof.exr");
             }
@@ -281,7 +271,8 @@ impl Bench {
         let diagonal = self.surface.diagonal();
         let mut list = compare(("front", 1.0), &self.small, front(&self.surface, SIZE), diagonal)?;
         let lens = above(&self.surface, PAPERS_SIZE, 1.0);
-        for scene in [("lens 16 px", 1.0), ("lens 16 px, level 0", 0.0)] {
+        let scenes = [("lens 16 px", 1.0), ("lens 16 px, level 0", 0.0)];
+        for scene in scenes.into_iter().filter(|_| self.effort.same_through_lens) {
             list.extend(compare(scene, &self.small, lens, diagonal)?);
         }
         Ok(list)
