@@ -7,6 +7,7 @@ mod lens_reference;
 mod lens_samples;
 mod lens_scenes;
 mod measured;
+mod open3d;
 mod same;
 mod sheets;
 mod specks;

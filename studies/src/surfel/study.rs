@@ -17,6 +17,7 @@ use crate::common::true_surface::Surface;
 use crate::surfel::coloured_cloud::ColouredCloud;
 use crate::surfel::lens_scenes::{above, front, front_from, lens_name};
 use crate::surfel::measured::Measured;
+use crate::surfel::open3d;
 use crate::surfel::same::{Same, compare};
 use crate::surfel::sheets;
 use crate::surfel::specks;
@@ -39,7 +40,7 @@ const RADII: [f32; 5] = [0.5, 0.75, 1.0, 1.5, 2.0];
 const OFF_DEG: [f32; 3] = [1.0, 2.0, 3.0];
 
 /// The golden ratio less 1: multiples of it are spread evenly over the turns.
-const GOLDEN_TURN: f64 = 0.618_033_988_749_894_9;
+pub(super) const GOLDEN_TURN: f64 = 0.618_033_988_749_894_9;
 
 /// The level of detail that small objects had before the present default.
 const COARSER_LEVEL: f32 = 1.4;
@@ -81,7 +82,12 @@ fn measure(effort: Effort, out_dir: &Path) -> Outcome {
     eprintln!("surfel: two sheets");
     let two_sheets = sheets::table(effort.slants_deg)?;
     let specks = specks::table(effort.speckled)?;
-    let others = [("Two surfaces close to each other", two_sheets), ("Specks", specks)];
+    let beside = open3d::section(&bench.small, bench.small_ready.spacing())?;
+    let others = [
+        ("Two surfaces close to each other", two_sheets),
+        ("Specks", specks),
+        ("Normals beside Open3D", beside),
+    ];
     write(out_dir, "surfel.md", &markdown(&bench.setup(), &sections, &others, &same))?;
     // A picture that depends on threads or on the order of points is a fault, however fast.
     Ok(same.iter().all(|s| s.same_bytes || s.may_differ))
