@@ -122,7 +122,7 @@ fn usage() -> String {
     for Study { name, what, .. } in STUDIES {
         text += &format!("  {name:<12}{what}\n");
     }
-    text + "  all         all of these\n  stale       those of these that other sources made than the present ones: `all`, or its rest, where some were made already\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n  mutants     how many faults tests see, from the runs of `.ci/mutants`\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too; `together DIR PART…` does some parts alone. `radiosity PART…` runs parts alone, such as `buildings` and `growth`; `clouds POINTS` ends with that size, and `ibpr floor` and `ibpr relief` print those parts.\n"
+    text + "  all         all of these\n  stale       those of these that were made before one of their sources changed, the crates that they measure among these: `all`, or its rest\n  quick       small sizes of most of them in minutes, and their page, in the temporary folder\n  quote       their tables in READMEs, written anew; with --check: whether that would change more than figures\n  mutants     how many faults tests see, from the runs of `.ci/mutants`\n\n`micropoint foliage`, `micropoint checker` and `shadow area` write NAME-PART.* alone.\n`dice quick` and others run alone what they have for `quick`, `shprobe quick` takes ten minutes; all of them write into the temporary folder. `shprobe --pictures DIR` and `together DIR` draw, too; `together DIR PART…` does some parts alone. `radiosity PART…` runs parts alone, such as `buildings` and `growth`; `clouds POINTS` ends with that size, and `ibpr floor` and `ibpr relief` print those parts.\n"
 }
 
 fn main() -> ExitCode {
@@ -184,7 +184,13 @@ fn main() -> ExitCode {
         "stale" => !stands(&out_dir, study.name),
         _ => study.name == name,
     });
-    let codes: Vec<ExitCode> = chosen.map(|study| timed(study, study.run, &out_dir)).map(code).collect();
+    let chosen: Vec<&Study> = chosen.collect();
+    if name == "stale" {
+        let names: Vec<&str> = chosen.iter().map(|study| study.name).collect();
+        eprintln!("stale: {}", if names.is_empty() { "none".to_owned() } else { names.join(", ") });
+    }
+    let codes: Vec<ExitCode> =
+        chosen.into_iter().map(|study| timed(study, study.run, &out_dir)).map(code).collect();
     codes.into_iter().find(|c| *c != ExitCode::SUCCESS).unwrap_or(ExitCode::SUCCESS)
 }
 

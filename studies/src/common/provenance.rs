@@ -20,11 +20,15 @@ fn commit() -> String {
     format!("commit {hash}{changed}")
 }
 
-/// Whether any source differs from those of a commit, or the commit is unknown. Results, prose and tests are no sources.
-pub(crate) fn differs_from(commit: &str) -> bool {
-    let sources =
-        [":/", ":!/studies/results", ":!/.ci", ":(top,exclude,glob)**/*.md", ":(top,exclude,glob)*/tests/**"];
-    output("git", &[&["diff", "--quiet", commit, "--"], &sources[..]].concat()).is_none()
+/// Whether any of these files and folders, from the root of the repository, differs from what it was in a commit, or the commit is unknown. Prose and tests are no
+/// sources.
+pub(crate) fn differs_from(commit: &str, sources: &[String]) -> bool {
+    let of_root = sources.iter().map(|source| format!(":/{source}"));
+    let no_sources = [":(top,exclude,glob)**/*.md", ":(top,exclude,glob)*/tests/**"].map(str::to_owned);
+    let paths: Vec<String> = of_root.chain(no_sources).collect();
+    let mut arguments = vec!["diff", "--quiet", commit, "--"];
+    arguments.extend(paths.iter().map(String::as_str));
+    output("git", &arguments).is_none()
 }
 
 /// UTC, as 2026-11-25.
