@@ -13,7 +13,7 @@ use crate::surfel::study::GOLDEN_TURN;
 
 const OPEN3D: &str = "OPEN3D";
 
-/// What its normals are fitted to; the last is its default.
+/// Places around a point that its normal is fitted to; the last is Open3D's default.
 const NEIGHBOURS: [u32; 2] = [14, 30];
 
 /// Largest shifts along the normals, in spacings of the cloud.

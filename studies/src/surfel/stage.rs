@@ -41,8 +41,6 @@ pub(crate) struct Effort {
     pub(crate) levels: &'static [f32],
     /// Largest radius of blur in pixels of the paper's picture, about, beginning with none.
     pub(crate) blurs: &'static [u32],
-    /// Whether frames of another place, scale, order or number of threads are compared through a lens, too.
-    pub(crate) same_through_lens: bool,
 }
 
 /// The default of [`pointillist_surfel::Options::level`].
@@ -62,7 +60,6 @@ impl Effort {
         sizes: &[(1.0, "full size"), (2.0, "1/2 size"), (4.0, "1/4 size"), (8.0, "1/8 size")],
         levels: &[0.0, 0.5, 1.0, DEFAULT_LEVEL, 2.0, 3.0, 4.0],
         blurs: &[0, 2, 6, REFERENCE_BLUR, 32],
-        same_through_lens: true,
     };
     /// Enough to see that all works.
     pub(crate) const QUICK: Self = Self {
@@ -75,7 +72,6 @@ impl Effort {
         sizes: &[(1.0, "full size"), (8.0, "1/8 size")],
         levels: &[0.0, DEFAULT_LEVEL],
         blurs: &[0, REFERENCE_BLUR],
-        same_through_lens: false,
     };
 }
 

@@ -277,8 +277,7 @@ impl Bench {
         let diagonal = self.surface.diagonal();
         let mut list = compare(("front", 1.0), &self.small, front(&self.surface, SIZE), diagonal)?;
         let lens = above(&self.surface, PAPERS_SIZE, 1.0);
-        let scenes = [("lens 16 px", 1.0), ("lens 16 px, level 0", 0.0)];
-        for scene in scenes.into_iter().filter(|_| self.effort.same_through_lens) {
+        for scene in [("lens 16 px", 1.0), ("lens 16 px, level 0", 0.0)] {
             list.extend(compare(scene, &self.small, lens, diagonal)?);
         }
         Ok(list)
