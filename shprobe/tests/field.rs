@@ -411,6 +411,25 @@ fn light_does_not_jump_among_a_thousand_probes_in_a_small_box() {
     }
 }
 
+/// Found by fuzzing: a probe in a plane by which it is hidden on one side sees nothing within a millimetre and all on the other side, however far it is off.
+#[test]
+fn steep_is_no_jump_however_far_probes_are_apart() {
+    let far = 2.0_f64.powi(118);
+    let positions = [DVec3::NEG_X, DVec3::X, DVec3::Y, DVec3::Z].map(|p| p * far);
+    let map = |plane| DistanceMap::new(1, &[[1e-30, 0.0]; 4]).unwrap().with_planes(&[plane; 4]).unwrap();
+    let field = Field::new(&positions, &constant(&[1.0, 2.0, 3.0, 4.0])).unwrap();
+    let below = [0.0, -1e10, -1e-10];
+    let field = field.with_distances([below, [0.0; 3], [0.0; 3], [0.0; 3]].map(map).to_vec()).unwrap();
+    for normals in [[Vec3::Y, Vec3::X], [Vec3::ZERO; 2]] {
+        // The second way begins where one double is farther from the next than the change is wide.
+        for x in [6.5e17, 0.5 * far] {
+            let [from, to] = [-0.003, far].map(|y| dvec3(x, y, 0.0));
+            shares_do_not_jump(&field, (from, normals[0]), (to, normals[1])).unwrap();
+            shares_do_not_jump(&field, (from - far * 0.1, normals[0]), (to, normals[1])).unwrap();
+        }
+    }
+}
+
 /// Through the middles of faces of cells, with and without distances.
 #[test]
 fn light_does_not_jump_at_faces_of_cells() {

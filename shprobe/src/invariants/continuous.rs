@@ -1,18 +1,23 @@
 //! Shares that do not jump.
 
 use super::check;
-use crate::{Field, Hint};
+use crate::{DistanceMap, Field, Hint};
 use glam::{DVec3, Vec3};
 
 /// Pieces of a way that are looked into one by one.
 const PIECES: usize = 16;
 
-/// Halvings of a piece: what is left of a way of any length is some ulps.
+/// Halvings of a piece, at least. What a probe sees changes within as little as the inverse of [`DistanceMap::FARTHEST`], far less than what this leaves of
+/// a long way: where a change is left, halving goes on as long as places differ.
 const HALVINGS: usize = 44;
 
 /// Largest sum of changes of shares from one end to the other of what is left of a piece. A jump is a share; a change
 /// that is only steep is far below this by then.
 const LARGEST_CHANGE: f64 = 1e-3;
+
+/// Bounds by how much shares change over a distance, times the nearness of the nearest thing that a probe sees: visibility goes from 1 to 0 within a few
+/// hundredths of that distance.
+const STEEPEST: f64 = 1e3;
 
 /// Cosine of normals that are nearly opposite.
 const OPPOSITE: f32 = -0.5;
@@ -39,12 +44,17 @@ pub fn shares_do_not_jump(field: &Field, from: Place, to: Place) -> Result<(), S
         let (position, normal) = at(t);
         field.surface_shares(position, normal, &mut Hint::default()).map_err(|error| error.to_string())
     };
+    let steepest = STEEPEST * field.distances().unwrap_or_default().iter().map(nearest).fold(0.0, f64::max);
     for piece in 0..PIECES {
         let end = |i: usize| i as f64 / PIECES as f64;
         let (mut low, mut high) = (end(piece), end(piece + 1));
         let (mut first, mut last) = (shares(low)?, shares(high)?);
-        for _ in 0..HALVINGS {
+        for halvings in 0.. {
             let middle = 0.5 * (low + high);
+            let is_shortest = at(middle) == at(low) || at(middle) == at(high);
+            if is_shortest || (halvings >= HALVINGS && change(&first, &last) <= LARGEST_CHANGE) {
+                break;
+            }
             let between = shares(middle)?;
             if change(&first, &between) > change(&between, &last) {
                 (high, last) = (middle, between);
@@ -52,11 +62,20 @@ pub fn shares_do_not_jump(field: &Field, from: Place, to: Place) -> Result<(), S
                 (low, first) = (middle, between);
             }
         }
-        check(change(&first, &last) <= LARGEST_CHANGE, || {
+        // Next to one another in double precision, places may be farther apart than what is steep is wide.
+        let left = (at(high).0 - at(low).0).length();
+        check(change(&first, &last) <= LARGEST_CHANGE + left * steepest, || {
             format!("from {:?} to {:?} shares go from {first:?} to {last:?}", at(low), at(high))
         })?;
     }
     Ok(())
+}
+
+/// The largest nearness, deviation and coordinate of planes in a map, one over world units.
+fn nearest(map: &DistanceMap) -> f64 {
+    let nodes = map.nodes().iter().flatten().copied();
+    let planes = map.planes().iter().map(|plane| plane.abs().max_element());
+    nodes.chain(planes).fold(0.0, f32::max).into()
 }
 
 /// The sum of what shares change by.
