@@ -98,6 +98,7 @@ mod links;
 mod mesh;
 mod neighbours;
 mod node;
+mod noise;
 mod normals;
 mod octree;
 mod options;

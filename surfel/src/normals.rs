@@ -5,20 +5,22 @@
 //!    al., *Surface reconstruction from unorganized points*, SIGGRAPH 1992, §3.2).
 //! 2. A paraboloid over it, because surfaces bend (`quadric.rs`).
 //! 3. The same side for all normals of a surface (`orient.rs`), and the outside, where there is one (`outside.rs`).
+//! 4. The mean of neighbouring normals, as far as they differ by noise (`noise.rs`).
 
 use crate::error::SurfelError;
 use crate::lattice::Lattice;
 use crate::neighbours::Places;
 use crate::orient::{Around, Orientation, VOTERS};
 use crate::points::Points;
-use crate::{outside, quadric};
+use crate::{noise, outside, quadric};
 use glam::{DVec3, Vec3};
 use pointillist_parallel as parallel;
 use std::f64::consts::PI;
 
-/// Places that a surface is fitted to, the point's own among them. Mean angle to the smooth normals of the Stanford Bunny (97,000 points of blue noise),
-/// and with noise of 0.1 and 0.25 spacings along them: 0.50°, 3.8° and 8.9° with 10, 0.68°, 2.8° and 6.4° with 14, 0.90°, 2.2° and 5.0° with 18, 1.19°, 2.0° and 4.0°
-/// with 24, which round off what is thinner. A plane through 14 is off by 1.30°, 2.4° and 5.1°.
+/// Places that a surface is fitted to, the point's own among them. Mean angle to the smooth normals of the Stanford Bunny (97,000 points of blue noise)
+/// without noise and with up to ±0.1, ±0.25 and ±0.5 spacings of it along them, before means are taken (`noise.rs`): 0.68°, 1.7°, 3.7° and 7.1°. Through
+/// 24 it is 1.17°, 1.4°, 2.3° and 4.0°, through 40 1.79°, 1.9°, 2.2° and 3.0°, which round off what is thinner; with cubic terms through 40 0.69°, 1.4°, 3.1°
+/// and 6.0°; of a plane through 14 1.30°, 1.7°, 3.0° and 5.5°.
 const FITTED: usize = 14;
 
 /// Most rotations of all three pairs of axes. Each squares what is left off the diagonal: about 5 are needed.
@@ -55,9 +57,12 @@ pub(crate) fn estimate(places: &Places) -> Vec<Estimate> {
     let fits = parallel::map(places.len(), |place| Fit::of(places, place));
     let mut normals: Vec<DVec3> = fits.iter().map(|fit| fit.normal).collect();
     let around: Vec<Around> = fits.iter().map(|fit| fit.around).collect();
+    let deviations2: Vec<f64> = fits.iter().map(|fit| fit.deviation2).collect();
     let areas: Vec<f64> = fits.into_iter().map(|fit| fit.area).collect();
     let orientation = Orientation::of(places, &normals, &around);
     let have_outside = outside::face_outwards(places, &mut normals, &areas, &orientation);
+    // Last: means across fingers and fins have lost what tells their sides.
+    let normals = noise::averaged(places, normals, &around, &noise::levels(&deviations2, &around));
     let mut estimates = vec![Estimate { way: Vec3::Z, has_outside: false }; places.point_count()];
     for (place, (normal, &has_outside)) in normals.iter().zip(&have_outside).enumerate() {
         let estimate = Estimate { way: normal.as_vec3(), has_outside };
@@ -70,6 +75,8 @@ pub(crate) fn estimate(places: &Places) -> Vec<Estimate> {
 struct Fit {
     /// Its largest component is positive.
     normal: DVec3,
+    /// Mean square of what places are off, in squares of the spacing; 0 where there are too few to say.
+    deviation2: f64,
     /// The nearest neighbours.
     around: Around,
     /// About the area of the surface that the place stands for.
@@ -83,17 +90,19 @@ impl Fit {
         let farthest = found.last().map_or(0.0, |n| n.distance2.sqrt());
         // In parts of the farthest distance, so that no square of an offset is lost.
         let offset = |i: usize| (places.at(found[i].place) - places.at(place)) / farthest;
-        let normal = if farthest > 0.0 {
+        let (normal, deviation2) = if farthest > 0.0 {
             let plane = towards_largest(least_variation(found.len(), offset));
-            quadric::normal((0..found.len()).map(offset), plane)
+            quadric::fitted((0..found.len()).map(offset), plane)
         } else {
-            DVec3::Z
+            (DVec3::Z, 0.0)
         };
         // n neighbours lie on a disc of n areas: the mean of what four of them say, which is right for lattices as well as for random points.
         let says = |n: usize| found.get(n).map(|near| PI * near.distance2 / n as f64);
         let said = || (VOTERS / 2 + 1..=VOTERS).map_while(says);
         Self {
             normal,
+            // They lie on a disc of as many squares of the spacing.
+            deviation2: if found.len() == FITTED { deviation2 * FITTED as f64 / PI } else { 0.0 },
             around: std::array::from_fn(|i| found.get(i + 1).map_or(place as u32, |n| n.place as u32)),
             area: said().sum::<f64>() / said().count().max(1) as f64,
         }

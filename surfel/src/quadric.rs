@@ -17,14 +17,15 @@ const CURVATURE_COST: f64 = 1e-4;
 /// Numbers of the paraboloid.
 const TERMS: usize = 6;
 
-/// The unit normal of the paraboloid at offset 0, on the side of `plane`, the unit normal of a plane near these offsets. Offsets have
-/// lengths up to 1, and one of them is 0.
-pub(crate) fn normal(offsets: impl Iterator<Item = DVec3>, plane: DVec3) -> DVec3 {
+/// The unit normal of the paraboloid at offset 0, on the side of `plane`, the unit normal of a plane near these offsets, and the mean square of what
+/// heights are off. Offsets have lengths up to 1, and one of them is 0.
+pub(crate) fn fitted(offsets: impl Iterator<Item = DVec3>, plane: DVec3) -> (DVec3, f64) {
     let (right, up) = plane.any_orthonormal_pair();
-    let (mut squares, mut products) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
+    let (mut squares, mut products, mut heights2) = ([[0.0; TERMS]; TERMS], [0.0; TERMS], 0.0);
     for offset in offsets {
         let (u, v, h) = (offset.dot(right), offset.dot(up), offset.dot(plane));
         let weight = (1.0 - offset.length_squared() / (REACH * REACH)).max(0.0).powi(2);
+        heights2 += weight * h * h;
         let terms = [1.0, u, v, u * u, u * v, v * v];
         for i in 0..TERMS {
             products[i] += weight * terms[i] * h;
@@ -33,11 +34,14 @@ pub(crate) fn normal(offsets: impl Iterator<Item = DVec3>, plane: DVec3) -> DVec
             }
         }
     }
-    for i in 1..TERMS {
-        squares[i][i] += squares[0][0] * if i < 3 { SLOPE_COST } else { CURVATURE_COST };
+    let weights = squares[0][0];
+    for (i, row) in squares.iter_mut().enumerate().skip(1) {
+        row[i] += weights * if i < 3 { SLOPE_COST } else { CURVATURE_COST };
     }
-    let [_, b, c, ..] = solved(squares, products);
-    (plane - right * b - up * c).normalize()
+    let solution = solved(squares, products);
+    let [_, b, c, ..] = solution;
+    let explained: f64 = solution.iter().zip(products).map(|(x, product)| x * product).sum();
+    ((plane - right * b - up * c).normalize(), (heights2 - explained).max(0.0) / weights)
 }
 
 /// Solves a positive definite system, of which the lower triangle is given, by Cholesky's factors.
@@ -79,17 +83,28 @@ mod tests {
     #[test]
     fn a_paraboloid_has_its_normal() {
         for slope in [0.0, 0.05, -0.3] {
-            let found = normal(paraboloid(slope).into_iter(), DVec3::Z);
+            let (found, deviation2) = fitted(paraboloid(slope).into_iter(), DVec3::Z);
             let wanted = dvec3(-slope, 0.0, 1.0).normalize();
             assert!(found.angle_between(wanted) < 2e-3, "{found}, not {wanted}");
+            // What curvatures cost, and that they fall short for it.
+            assert!(deviation2 < 2e-5, "{deviation2}");
         }
+    }
+
+    #[test]
+    fn what_heights_are_off_is_told() {
+        // One place in 14 is off by 0.1, and the paraboloid follows it by some.
+        let mut offsets = paraboloid(0.05);
+        offsets[5].z += 0.1;
+        let (_, deviation2) = fitted(offsets.into_iter(), DVec3::Z);
+        assert!((0.01 / 14.0 * 0.2..0.01 / 14.0 * 1.5).contains(&deviation2), "{deviation2}");
     }
 
     #[test]
     fn points_that_tell_nothing_keep_the_plane() {
         let on_line: Vec<DVec3> = (0..9).map(|i| DVec3::X * (0.1 * f64::from(i))).collect();
         for offsets in [vec![DVec3::ZERO], vec![DVec3::ZERO, DVec3::Y], on_line] {
-            assert!((normal(offsets.into_iter(), DVec3::Z) - DVec3::Z).length() < 1e-6);
+            assert!((fitted(offsets.into_iter(), DVec3::Z).0 - DVec3::Z).length() < 1e-6);
         }
     }
 }
