@@ -57,12 +57,6 @@ impl<'a> Survey<'a> {
         Ok(Self { ground, truth, layouts: vec![], candidates: OnceCell::new() })
     }
 
-    /// Without the truth: for pictures.
-    pub(crate) fn unmeasured(site: &'a Site) -> Result<Self, Fault> {
-        let ground = Ground::new(site)?;
-        Ok(Self { ground, truth: Truth::none(), layouts: vec![], candidates: OnceCell::new() })
-    }
-
     /// What order 2 loses without any interpolation.
     pub(crate) fn floor(&self) -> Wrong {
         self.truth.wrong_of_order_2(self.ground.site.dark_from)

@@ -5,14 +5,16 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 use pointillist_render::Scene;
 use pointillist_sh::Panorama;
+use pointillist_shprobe::place;
 
 use crate::common::draw;
 use crate::common::picture::Picture;
 use crate::shprobe::canvas::{save, sheet, sphere};
-use crate::shprobe::layouts::Survey;
+use crate::shprobe::known::Known;
 use crate::shprobe::maps;
-use crate::shprobe::site::{Baked, Site, lit_by};
+use crate::shprobe::site::{Baked, Ground, Site, lit_by};
 use crate::shprobe::streets;
+use crate::shprobe::together::{FIT, sent_on};
 use crate::shprobe::walk::walk;
 use crate::shprobe::wall;
 
@@ -21,6 +23,10 @@ type Fault = Box<dyn std::error::Error + Send + Sync>;
 /// Pixels of pictures of rooms, and across spheres.
 const SIZE: [u32; 2] = [480, 300];
 const SPHERE: usize = 160;
+
+/// Candidates for probes in the hall, and its exposure.
+const HALL: [usize; 3] = [20, 8, 10];
+pub(crate) const HALL_GAIN: f64 = 1.2;
 
 /// Exposure of the dark room.
 const DARK_GAIN: f64 = 20.0;
@@ -35,14 +41,13 @@ const COARSE: usize = 128;
 pub(crate) fn all(folder: &Path) -> Result<String, Fault> {
     std::fs::create_dir_all(folder)?;
     let mut text = String::new();
-    let rooms = Site::two_rooms();
-    room_pictures(&Survey::unmeasured(&rooms)?, folder, 96, 0.3)?;
+    room_pictures(&Site { name: "two rooms", ..Site::thin_wall() }, folder, 96, 0.3)?;
     text += &wall::pictures(folder)?;
     match Site::sponza() {
         Some(site) => {
-            let survey = Survey::unmeasured(&site)?;
-            room_pictures(&survey, folder, 192, 1.2)?;
-            text += &walk(&survey, folder)?;
+            let site = Site { candidates: HALL, ..site };
+            let (ground, known) = room_pictures(&site, folder, 192, HALL_GAIN)?;
+            text += &walk(&ground, &known, folder)?;
         }
         None => text += crate::common::data::SKIPPED,
     }
@@ -51,12 +56,18 @@ pub(crate) fn all(folder: &Path) -> Result<String, Fault> {
     Ok(text)
 }
 
-/// Pictures of a site with so many adaptive probes.
-fn room_pictures(survey: &Survey<'_>, folder: &Path, count: usize, gain: f64) -> Result<(), Fault> {
-    let site = survey.ground.site;
+/// Pictures of a site with so many probes, chosen and fitted as `probe place` and `probe bake --fit --indirect` do, by what is known of the site. That is returned.
+fn room_pictures<'a>(
+    site: &'a Site,
+    folder: &Path,
+    count: usize,
+    gain: f64,
+) -> Result<(Ground<'a>, Known), Fault> {
     eprintln!("shprobe: pictures of {}", site.name);
-    let bake = |distances| survey.chosen(count, distances).map(|chosen| chosen.fitted);
-    let probes = [bake(false)?, bake(true)?];
+    let ground = Ground::lit(site, Some(sent_on(&site.scene)?.0))?;
+    let known = Known::look(&ground, &FIT)?;
+    let fitted = |distances| known.adaptive(count, place::BALANCE, distances).map(|[_, fitted]| fitted);
+    let probes = [fitted(false)?, fitted(true)?];
     let mut scene = site.scene.clone();
     [scene.image.width, scene.image.height] = SIZE;
     let name = site.name.replace(' ', "-");
@@ -67,7 +78,7 @@ fn room_pictures(survey: &Survey<'_>, folder: &Path, count: usize, gain: f64) ->
         scene.camera.target = DVec3::new(4.1, 1.0, 1.0);
         save(&three(&scene, &probes)?, DARK_GAIN, &folder.join("dark-room.png"))?;
     }
-    Ok(())
+    Ok((ground, known))
 }
 
 /// Without ambient light, with that of probes that are blind, with that of probes that see.

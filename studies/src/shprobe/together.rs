@@ -34,7 +34,7 @@ const PATHS: u32 = 16;
 const PROBES: [usize; 2] = [86, 192];
 
 /// What probes are chosen among and fitted to.
-const FIT: Counts = Counts { openings: 200, free: 300, surfaces: 1200 };
+pub(crate) const FIT: Counts = Counts { openings: 200, free: 300, surfaces: 1200 };
 
 /// Patches along the longest side, and how much finer they may become.
 const PATCHES: Sizes = (32.0, 16.0);
@@ -178,6 +178,13 @@ const SEEN: &str = "\
      plain and brightened by two stops: in the two rooms, by probes, nothing but soft brighter and darker places beside the foot of the doorway; by 192 probes the underside of the foremost capital \
      of Sponza and the reveal and foot of the door on the left are too bright, since probes metres away see them, but not what stands close around them (ARCHITECTURE.md says what was tried); and in Šibenik, by probes, some specks at ledges of the left wall, and all of it too dark.\n";
 
+/// The light that surfaces send on, by radiosity, and the processor seconds of solving for it.
+pub(crate) fn sent_on(scene: &Scene) -> Result<(Lightmap, f64), Fault> {
+    let found = scene_surfaces(scene)?;
+    let cost = with_lamps(&Lamps::new(scene), |lamps| bake(&found.surfaces, lamps, PATCHES))?;
+    Ok((Lightmap::of_baked(&cost.baked, &found.faces, scene.mesh.triangles.len())?, cost.seconds))
+}
+
 fn building(site: &Site, folder: Option<&Path>, text: &mut String) -> Result<(), Fault> {
     let reference = Reference::new(&site.scene, PATHS);
     let mut row = |name: &str, error: &Error, seconds: f64| -> Result<(), Fault> {
@@ -193,13 +200,11 @@ fn building(site: &Site, folder: Option<&Path>, text: &mut String) -> Result<(),
     let plain = draw::with_pipeline(&site.scene)?;
     row("nothing else than lamps", &reference.error(&plain), 0.0)?;
 
-    let found = scene_surfaces(&site.scene)?;
-    let cost = with_lamps(&Lamps::new(&site.scene), |lamps| bake(&found.surfaces, lamps, PATCHES))?;
-    let map = Lightmap::of_baked(&cost.baked, &found.faces, site.scene.mesh.triangles.len())?;
+    let (map, seconds) = sent_on(&site.scene)?;
     let mut lit = site.scene.clone();
     lit.ambient = AmbientLight::Radiosity { light: Box::new(map.clone()), fingerprint: 0 };
     let picture = draw::with_pipeline(&lit)?;
-    row("radiosity", &reference.error(&picture), cost.seconds)?;
+    row("radiosity", &reference.error(&picture), seconds)?;
     shown.push(picture);
 
     let ground = Ground::lit(site, Some(map))?;

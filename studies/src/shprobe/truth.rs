@@ -64,11 +64,6 @@ impl Truth {
         places.par_iter().map(one).collect()
     }
 
-    /// Nothing to compare with.
-    pub(crate) fn none() -> Self {
-        Self { positions: vec![], normals: normals(), irradiance: vec![], best: vec![] }
-    }
-
     /// At each position, for each normal.
     pub(crate) fn irradiance(&self) -> &[Vec<DVec3>] {
         &self.irradiance

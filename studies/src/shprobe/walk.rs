@@ -7,12 +7,15 @@ use glam::{DVec3, Vec3, dvec3};
 use pointillist_delaunay::Hint;
 use pointillist_sh::Irradiance;
 use pointillist_shade::Material;
+use pointillist_shprobe::place;
 
 use crate::common::draw;
 use crate::common::scenes::Sketch;
 use crate::shprobe::canvas::{save, sheet};
-use crate::shprobe::layouts::{Survey, light};
-use crate::shprobe::site::{Baked, lit_by};
+use crate::shprobe::known::Known;
+use crate::shprobe::layouts::light;
+use crate::shprobe::pictures::HALL_GAIN;
+use crate::shprobe::site::{Baked, Ground, lit_by};
 use crate::shprobe::trilinear::Grid;
 use crate::shprobe::truth::{Truth, normals};
 
@@ -25,6 +28,10 @@ const FINER: usize = 10;
 const FRAME: u32 = 200;
 const RADIUS: f64 = 0.35;
 
+/// Of the sphere: in the sun it is nearly white in the picture, and no facet of it is as wide as two pixels.
+const ALBEDO: f32 = 0.35;
+const FINENESS: u32 = 6;
+
 /// In and out of the colonnades, along the hall.
 fn path(count: usize) -> Vec<DVec3> {
     let at = |i: usize| {
@@ -35,25 +42,25 @@ fn path(count: usize) -> Vec<DVec3> {
 }
 
 /// The table of jumps; draws a strip of positions.
-pub(crate) fn walk(survey: &Survey<'_>, folder: &Path) -> Result<String, Fault> {
-    eprintln!("shprobe: a walk through {}", survey.ground.site.name);
+pub(crate) fn walk(ground: &Ground<'_>, known: &Known, folder: &Path) -> Result<String, Fault> {
+    eprintln!("shprobe: a walk through {}", ground.site.name);
     let path = path(POSITIONS);
-    let truth = Truth::at(&survey.ground, path.clone())?;
+    let truth = Truth::at(ground, path.clone())?;
     let mut text = "A sphere at 60 positions in and out of the colonnades. Changes of irradiance from one position to the next, over the mean \
                     irradiance of the whole path, largest of 26 normals: of the largest step, of the mean step, and of the largest when steps are a \
                     tenth as long: a tenth of it where light does not jump.\n\n\
                     | light | largest % | mean % | largest, a tenth the step % | error % |\n| --- | ---: | ---: | ---: | ---: |\n"
         .to_owned();
     text += &row("true", truth.irradiance(), None);
-    let grid = survey.ground.look(&Grid::new(&survey.ground, [12, 6, 6]).positions)?;
+    let grid = ground.look(&Grid::new(ground, [12, 6, 6]).positions)?;
     text += &probes_row("grid of 432", &grid, false, &truth)?;
     text += &probes_row("grid of 432, distances", &grid, true, &truth)?;
     for distances in [false, true] {
-        let baked = survey.chosen(192, distances)?.fitted;
-        let name = if distances { "192 adaptive, distances" } else { "192 adaptive" };
+        let [_, baked] = known.adaptive(192, place::BALANCE, distances)?;
+        let name = if distances { "192 fitted, distances" } else { "192 fitted" };
         text += &probes_row(name, &baked, distances, &truth)?;
         if distances {
-            strip(survey, &baked, &path, folder)?;
+            strip(ground, &baked, &path, folder)?;
         }
     }
     Ok(text)
@@ -101,21 +108,21 @@ fn row(name: &str, lights: &[Vec<DVec3>], of_probes: Option<[f64; 2]>) -> String
     format!("| {name} | {:.1} | {:.1} | {fine} | {error} |\n", 100.0 * largest, 100.0 * mean)
 }
 
-/// A white sphere, followed by the camera. Only where the sun shines it is lit by more than probes.
-fn strip(survey: &Survey<'_>, baked: &Baked, path: &[DVec3], folder: &Path) -> Result<(), Fault> {
+/// A grey sphere, followed by the camera. Only where the sun shines it is lit by more than probes.
+fn strip(ground: &Ground<'_>, baked: &Baked, path: &[DVec3], folder: &Path) -> Result<(), Fault> {
     let mut pictures = vec![];
     for &p in path.iter().step_by(POSITIONS / SHOWN) {
-        let mut sketch = Sketch { scene: lit_by(&survey.ground.site.scene, baked, true)? };
-        let white = sketch.material(Material::lambert(Vec3::splat(0.8)), None);
-        sketch.sphere(p, RADIUS, 4, white);
+        let mut sketch = Sketch { scene: lit_by(&ground.site.scene, baked, true)? };
+        let grey = sketch.material(Material::lambert(Vec3::splat(ALBEDO)), None);
+        sketch.sphere(p, RADIUS, FINENESS, grey);
         let camera = &mut sketch.scene.camera;
         // From behind, or from wherever nothing is in between.
         let eye = |angle: f64| p + dvec3(-1.6 * angle.cos(), 0.5, -1.6 * angle.sin());
         let angles = [0.0, 0.6, -0.6, 1.2, -1.2, 2.0, -2.0, 3.0];
-        let free = angles.into_iter().map(eye).find(|&e| survey.ground.is_open(e, p));
+        let free = angles.into_iter().map(eye).find(|&e| ground.is_open(e, p));
         (camera.eye, camera.target) = (free.unwrap_or(eye(0.0)), p);
         [sketch.scene.image.width, sketch.scene.image.height] = [FRAME; 2];
         pictures.push(draw::with_pipeline(&sketch.scene)?);
     }
-    Ok(save(&sheet(&pictures, 6), 1.2, &folder.join("walk.png"))?)
+    Ok(save(&sheet(&pictures, 6), HALL_GAIN, &folder.join("walk.png"))?)
 }
