@@ -29,7 +29,7 @@ const HALL: [usize; 3] = [20, 8, 10];
 pub(crate) const HALL_GAIN: f64 = 1.2;
 
 /// Exposure of the dark room.
-const DARK_GAIN: f64 = 20.0;
+const DARK_GAIN: f64 = 5.0;
 
 /// Maps that are shown.
 const MAPS: [&str; 3] = ["grace", "uffizi", "studio"];
