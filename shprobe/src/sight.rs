@@ -42,6 +42,13 @@ impl Shares {
         }
     }
 
+    /// These parts of the shares, which sum to 1 again, and what they summed to. All of them where that is 0.
+    pub(crate) fn parts(&self, of: impl Fn(u32) -> f64) -> (Self, f64) {
+        let parts: Vec<(u32, f64)> = self.iter().map(|(probe, share)| (probe, share * of(probe))).collect();
+        let sum = parts.iter().map(|part| part.1).sum();
+        if sum > 0.0 { (Self(parts).normalised(), sum) } else { (self.clone(), 0.0) }
+    }
+
     fn normalised(mut self) -> Self {
         if self.0.iter().all(|s| s.1 <= 0.0) {
             self.0.iter_mut().for_each(|s| s.1 = 1.0);

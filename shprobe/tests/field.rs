@@ -5,7 +5,7 @@ use pointillist_shprobe::delaunay::{Delaunay, Partition};
 use pointillist_shprobe::invariants::{
     at_most_so_many_probes_light_a_position, fields_are_equal, shares_do_not_jump,
 };
-use pointillist_shprobe::sh::Sh;
+use pointillist_shprobe::sh::{CubePoint, Sh, cube_direction};
 use pointillist_shprobe::{DistanceMap, Field, Hint, LitObject, ProbeError, place};
 
 /// Probes that see the same radiance from everywhere.
@@ -223,6 +223,40 @@ fn fitted_probes_are_a_minimum_of_the_error() {
         place::fit(candidates, &[3, 700], &options).unwrap_err(),
         ProbeError::NoSuchProbe { index: 700 }
     );
+}
+
+/// Places close behind walls took the light of the room from the probes in it: by their maps these seem to see them.
+#[test]
+fn places_behind_thin_walls_do_not_darken_the_room() {
+    let inside = place::grid(DVec3::splat(-0.6), DVec3::splat(0.6), [3, 3, 3]);
+    // From just outside of a wall, half of all directions meet it, and the others nothing.
+    let behind: Vec<DVec3> =
+        [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|way| [way * 1.01, -way * 1.01]).collect();
+    let map = |p: &DVec3| {
+        let distance = |(face, x, y): (usize, usize, usize)| {
+            let [s, t] = [x, y].map(|i| f64::from(2 * i as u32 + 1) / 32.0 - 1.0);
+            let way = cube_direction(CubePoint { face, s, t });
+            let to_wall = |axis: usize| {
+                let walls = [-1.0, 1.0].map(|wall| (wall - p[axis]) / way[axis]);
+                let is_on = |t: &f64| *t > 0.0 && (*p + way * *t).abs().max_element() < 1.0 + 1e-9;
+                walls.into_iter().filter(is_on).fold(f64::INFINITY, f64::min)
+            };
+            (0..3).map(to_wall).fold(f64::INFINITY, f64::min) as f32
+        };
+        let texels = (0..6).flat_map(|face| (0..32 * 32).map(move |i| (face, i % 32, i / 32)));
+        DistanceMap::from_cube(16, 32, &texels.map(distance).collect::<Vec<_>>(), 100.0).unwrap()
+    };
+    let positions: Vec<DVec3> = inside.iter().chain(&behind).copied().collect();
+    let values: Vec<f64> = positions.iter().map(|p| f64::from(p.abs().max_element() < 1.0)).collect();
+    let (radiance, maps) = (constant(&values), positions.iter().map(map).collect::<Vec<_>>());
+    let mut candidates = place::Candidates::new(&positions, &radiance);
+    candidates.distances = Some(&maps);
+    let chosen: Vec<u32> = (0..27).collect();
+    let fitted = place::fit(candidates, &chosen, &place::FitOptions::DEFAULT).unwrap();
+    for (probe, sh) in fitted.iter().enumerate() {
+        let light = sh.coefficients()[0] / radiance[0].coefficients()[0];
+        assert!((light - 1.0).abs().max_element() < 0.02, "probe {probe}: {light}");
+    }
 }
 
 #[test]

@@ -53,8 +53,8 @@ const MOST_STEPS: usize = 500;
 /// A probe that holds what it saw is exact at its own position, but biased all around it where light has a peak or a
 /// minimum there. A fitted probe has a small error everywhere and a much smaller one on the whole. \[6\] does the same
 /// for vertices of meshes. The normal equations Σ wₛ aₛaₛᵀ X = Σ wₛ aₛ Tₛ, with a row aₛ of shares for each candidate,
-/// are solved by conjugate gradients from what the probes saw. A candidate counts as far as a probe sees it, on a surface from in
-/// front. On a surface the row is that of the irradiance for its normal, which ties all coefficients of its probes together; the error in free space is the mean over all normals.
+/// are solved by conjugate gradients from what the probes saw. A candidate counts as far as probes see it, on a surface from in
+/// front, and in free space as far as it sees them, too. On a surface the row is that of the irradiance for its normal, which ties all coefficients of its probes together; the error in free space is the mean over all normals.
 ///
 /// # Errors
 /// As [`adaptive`](super::adaptive), and [`ProbeError::NoSuchProbe`] for a number that is no candidate.
@@ -103,15 +103,18 @@ struct Equations {
 
 impl Equations {
     fn new(bench: &Bench<'_>, chosen: &[u32], hold: f64) -> Result<Self, ProbeError> {
-        let rows = bench.shares(chosen)?;
         let spacing = bench.tree(chosen)?.1;
-        // What no probe sees is lit by probes that do not see it. To bend these to it, as to the dark outside of a room that is open on one
-        // side, takes light from all that they do see.
-        let seen = parallel::map(rows.len(), |i| {
+        let shares = bench.shares(chosen)?;
+        let counted = parallel::map(shares.len(), |i| {
+            // Close behind a thin wall probes seem to see the place, which does not see them.
+            let (row, kept) = shares[i].parts(|p| bench.sees_of(i, chosen[p as usize]));
+            // What no probe sees is lit by probes that do not see it. To bend these to it, as to the dark outside of a room that is open on one
+            // side, takes light from all that they do see.
             let spot = bench.spot(i, spacing);
-            let by = rows[i].iter().map(|(p, _)| bench.seen(&spot, chosen[p as usize]));
-            by.fold(0.0, f64::max)
+            let seen = row.iter().map(|(p, _)| bench.seen(&spot, chosen[p as usize])).fold(0.0, f64::max);
+            (row, seen * kept * kept)
         });
+        let (rows, seen): (Vec<Shares>, Vec<f64>) = counted.into_iter().unzip();
         let weights: Vec<f64> = bench.weights().iter().zip(seen).map(|(w, seen)| w * seen).collect();
         let mut lit = vec![0.0; chosen.len()];
         for (row, w) in rows.iter().zip(&weights) {

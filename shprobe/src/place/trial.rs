@@ -293,6 +293,15 @@ impl<'a> Bench<'a> {
         spot.seen(self.candidates.positions[probe as usize], map)
     }
 
+    /// How much a candidate in free space sees of another; all where it is not known what candidates see.
+    pub(super) fn sees_of(&self, i: usize, other: u32) -> f64 {
+        let offset = self.candidates.positions[other as usize] - self.candidates.positions[i];
+        match self.candidates.distances {
+            Some(maps) if self.candidates.is_free(i) => maps[i].visibility(offset),
+            _ => 1.0,
+        }
+    }
+
     /// The error of a candidate with these shares of `chosen`.
     fn squared_error(&self, i: usize, chosen: &[u32], shares: &Shares) -> f64 {
         let of_candidates: Vec<(u32, f64)> = shares.iter().map(|(p, w)| (chosen[p as usize], w)).collect();
