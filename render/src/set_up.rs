@@ -79,8 +79,8 @@ impl Shader<'_> {
             true => self.shading_normal(face, barycentric, face_normal, to_eye),
             false => face_normal,
         };
-        let (triangle, front, side) = (face.id, face.front, side(face_normal, normal));
-        let mut s = ShadedSurface { triangle, front, position, to_eye, face_normal, side, normal, material };
+        let (triangle, front) = (face.id, face.front);
+        let mut s = ShadedSurface { triangle, front, position, to_eye, face_normal, normal, material };
         let mapped = match self.surfaces.details(face.id) {
             Some(maps) => self.apply_maps(&self.described(face).details, maps, &mut s, outlines),
             None => Mapped::NOTHING,
@@ -140,18 +140,6 @@ impl Shader<'_> {
     fn vertex_color(&self, triangle: u32, barycentric: Vec3) -> Vec3 {
         interpolate_color(self.scene.mesh.corner_colors(triangle), barycentric)
     }
-}
-
-/// Cosines of the angle between a face's normal and the interpolated one: up to the first (30°) that is the bend of a smooth surface, from the second on
-/// (60°) normals say something else.
-const BEND: f32 = 0.866;
-const NO_BEND: f32 = 0.5;
-
-/// The normal of the surface that a face is part of, without bumps. By the normals of the faces themselves, light of probes showed their edges on smooth
-/// surfaces.
-fn side(face_normal: Vec3, interpolated: Vec3) -> Vec3 {
-    let share = ((face_normal.dot(interpolated) - NO_BEND) / (BEND - NO_BEND)).clamp(0.0, 1.0);
-    face_normal.lerp(interpolated, share).normalize_or(face_normal)
 }
 
 /// The smallest weight among the `count` heaviest fragments; 0 if there are no more than that.
