@@ -112,7 +112,7 @@ impl Equations {
             // side, takes light from all that they do see.
             let spot = bench.spot(i, spacing);
             let seen = row.iter().map(|(p, _)| bench.seen(&spot, chosen[p as usize])).fold(0.0, f64::max);
-            (row, seen * kept * kept)
+            (row, seen * kept)
         });
         let (rows, seen): (Vec<Shares>, Vec<f64>) = counted.into_iter().unzip();
         let weights: Vec<f64> = bench.weights().iter().zip(seen).map(|(w, seen)| w * seen).collect();
