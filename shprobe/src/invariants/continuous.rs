@@ -15,8 +15,7 @@ const HALVINGS: usize = 44;
 /// that is only steep is far below this by then.
 const LARGEST_CHANGE: f64 = 1e-3;
 
-/// Bounds by how much shares change over a distance, times the nearness of the nearest thing that a probe sees: visibility goes from 1 to 0 within a few
-/// hundredths of that distance.
+/// Bounds by how much shares change over a distance, times [`nearest`]: visibility goes from 1 to 0 within a few hundredths of what that is the inverse of.
 const STEEPEST: f64 = 1e3;
 
 /// Cosine of normals that are nearly opposite.
@@ -44,7 +43,6 @@ pub fn shares_do_not_jump(field: &Field, from: Place, to: Place) -> Result<(), S
         let (position, normal) = at(t);
         field.surface_shares(position, normal, &mut Hint::default()).map_err(|error| error.to_string())
     };
-    let steepest = STEEPEST * field.distances().unwrap_or_default().iter().map(nearest).fold(0.0, f64::max);
     for piece in 0..PIECES {
         let end = |i: usize| i as f64 / PIECES as f64;
         let (mut low, mut high) = (end(piece), end(piece + 1));
@@ -64,18 +62,25 @@ pub fn shares_do_not_jump(field: &Field, from: Place, to: Place) -> Result<(), S
         }
         // Next to one another in double precision, places may be farther apart than what is steep is wide.
         let left = (at(high).0 - at(low).0).length();
-        check(change(&first, &last) <= LARGEST_CHANGE + left * steepest, || {
+        let is_steep = |change: f64| change <= STEEPEST * left * nearest(field, at(low).0);
+        let change = change(&first, &last);
+        check(change <= LARGEST_CHANGE || is_steep(change), || {
             format!("from {:?} to {:?} shares go from {first:?} to {last:?}", at(low), at(high))
         })?;
     }
     Ok(())
 }
 
-/// The largest nearness, deviation and coordinate of planes in a map, one over world units.
-fn nearest(map: &DistanceMap) -> f64 {
-    let nodes = map.nodes().iter().flatten().copied();
-    let planes = map.planes().iter().map(|plane| plane.abs().max_element());
-    nodes.chain(planes).fold(0.0, f32::max).into()
+/// The inverse of how near the nearest thing is that what probes see of a position depends on, one over world units: their planes, and what else they see, which
+/// changes no faster than the position's distance from them.
+fn nearest(field: &Field, position: DVec3) -> f64 {
+    let of_probe = |(map, probe): (&DistanceMap, &DVec3)| {
+        let nodes = f64::from(map.nodes().iter().flatten().fold(0.0, |most: f32, v| most.max(*v)));
+        let planes = map.planes().iter().fold(0.0, |most: f32, plane| most.max(plane.abs().max_element()));
+        nodes.min((position - probe).length().recip()).max(planes.into())
+    };
+    let maps = field.distances().unwrap_or_default();
+    maps.iter().zip(field.positions()).map(of_probe).fold(0.0, f64::max)
 }
 
 /// The sum of what shares change by.

@@ -158,11 +158,11 @@ fn lighting(report: &mut Report) -> Result<(), Fault> {
 
 /// Why goals are missed, of those that are, and what was tried.
 const LIMITS: &str = "What limits those that are missed, where they are:\n\n\
-     * *Dark face*: where probes are counts, not how many, and so does chance: 86, 96, 192 and 432 that are chosen and fitted err by 8.7, 8.3, 8.5 and 5.9 %. With other heights and cosines from which on a probe counts \
+     * *Dark face*: where probes are counts, not how many, and so does chance: 86, 96, 192 and 432 that are chosen and fitted err by 8.7, 8.3, 8.6 and 5.9 %. With other heights and cosines from which on a probe counts \
        as in front of a surface (0.02 to 0.05 of the spacing, 0.02 to 0.03), 96 err by 8.3 to 10.7 %.\n\
      * *Free space, 86 probes*: they err less than the grid did when this was asked for (7 %), but knowing what probes see has brought the grid to 3.2 % since, fitted 3.0. 86 chosen and fitted: 4.4, 96: \
        4.2, 192: 3.1, 432: 2.1. Probes are chosen by relative errors on surfaces, too, which costs a tenth here and halves the error of the dark face.\n\
-     * *Dark room*: interpolation limits it, since probes at the places themselves err by 3.4 % there. Chosen and fitted: 86 probes 10.1, 96 9.9, 192 9.2, 432 7.8. Probes close to walls lit discs of them \
+     * *Dark room*: interpolation limits it, since probes at the places themselves err by 3.4 % there. Chosen and fitted: 86 probes 10.2, 96 10.0, 192 9.4, 432 8.0. Probes close to walls lit discs of them \
        until their height counted beside the cosine; 96 probes erred by 10.3 % then. Rims and counts of probes that light a place (6, 8 and 10 within the rim): 11.5, 10.0 and 11.3. A floor under what probes see \
        of places that none sees well: 10.6, and the dark face 10.0 in the place of 7.5.\n\
      * *Objects and distances*: about 13 maps are asked for each object, to be continuous for any number of probes, where there were the four of a cell. By a sampling profiler, 41 to 57 % of the time are look-ups \
