@@ -31,8 +31,8 @@ pub(crate) struct Spot {
     pub(crate) triangle: u32,
     /// Which side of it is seen.
     pub(crate) front: bool,
-    /// Away from the surface, on the side that is seen.
-    pub(crate) face_normal: Vec3,
+    /// Away from the surface, on the side that is seen: what is in front of it lights it.
+    pub(crate) side: Vec3,
     /// What it is shaded with.
     pub(crate) normal: Vec3,
 }
@@ -40,7 +40,7 @@ pub(crate) struct Spot {
 impl Ambient<'_> {
     /// What a surface reflects of it, over its albedo.
     pub(crate) fn at(&self, spot: &Spot, hint: &mut Hint) -> Vec3 {
-        let Spot { position, triangle, front, face_normal, normal } = *spot;
+        let Spot { position, triangle, front, side, normal } = *spot;
         match self {
             Self::Radiosity(light) => light.irradiance(triangle, front, position) * FRAC_1_PI,
             Self::Color(color) => *color,
@@ -48,7 +48,7 @@ impl Ambient<'_> {
             Self::Environment(map) => map.irradiance(normal) * FRAC_1_PI,
             // Only a position that is not finite is refused; geometry with such positions is refused before.
             Self::Probes(field) => {
-                field.irradiance(position, face_normal, normal, hint).unwrap_or_default() * FRAC_1_PI
+                field.irradiance(position, side, normal, hint).unwrap_or_default() * FRAC_1_PI
             }
         }
     }

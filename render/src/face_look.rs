@@ -15,8 +15,34 @@ pub(crate) struct FaceLook {
     pub(crate) material: Material,
     /// Whether normals or colours are interpolated between the corners.
     pub(crate) varies_by_corner: bool,
+    /// How far it stands for a part of a smooth surface, 0 to 1: see [`smoothness`].
+    smoothness: f32,
     /// Whether it looks the same from everywhere in any light: it glows, or is black.
     pub(crate) is_constant: bool,
+}
+
+impl FaceLook {
+    /// Unit normal of the surface that the face stands for, where `interpolated` is what the corners say: without bumps, on the side that is seen.
+    pub(crate) fn side(&self, interpolated: Vec3) -> Vec3 {
+        match self.smoothness {
+            0.0 => self.normal,
+            share => self.normal.lerp(interpolated, share).normalize_or(self.normal),
+        }
+    }
+}
+
+/// Cosines of the largest angle between a face's normal and those of its corners: up to the first (30°) the face stands for a part of a smooth
+/// surface, from the second on (45°) its corners' normals are averages over edges.
+const SMOOTH: f32 = 0.866;
+const EDGED: f32 = 0.707;
+
+/// How far a face stands for a part of a smooth surface. Between faces of a box whose corners have averaged normals are edges all the same: light
+/// does not come around them.
+fn smoothness(normal: Vec3, corners: [Vec3; 3]) -> f32 {
+    let cosines = Vec3::from_array(corners.map(|corner| corner.dot(normal)));
+    // Normals may point to either side, but all to one.
+    let least = cosines.min_element().max(-cosines.max_element());
+    ((least - EDGED) / (SMOOTH - EDGED)).clamp(0.0, 1.0)
 }
 
 /// The looks of a tile's faces that were asked for. Memory is reused from tile to tile.
@@ -54,11 +80,13 @@ impl Shader<'_> {
         // Coloured glass takes up what of a colour does not pass; it does not diffuse it.
         material.diffuse *= 1.0 - described.details.passes_straight().max_element();
         let is_flat = self.scene.render.shading == Interpolation::Flat;
+        let normal = if face.front { normal } else { -normal }.as_vec3();
+        let corners = if is_flat { None } else { self.corner_normals(face) };
         FaceLook {
-            normal: if face.front { normal } else { -normal }.as_vec3(),
+            normal,
             material,
-            varies_by_corner: self.scene.mesh.has_colors()
-                || (!is_flat && self.corner_normals(face).is_some()),
+            varies_by_corner: self.scene.mesh.has_colors() || corners.is_some(),
+            smoothness: corners.map_or(0.0, |corners| smoothness(normal, corners)),
             is_constant: self.surfaces.details(face.id).is_none()
                 && material.diffuse == Vec3::ZERO
                 && material.ambient_albedo() == Vec3::ZERO

@@ -44,7 +44,7 @@ impl Ambient<'_> {
             Self::Environment(map) => map.radiance(direction, roughness),
             // Only a position that is not finite is refused; geometry with such positions is refused before.
             Self::Probes(field) => field
-                .glossy(spot.position, spot.face_normal, direction, &lobe_of(roughness), hint)
+                .glossy(spot.position, spot.side, direction, &lobe_of(roughness), hint)
                 .map_or(Vec3::ZERO, |glossy| glossy.radiance),
             // What surfaces hold is known only where they are: light of the mirrored ones is taken to be like that of this one.
             Self::Radiosity(light) => light.irradiance(spot.triangle, spot.front, spot.position) * FRAC_1_PI,
@@ -63,7 +63,7 @@ impl Ambient<'_> {
     ) -> Vec3 {
         let Self::Probes(field) = self else { return map.environment.radiance(direction, roughness) };
         let lobe = lobe_of(roughness);
-        let Ok(glossy) = field.glossy(spot.position, spot.face_normal, direction, &lobe, hint) else {
+        let Ok(glossy) = field.glossy(spot.position, spot.side, direction, &lobe, hint) else {
             return Vec3::ZERO;
         };
         let (Some(sky), Some(bands)) = (glossy.sky, &map.bands) else { return glossy.radiance };

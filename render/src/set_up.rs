@@ -79,8 +79,8 @@ impl Shader<'_> {
             true => self.shading_normal(face, barycentric, face_normal, to_eye),
             false => face_normal,
         };
-        let (triangle, front) = (face.id, face.front);
-        let mut s = ShadedSurface { triangle, front, position, to_eye, face_normal, normal, material };
+        let (triangle, front, side) = (face.id, face.front, look.side(normal));
+        let mut s = ShadedSurface { triangle, front, position, to_eye, face_normal, side, normal, material };
         let mapped = match self.surfaces.details(face.id) {
             Some(maps) => self.apply_maps(&self.described(face).details, maps, &mut s, outlines),
             None => Mapped::NOTHING,

@@ -119,6 +119,8 @@ pub(crate) struct ShadedSurface {
     pub(crate) position: DVec3,
     pub(crate) to_eye: Vec3,
     pub(crate) face_normal: Vec3,
+    /// See [`Spot::side`].
+    pub(crate) side: Vec3,
     pub(crate) normal: Vec3,
     pub(crate) material: Material,
 }
@@ -126,8 +128,8 @@ pub(crate) struct ShadedSurface {
 impl ShadedSurface {
     /// Where ambient light is asked for, from around a direction.
     pub(crate) fn spot(&self, normal: Vec3) -> Spot {
-        let Self { position, triangle, front, face_normal, .. } = *self;
-        Spot { position, triangle, front, face_normal, normal }
+        let Self { position, triangle, front, side, .. } = *self;
+        Spot { position, triangle, front, side, normal }
     }
 }
 
