@@ -1,11 +1,12 @@
 //! Files of baked light: what `radiosity` writes and `[ambient] radiosity` reads.
 
+use crate::baked_objects::{BakedObject, find_baked};
 use crate::input;
 use crate::input_error::InputError;
 use crate::json_kind::JsonKind;
 use crate::json_words;
 use pointillist_radiosity::Baked;
-use pointillist_render::{BakedLight, BakedSide, Lightmap, baked_sides};
+use pointillist_render::{BakedLight, BakedSide, Lightmap, Mesh, Newcomers, Scene, baked_sides, fingerprint};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 use std::path::Path;
@@ -16,6 +17,9 @@ use std::path::Path;
 pub(crate) struct BakedFile {
     /// Stands for the scene's triangles: light of other triangles does not fit.
     pub(crate) geometry: String,
+    /// The scene's objects; files of before have none.
+    #[serde(default)]
+    pub(crate) objects: Vec<BakedObject>,
     /// Stands for materials and lights: with others, the light is out of date.
     pub(crate) light: String,
     /// Patches that were solved for.
@@ -34,6 +38,27 @@ pub(crate) struct BakedFile {
     pub(crate) triangles: Vec<[u32; 3]>,
     /// Sides of surfaces.
     pub(crate) surfaces: Vec<SurfaceEntry>,
+}
+
+/// Which triangles of a scene those are that light was baked for.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Fit {
+    /// All, with the same numbers.
+    All,
+    /// Some; for each that light was baked for, its number in this scene. The others are of objects that were added.
+    Some(Vec<u32>),
+    /// Not all of them are there.
+    Other,
+}
+
+impl Fit {
+    /// The triangles that light was not baked for.
+    pub(crate) fn newcomers(&self, mesh: &Mesh) -> Newcomers {
+        match self {
+            Self::Some(known) => Newcomers::all_but(known, mesh.triangle_count() as u32),
+            Self::All | Self::Other => Newcomers::NONE,
+        }
+    }
 }
 
 /// One side of one surface.
@@ -65,6 +90,34 @@ impl BakedFile {
         file
     }
 
+    /// The same file, with what tells for which scene it is.
+    pub(crate) fn of(mut self, scene: &Scene) -> Self {
+        self.geometry = written(fingerprint::of_geometry(&scene.mesh));
+        self.light = written(fingerprint::of_sources(scene));
+        self.objects = BakedObject::all_of(&scene.mesh);
+        self
+    }
+
+    /// Which triangles of a scene light was baked for.
+    pub(crate) fn fit(&self, mesh: &Mesh) -> Fit {
+        if self.geometry == written(fingerprint::of_geometry(mesh)) {
+            return Fit::All;
+        }
+        match find_baked(&self.objects, mesh) {
+            Some(numbers) if !self.objects.is_empty() => Fit::Some(numbers),
+            _ => Fit::Other,
+        }
+    }
+
+    /// Whether light of triangles with these numbers depends on other materials and lights now than when it was baked.
+    pub(crate) fn is_outdated(&self, scene: &Scene, fit: &Fit) -> bool {
+        let now = match fit {
+            Fit::Some(numbers) => fingerprint::of_sources_for(scene, numbers.iter().copied()),
+            Fit::All | Fit::Other => fingerprint::of_sources(scene),
+        };
+        self.light != written(now)
+    }
+
     /// Writes JSON.
     ///
     /// # Errors
@@ -94,11 +147,16 @@ impl BakedFile {
         self.triangles.iter().try_for_each(|[a, b, c]| writeln!(output, "3 {a} {b} {c}"))
     }
 
-    /// The light, for a scene of so many triangles.
+    /// The light, for a scene of so many triangles that it fits as `fit` says.
     ///
     /// # Errors
     /// Names the field that does not fit.
-    pub(crate) fn lightmap(&self, name: &str, triangles_of_scene: usize) -> Result<Lightmap, InputError> {
+    pub(crate) fn lightmap(
+        &self,
+        name: &str,
+        triangles_of_scene: usize,
+        fit: &Fit,
+    ) -> Result<Lightmap, InputError> {
         let refused = |message: String| InputError::of_file(name, message).with_help(BAKE);
         let (length, count) = (self.radiosity.len(), self.positions.len());
         if length != count {
@@ -110,13 +168,24 @@ impl BakedFile {
             irradiance: &self.irradiance,
             triangles: &self.triangles,
         };
-        let sides: Vec<BakedSide<'_>> = self
-            .surfaces
-            .iter()
-            .map(|s| BakedSide { faces: &s.faces, back: s.back, count: s.count })
-            .collect();
+        // A number that no triangle had stays one that none has.
+        let moved = |faces: &[u32]| match fit {
+            Fit::Some(numbers) => {
+                faces.iter().map(|&f| numbers.get(f as usize).copied().unwrap_or(u32::MAX)).collect()
+            }
+            Fit::All | Fit::Other => faces.to_vec(),
+        };
+        let faces: Vec<Vec<u32>> = self.surfaces.iter().map(|s| moved(&s.faces)).collect();
+        let side = |(s, faces): (&SurfaceEntry, _)| BakedSide { faces, back: s.back, count: s.count };
+        let sides: Vec<BakedSide<'_>> =
+            self.surfaces.iter().zip(faces.iter().map(Vec::as_slice)).map(side).collect();
         Lightmap::new(&light, &sides, triangles_of_scene).map_err(|error| refused(error.to_string()))
     }
+}
+
+/// How fingerprints are written.
+fn written(fingerprint: u64) -> String {
+    format!("{fingerprint:016x}")
 }
 
 /// The way out of a file that does not fit.

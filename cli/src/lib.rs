@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 mod baked_file;
+mod baked_objects;
 pub mod cloud_io;
 mod commands;
 pub mod compare;

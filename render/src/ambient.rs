@@ -1,6 +1,7 @@
 //! Light that does not come straight from lights: a constant, or what probes or surfaces hold.
 
 use crate::lightmap::Lightmap;
+use crate::newcomers::Newcomers;
 use crate::scene::SkyLight;
 use glam::{DVec3, Vec3};
 use pointillist_delaunay::Hint;
@@ -16,11 +17,13 @@ pub enum Ambient<'a> {
     /// From a sky and a ground, by the normal; reflected as albedo · what is seen of them.
     Sky(SkyLight),
     /// Between probes; reflected as albedo/π · E(n).
-    Probes(&'a Field),
+    Probes(&'a Field, &'a Newcomers),
     /// From an environment, by the normal; reflected as albedo/π · E(n).
     Environment(&'a Environment),
     /// On the surfaces themselves; reflected as albedo/π · irradiance.
     Radiosity(&'a Lightmap),
+    /// On the surfaces where it is known there, elsewhere and in mirrors between probes.
+    RadiosityAndProbes(&'a Lightmap, &'a Field, &'a Newcomers),
 }
 
 /// Where on a surface light is asked for.
@@ -40,16 +43,39 @@ pub(crate) struct Spot {
 impl Ambient<'_> {
     /// What a surface reflects of it, over its albedo.
     pub(crate) fn at(&self, spot: &Spot, hint: &mut Hint) -> Vec3 {
-        let Spot { position, triangle, front, side, normal } = *spot;
+        let Spot { position, triangle, front, normal, .. } = *spot;
+        // Only a position that is not finite is refused; geometry with such positions is refused before.
+        let mut between = |field: &Field| {
+            field.irradiance(position, self.side(spot), normal, hint).unwrap_or_default() * FRAC_1_PI
+        };
         match self {
-            Self::Radiosity(light) => light.irradiance(triangle, front, position) * FRAC_1_PI,
             Self::Color(color) => *color,
             Self::Sky(light) => light.seen_by(normal),
             Self::Environment(map) => map.irradiance(normal) * FRAC_1_PI,
-            // Only a position that is not finite is refused; geometry with such positions is refused before.
-            Self::Probes(field) => {
-                field.irradiance(position, side, normal, hint).unwrap_or_default() * FRAC_1_PI
+            Self::Probes(field, _) => between(field),
+            Self::Radiosity(light) => light.irradiance(triangle, front, position) * FRAC_1_PI,
+            Self::RadiosityAndProbes(light, field, _) => match light.known(triangle, front, position) {
+                Some(irradiance) => irradiance * FRAC_1_PI,
+                None => between(field),
+            },
+        }
+    }
+
+    /// The side of a surface from which probes light it; 0 for all sides.
+    pub(crate) fn side(&self, spot: &Spot) -> Vec3 {
+        match self {
+            Self::Probes(_, new) | Self::RadiosityAndProbes(_, _, new) if new.contains(spot.triangle) => {
+                Vec3::ZERO
             }
+            _ => spot.side,
+        }
+    }
+
+    /// The probes that it is between, if it is.
+    pub(crate) fn field(&self) -> Option<&Field> {
+        match self {
+            Self::Probes(field, _) | Self::RadiosityAndProbes(_, field, _) => Some(field),
+            _ => None,
         }
     }
 }

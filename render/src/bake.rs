@@ -13,6 +13,7 @@ use crate::error::RenderError;
 use crate::fit_places::fit_places;
 use crate::look::{LookOptions, Seen, buried, look_again, look_all, shares_of};
 use crate::monitor::{Monitor, stage};
+use crate::newcomers::Newcomers;
 use crate::prepared::Prepared;
 use crate::solids::Solids;
 use glam::{DVec3, Vec3};
@@ -162,7 +163,7 @@ impl Rounds<'_> {
     ) -> Result<Vec<Seen>, RenderError> {
         let (probes, between) = self.places.split_at(self.probes);
         let (first, rest) = before.split_at(self.probes);
-        let ambient = Ambient::Probes(field);
+        let ambient = Ambient::Probes(field, &Newcomers::NONE);
         let again = |places: &[DVec3], most: u32, before: &[Seen]| {
             let options = self.options_of(emission, most);
             look_again(self.prepared, places, options, ambient, before, self.monitor)

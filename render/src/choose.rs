@@ -6,6 +6,7 @@ use crate::error::RenderError;
 use crate::fit_places::on_surfaces;
 use crate::look::{LookOptions, Seen, buried, look_again, look_all, shares_of};
 use crate::monitor::{Monitor, stage};
+use crate::newcomers::Newcomers;
 use crate::prepared::Prepared;
 use crate::solids::Solids;
 use glam::DVec3;
@@ -105,8 +106,16 @@ pub fn choose_places(
     let (known, buried) = look_first(prepared, candidates, options, look, monitor)?;
     let (direct, distances) = split(&known.seen[..known.free]);
     let field = Field::new(&known.positions[..known.free], &direct)?.with_distances(distances)?;
-    let again =
-        || look_again(prepared, &known.positions, look, Ambient::Probes(&field), &known.seen, monitor);
+    let again = || {
+        look_again(
+            prepared,
+            &known.positions,
+            look,
+            Ambient::Probes(&field, &Newcomers::NONE),
+            &known.seen,
+            monitor,
+        )
+    };
     let (radiance, distances) = split(&stage(monitor, "look", again)?);
     let candidates = place::Candidates::new(&known.positions, &radiance)
         .with_distances(&distances)

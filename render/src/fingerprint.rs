@@ -9,6 +9,7 @@ use pointillist_shade::{Falloff, Light, Material as ShadeMaterial};
 use pointillist_shadow::Resolution;
 use pointillist_view::Projection;
 use std::hash::Hasher as _;
+use std::ops::Range;
 use twox_hash::XxHash3_64;
 
 /// XXH3 (64 bits) of bytes that come a few at a time. The value depends on the bytes alone, not on how they are divided; numbers given as
@@ -101,9 +102,9 @@ pub fn of_light(scene: &Scene) -> u64 {
             [sky, ground, up].into_iter().for_each(|v| hash.color(*v))
         }
         AmbientLight::Environment => hash.text("environment"),
-        AmbientLight::Probes { fingerprint, .. } | AmbientLight::Radiosity { fingerprint, .. } => {
-            hash.int(*fingerprint);
-        }
+        AmbientLight::Probes { fingerprint, .. }
+        | AmbientLight::Radiosity { fingerprint, .. }
+        | AmbientLight::RadiosityAndProbes { fingerprint, .. } => hash.int(*fingerprint),
     }
     hash.0.finish()
 }
@@ -123,16 +124,68 @@ pub fn of_geometry(mesh: &Mesh) -> u64 {
     hash.0.finish()
 }
 
+/// Triangles of one object whose numbers follow one another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ObjectTriangles {
+    /// Their numbers.
+    pub triangles: Range<u32>,
+    /// The hash of where they stand, in their order. It does not depend on whether they are stored once for several places.
+    pub fingerprint: u64,
+}
+
+/// The triangles of a mesh, object by object in the order of their numbers: what is known of an object is known of an equal one in a scene in which
+/// there are others, too.
+#[must_use]
+pub fn of_objects(mesh: &Mesh) -> Vec<ObjectTriangles> {
+    let mut list = vec![];
+    let mut triangles = mesh.world_triangles().enumerate().peekable();
+    while let Some(&(first, (object, _))) = triangles.peek() {
+        let mut hash = Fingerprint::default();
+        hash.int(u64::from(mesh.objects[object as usize].two_sided));
+        let mut end = first as u32;
+        while let Some((_, (_, corners))) = triangles.next_if(|&(_, (of, _))| of == object) {
+            corners.into_iter().for_each(|p| hash.vector(p));
+            end += 1;
+        }
+        list.push(ObjectTriangles { triangles: first as u32..end, fingerprint: hash.0.finish() });
+    }
+    list
+}
+
 /// The hash of what baked light depends on besides the triangles: their materials and colours, textures and lights.
 #[must_use]
 pub fn of_sources(scene: &Scene) -> u64 {
+    of_sources_for(scene, scene.mesh.numbers())
+}
+
+/// The same for light of some triangles: what is only on others does not count.
+///
+/// # Panics
+/// If there is no triangle of such a number.
+#[must_use]
+pub fn of_sources_for(scene: &Scene, triangles: impl IntoIterator<Item = u32>) -> u64 {
     let mut hash = Fingerprint::default();
-    for part in std::iter::once(&scene.mesh).chain(scene.mesh.shapes()) {
-        part.material_of.iter().for_each(|n| hash.0.write(&n.to_le_bytes()));
-        part.colors.iter().for_each(|&color| hash.color(color));
+    // Materials count in the order in which they are met.
+    let (mut materials, mut textures) = (vec![], vec![]);
+    let mut number_of = vec![None; scene.materials.len()];
+    for triangle in triangles {
+        let material = scene.mesh.material(triangle) as usize;
+        let number = *number_of[material].get_or_insert_with(|| {
+            materials.push(material);
+            materials.len() as u32
+        });
+        hash.0.write(&number.to_le_bytes());
+        let colors = scene.mesh.corner_colors(triangle);
+        if colors != [Vec3::ONE; 3] {
+            colors.into_iter().for_each(|color| hash.color(color));
+        }
     }
-    scene.materials.iter().for_each(|material| hash.material(material));
-    scene.textures.iter().for_each(|texture| hash.texture(texture));
+    for material in materials.into_iter().map(|m| &scene.materials[m]) {
+        hash.material(material);
+        let new: Vec<usize> = material.textures().filter(|t| !textures.contains(t)).collect();
+        new.iter().for_each(|&texture| hash.texture(&scene.textures[texture]));
+        textures.extend(new);
+    }
     for light in &scene.lights {
         hash.light(&light.light);
         hash.int(u64::from(light.shadow));

@@ -43,8 +43,8 @@ impl Ambient<'_> {
             Self::Sky(light) => light.mirrored(direction, roughness),
             Self::Environment(map) => map.radiance(direction, roughness),
             // Only a position that is not finite is refused; geometry with such positions is refused before.
-            Self::Probes(field) => field
-                .glossy(spot.position, spot.side, direction, &lobe_of(roughness), hint)
+            Self::Probes(field, _) | Self::RadiosityAndProbes(_, field, _) => field
+                .glossy(spot.position, self.side(spot), direction, &lobe_of(roughness), hint)
                 .map_or(Vec3::ZERO, |glossy| glossy.radiance),
             // What surfaces hold is known only where they are: light of the mirrored ones is taken to be like that of this one.
             Self::Radiosity(light) => light.irradiance(spot.triangle, spot.front, spot.position) * FRAC_1_PI,
@@ -61,9 +61,9 @@ impl Ambient<'_> {
         map: &SceneMap,
         hint: &mut Hint,
     ) -> Vec3 {
-        let Self::Probes(field) = self else { return map.environment.radiance(direction, roughness) };
+        let Some(field) = self.field() else { return map.environment.radiance(direction, roughness) };
         let lobe = lobe_of(roughness);
-        let Ok(glossy) = field.glossy(spot.position, spot.side, direction, &lobe, hint) else {
+        let Ok(glossy) = field.glossy(spot.position, self.side(spot), direction, &lobe, hint) else {
             return Vec3::ZERO;
         };
         let (Some(sky), Some(bands)) = (glossy.sky, &map.bands) else { return glossy.radiance };

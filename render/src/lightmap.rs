@@ -215,11 +215,14 @@ impl Lightmap {
     /// Irradiance at a position on one side of a triangle; 0 where nothing was baked.
     #[must_use]
     pub fn irradiance(&self, triangle: u32, front: bool, position: DVec3) -> Vec3 {
-        let sides = self.of_face.get(triangle as usize).copied().unwrap_or_default();
-        match sides[usize::from(!front)] {
-            Some(surface) => self.surfaces[surface as usize].at(position),
-            None => Vec3::ZERO,
-        }
+        self.known(triangle, front, position).unwrap_or_default()
+    }
+
+    /// The same; `None` where nothing was baked.
+    #[must_use]
+    pub fn known(&self, triangle: u32, front: bool, position: DVec3) -> Option<Vec3> {
+        let surface = self.of_face.get(triangle as usize)?[usize::from(!front)]?;
+        Some(self.surfaces[surface as usize].at(position))
     }
 }
 

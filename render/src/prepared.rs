@@ -172,12 +172,15 @@ impl<'a> Prepared<'a> {
         match &self.scene.ambient {
             AmbientLight::Color(color) => Ambient::Color(*color),
             AmbientLight::Sky(light) => Ambient::Sky(*light),
-            AmbientLight::Probes { field, .. } => Ambient::Probes(field),
+            AmbientLight::Probes { field, newcomers, .. } => Ambient::Probes(field, newcomers),
             AmbientLight::Environment => match self.reflections.of_scene() {
                 Some(map) => Ambient::Environment(map),
                 None => Ambient::Color(self.scene.image.background),
             },
             AmbientLight::Radiosity { light, .. } => Ambient::Radiosity(light),
+            AmbientLight::RadiosityAndProbes { light, field, newcomers, .. } => {
+                Ambient::RadiosityAndProbes(light, field, newcomers)
+            }
         }
     }
 

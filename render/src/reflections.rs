@@ -119,7 +119,7 @@ impl Reflections {
 
 /// What probes hold of a texture of all directions where all of it is seen.
 fn bands_of_probes(scene: &Scene, texture: usize) -> Option<Sh> {
-    let AmbientLight::Probes { field, .. } = &scene.ambient else { return None };
+    let field = scene.ambient.field()?;
     let t = &scene.textures[texture];
     let pixels: Vec<[f32; 3]> = colors(t).into_iter().map(|color| color.to_array()).collect();
     let (width, height) = (t.width as usize, t.height as usize);

@@ -4,7 +4,11 @@ use glam::{DVec3, Vec3, dvec3};
 use pointillist_render::sh::Sh;
 use pointillist_render::shade::{self, Interpolation};
 use pointillist_render::shprobe::Field;
-use pointillist_render::{AmbientLight, Camera, DrawOptions, Material, Part, Projection, Scene, render};
+use pointillist_render::{
+    AmbientLight, BakedLight, BakedSide, Camera, DrawOptions, Lightmap, Material, Newcomers, Part,
+    Projection, Scene, render,
+};
+use std::f32::consts::PI;
 use std::f64::consts::TAU;
 
 const SIZE: u32 = 48;
@@ -21,7 +25,8 @@ fn amid_probes(corners: &[DVec3], normals: &[Vec3], faces: &[[u32; 3]], shading:
         (0..8).map(|i| f64::from(i) + 0.3).map(|t| dvec3(3.0 * t.sin(), 0.3 * t.cos(), 3.0 * t.cos()));
     let light = (0..8).map(|i| Sh::constant(DVec3::splat(f64::from(1 + 3 * i % 7)), 2).unwrap());
     let field = Field::new(&places.collect::<Vec<_>>(), &light.collect::<Vec<_>>()).unwrap();
-    scene.ambient = AmbientLight::Probes { field: Box::new(field), fingerprint: 0 };
+    scene.ambient =
+        AmbientLight::Probes { field: Box::new(field), newcomers: Newcomers::NONE, fingerprint: 0 };
     scene
 }
 
@@ -56,6 +61,52 @@ fn faces_of_a_smooth_surface_do_not_show_in_the_light_of_probes() {
     let smooth = difference(&column(24, phong), &fine);
     let faceted = difference(&column(24, flat), &fine);
     assert!(smooth < 0.2 * faceted, "{smooth} beside {faceted}");
+}
+
+/// Probes saw through what came later: it does not hide them from itself.
+#[test]
+fn newcomers_are_lit_from_all_sides() {
+    let as_newcomer = |shading| {
+        let mut scene = column(24, shading);
+        let AmbientLight::Probes { newcomers, .. } = &mut scene.ambient else { unreachable!() };
+        *newcomers = Newcomers::all_but(&[], 48);
+        scene
+    };
+    let difference = difference(&as_newcomer(Interpolation::Phong), &as_newcomer(Interpolation::Flat));
+    assert!(difference < 1e-6, "{difference}");
+}
+
+/// A square that light was baked on, and one beside it that came later.
+#[test]
+fn what_no_light_was_baked_on_is_lit_between_probes() {
+    let mut camera = Camera::perspective(dvec3(0.0, 0.0, 8.0), DVec3::ZERO, 1.0);
+    camera.projection = Projection::Orthographic { height: 2.0 };
+    let mut scene = Scene::new(camera, [2, 1]);
+    let white = scene.add_material(Material::new("white", shade::Material::lambert(Vec3::ONE)));
+    let corners =
+        |x: f64| [[0.0, -1.0], [2.0, -1.0], [2.0, 1.0], [0.0, 1.0]].map(|[u, v]| dvec3(x + u, v, 0.0));
+    for x in [-2.0, 0.0] {
+        let corners = corners(x);
+        let part = Part::new("square", &corners, &[[0, 1, 2], [0, 2, 3]]).with_material(white);
+        scene.mesh.add(&part).unwrap();
+    }
+    let light = BakedLight {
+        positions: &corners(-2.0).map(|p| p.to_array()),
+        normals: &[[0.0, 0.0, 1.0]; 4],
+        irradiance: &[[PI; 3]; 4],
+        triangles: &[[0, 1, 2], [0, 2, 3]],
+    };
+    let side = BakedSide { faces: &[0, 1], back: false, count: 2 };
+    let light = Box::new(Lightmap::new(&light, &[side], 4).unwrap());
+    let field = Box::new(Field::new(&[DVec3::Z], &[Sh::constant(DVec3::splat(3.0), 2).unwrap()]).unwrap());
+    scene.ambient =
+        AmbientLight::RadiosityAndProbes { light, field, newcomers: Newcomers::NONE, fingerprint: 0 };
+    let color = render(&scene, &DrawOptions::DEFAULT, &()).unwrap().color;
+    assert!((color[0][0] - 1.0).abs() < 1e-6 && (color[1][0] - 3.0).abs() < 1e-5, "{color:?}");
+    // Mirrors show what probes see, wherever they are.
+    scene.materials[0].surface = shade::Material::ggx(Vec3::ZERO, Vec3::ONE, 0.0);
+    let color = render(&scene, &DrawOptions::DEFAULT, &()).unwrap().color;
+    assert!(color.iter().all(|pixel| (pixel[0] - 3.0).abs() < 1e-2), "{color:?}");
 }
 
 /// Averaged over the edges of what stands for no smooth surface, normals say nothing about what is in front of a face.

@@ -106,6 +106,10 @@ fn baked_light_depends_on_which_material_is_where() {
     let before = fingerprint::of_sources(&scene);
     scene.mesh.material_of[1] = 1;
     assert_ne!(before, fingerprint::of_sources(&scene));
+    // What no triangle has does not count, nor does what only others have.
+    assert_eq!(before, fingerprint::of_sources_for(&scene, [0, 0]));
+    scene.mesh.material_of[1] = 0;
+    assert_eq!(before, fingerprint::of_sources(&scene));
 }
 
 #[test]
@@ -243,8 +247,14 @@ fn layers_tell_instances_apart() {
     expanded.mesh = scene.mesh.expanded().unwrap().into_owned();
     assert!(expanded.mesh.instances().is_empty() && expanded.mesh.triangles.len() == 4);
     assert_eq!(frame.layers, draw(&expanded).layers);
+    let objects = fingerprint::of_objects(&scene.mesh);
+    assert_eq!(objects, fingerprint::of_objects(&expanded.mesh));
+    assert_eq!(objects.iter().map(|o| o.triangles.clone()).collect::<Vec<_>>(), [0..2, 2..4]);
     // What is baked triangle by triangle is not light of the same triangles elsewhere.
     let mut moved = scene.mesh.clone();
     moved.add_instance(shape, "third", at(9.0)).unwrap();
     assert_ne!(fingerprint::of_geometry(&moved), fingerprint::of_geometry(&scene.mesh));
+    let more = fingerprint::of_objects(&moved);
+    assert_eq!(more[..2], objects);
+    assert!(objects.iter().all(|object| object.fingerprint != more[2].fingerprint));
 }

@@ -1,13 +1,14 @@
 //! A file of probes: its header and its probes.
 
 use super::ProbeEntry;
+use crate::baked_objects::{BakedObject, find_baked};
 use crate::coordinate::{LARGEST, is_usable};
 use crate::input;
 use crate::input_error::InputError;
 use crate::json_kind::JsonKind;
 use crate::json_words;
 use glam::DVec3;
-use pointillist_render::buried;
+use pointillist_render::{Mesh, Newcomers, buried};
 use pointillist_sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, ProbeError};
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,9 @@ pub struct ProbeFile {
     /// Stands for the scene and the settings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fingerprint: Option<String>,
+    /// The objects that they saw; files of before have none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub objects: Vec<BakedObject>,
     /// Which part of the probes these are, as in `0/4`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub part: Option<String>,
@@ -73,6 +77,16 @@ impl ProbeFile {
     /// Where the probes are.
     pub fn positions(&self) -> Vec<DVec3> {
         self.probes.iter().map(|p| DVec3::from_array(p.position)).collect()
+    }
+
+    /// The triangles of a scene that came after probes were baked: those of other objects than were seen, if all that were seen are still there.
+    pub fn newcomers(&self, mesh: &Mesh) -> Newcomers {
+        match find_baked(&self.objects, mesh) {
+            Some(known) if !self.objects.is_empty() => {
+                Newcomers::all_but(&known, mesh.triangle_count() as u32)
+            }
+            _ => Newcomers::NONE,
+        }
     }
 
     /// Decides which probes lie inside of walls, by what all of them see; none if they are kept. The number of those that do comes back.
@@ -242,6 +256,7 @@ impl ProbeFile {
             fit: self.fit,
             keep: self.keep,
             fingerprint: self.fingerprint.clone(),
+            objects: self.objects.clone(),
             part: self.part.clone(),
             first: self.first,
             total: self.total,

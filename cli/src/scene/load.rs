@@ -64,15 +64,23 @@ pub fn load_to_bake(path: &Path, overrides: &Overrides) -> Result<LoadedScene, I
 pub(super) fn apply(document: &mut Document, overrides: &Overrides) -> Result<(), InputError> {
     for (option, assignment) in &overrides.assignments {
         document.set(option, assignment)?;
-        match assignment.split('=').next().map(str::trim) {
-            Some("camera.fov") => document.remove("camera", "height"),
-            Some("camera.height") => document.remove("camera", "fov"),
-            Some(key @ ("camera.eye" | "camera.target")) => stand_still(document, &key["camera.".len()..]),
-            Some(key) if key.starts_with("ambient.") => keep_ambient(document, &key["ambient.".len()..]),
-            _ => {}
+        match key_of(assignment) {
+            "camera.fov" => document.remove("camera", "height"),
+            "camera.height" => document.remove("camera", "fov"),
+            key @ ("camera.eye" | "camera.target") => stand_still(document, &key["camera.".len()..]),
+            key => {
+                if let Some(ambient) = key.strip_prefix("ambient.") {
+                    keep_ambient(document, ambient, overrides);
+                }
+            }
         }
     }
     Ok(())
+}
+
+/// What an assignment assigns to.
+fn key_of(assignment: &str) -> &str {
+    assignment.split('=').next().unwrap_or_default().trim()
 }
 
 /// An eye or a target of the command line takes the place of one on a path.
@@ -85,11 +93,20 @@ fn stand_still(document: &mut Document, key: &str) {
     }
 }
 
-/// Each of these keys holds all ambient light: what the command line gives takes the place of what the scene has.
-fn keep_ambient(document: &mut Document, key: &str) {
-    let pair = ["sky", "ground"];
+/// Each of these keys holds all ambient light: what the command line gives takes the place of what the scene has. Probes stay beside radiosity if
+/// the command line gives both.
+fn keep_ambient(document: &mut Document, key: &str, overrides: &Overrides) {
+    let is_given = |name: &str| {
+        let mut keys = overrides.assignments.iter().map(|(_, assignment)| key_of(assignment));
+        keys.any(|key| key.strip_prefix("ambient.") == Some(name))
+    };
+    let belong_together = |a: &str, b: &str| match [a, b] {
+        ["sky", "ground"] | ["ground", "sky"] => true,
+        ["probes", "radiosity"] | ["radiosity", "probes"] => is_given(a) && is_given(b),
+        _ => a == b,
+    };
     for other in ["color", "sky", "ground", "probes", "radiosity", "environment"] {
-        if other != key && !(pair.contains(&key) && pair.contains(&other)) {
+        if !belong_together(key, other) {
             document.remove("ambient", other);
         }
     }

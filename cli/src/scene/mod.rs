@@ -3,6 +3,7 @@
 //! What comes out is a [`Scene`] of `pointillist-render`, with every mesh in world space, every texture decoded and every default
 //! filled in, so that whoever draws it needs neither files nor rules.
 
+mod ambient;
 mod auto_uv;
 mod builtin;
 mod copies;

@@ -7,16 +7,13 @@ use super::motion::Motion;
 use super::objects::{Assembly, ReadObject};
 use super::texture_files::load_environment;
 use super::textures::TextureTable;
-use super::{AmbientLight, Camera, LightSource, LoadedScene, Mesh, Scene, SkyLight};
-use super::{copies, framing, gltf_scene, no_effect, plain_model};
-use crate::baked_file::read_baked;
+use super::{Camera, LightSource, LoadedScene, Mesh, Scene};
+use super::{ambient, copies, framing, gltf_scene, no_effect, plain_model};
 use crate::cloud_io::{self, DRAW_CLOUD};
 use crate::input;
 use crate::input_error::InputError;
 use crate::mesh_io::gltf::GltfModel;
 use crate::mesh_io::{FileMesh, read_obj, read_ply};
-use crate::probe_io::read_probes;
-use glam::Vec3;
 use pointillist_render::fingerprint;
 use pointillist_shade::Interpolation;
 use std::collections::HashMap;
@@ -78,7 +75,7 @@ pub(super) fn resolve(
     }
     scene.ambient = match description.ambient {
         AmbientDescription::Nothing if unlit => plain_model::fill_light(&scene),
-        _ => ambient(description, folder, &scene, &mut warnings)?,
+        _ => ambient::ambient(description, folder, &scene, &mut warnings)?,
     };
     let light = fingerprint::of_light(&scene);
     let fingerprint = fingerprint::of_view(&scene.camera, description.image.size, light);
@@ -111,73 +108,6 @@ fn camera(description: &Description, model: Option<&GltfModel>, mesh: &Mesh) -> 
 
 fn has_normals(mesh: &Mesh) -> bool {
     !mesh.normals.is_empty() || mesh.shapes().iter().any(|shape| !shape.normals.is_empty())
-}
-
-/// The file that a key of `[ambient]` names, and a hash of it.
-fn ambient_file(
-    description: &Description,
-    folder: &Path,
-    file: &FileReference,
-    help: &str,
-) -> Result<(PathBuf, u64), InputError> {
-    let path = file.path_from(folder);
-    if !input::is_standard(&path) && !path.is_file() {
-        let message = format!("`{}` is not there", path.display());
-        return Err(description.document.error(file.span, message).with_help(help));
-    }
-    let fingerprint = twox_hash::XxHash3_64::oneshot(&input::read(&path)?);
-    Ok((path, fingerprint))
-}
-
-fn ambient(
-    description: &Description,
-    folder: &Path,
-    scene: &Scene,
-    warnings: &mut Vec<String>,
-) -> Result<AmbientLight, InputError> {
-    match &description.ambient {
-        AmbientDescription::Nothing => Ok(AmbientLight::Color(Vec3::ZERO)),
-        AmbientDescription::Color(color) => Ok(AmbientLight::Color(*color)),
-        &AmbientDescription::Sky { sky, ground } => {
-            Ok(AmbientLight::Sky(SkyLight { sky, ground, up: Vec3::Y }))
-        }
-        AmbientDescription::Environment => match description.image.environment {
-            Some(_) => Ok(AmbientLight::Environment),
-            None => {
-                let message = "`ambient.environment` needs `image.environment`, and there is none";
-                Err(InputError::of_file(description.document.name(), message)
-                    .with_help("name a map: [image] environment = \"sky.hdr\""))
-            }
-        },
-        AmbientDescription::Radiosity(file) => {
-            let help = "bake it with `pointillist radiosity`";
-            let (path, fingerprint) = ambient_file(description, folder, file, help)?;
-            let name = path.display().to_string();
-            let baked = read_baked(&path)?;
-            if baked.geometry != format!("{:016x}", fingerprint::of_geometry(&scene.mesh)) {
-                let message = format!("`{name}` was baked for other triangles than this scene's");
-                let help =
-                    "objects were moved, added or taken out since: bake again with `pointillist radiosity`";
-                let error = description.document.error(file.span, message).with_help(help);
-                return Err(InputError { mismatched: true, ..error });
-            }
-            let sources = fingerprint::of_sources(scene);
-            if baked.light != format!("{sources:016x}") {
-                warnings.push(format!(
-                    "`{name}` was baked with other lights or materials; bake again to see them"
-                ));
-            }
-            let light = Box::new(baked.lightmap(&name, scene.mesh.triangle_count())?);
-            Ok(AmbientLight::Radiosity { light, fingerprint })
-        }
-        AmbientDescription::Probes(file) => {
-            let help = "bake it with `pointillist probe bake`";
-            let (path, fingerprint) = ambient_file(description, folder, file, help)?;
-            let name = path.display().to_string();
-            let field = Box::new(read_probes(&path)?.field(&name)?);
-            Ok(AmbientLight::Probes { field, fingerprint })
-        }
-    }
 }
 
 fn lights(description: &Description) -> Vec<LightSource> {

@@ -122,6 +122,42 @@ fn render_takes_the_baked_light_and_refuses_that_of_other_triangles() {
     folder.fails(&["render", "own.toml", "-o", "b.exr"], 3, &["geometry"]);
 }
 
+/// Light that was baked in an empty room serves it when something has come in, which is lit between probes.
+#[test]
+fn what_was_added_since_light_was_baked_is_lit_between_probes() {
+    let folder = corner();
+    folder.prints(&["radiosity", "room.toml", "-o", "baked.json"]);
+    folder.prints(&["probe", "place", "room.toml", "--grid", "2x1x1", "-o", "two.json"]);
+    folder.prints(&["probe", "bake", "room.toml", "two.json", "--resolution", "16", "-o", "probes.json"]);
+    let [surfaces, between] = ["ambient.radiosity=baked.json", "ambient.probes=probes.json"];
+    folder.prints(&["render", "room.toml", "--set", surfaces, "-o", "empty.exr"]);
+    // Two copies are stored once, and their triangles are numbered after those of the corner; another guest's before.
+    folder.write("guest.obj", "v 0 0 0\nv 0.2 0 0\nv 0 0.2 0\nusemtl blue\nf 1 2 3\n");
+    let guest = |y: f64| format!("[[object]]\nmesh = \"guest.obj\"\ntranslate = [9, {y}, 9]\n");
+    let alone = guest(0.0).replace("translate", "scale = 2\ntranslate");
+    let blue = "[material.blue]\ndiffuse = [0.1, 0.1, 0.9]\n";
+    let corner = "[[object]]\nmesh = \"corner.obj\"\n";
+    let with_guests = alone + corner + &guest(1.0) + &guest(2.0);
+    folder.write("guests.toml", SCENE.replace(corner, &with_guests) + blue);
+    let line = ["render", "guests.toml", "--set", surfaces, "-o", "guests.exr"];
+    folder.fails(&line, 4, &["other triangles", "were added since", "ambient.probes"]);
+    let output = folder.command(&[&line[..], &["--set", between]].concat()).output().expect("it runs");
+    let told = String::from_utf8(output.stderr).expect("text");
+    assert!(output.status.success() && !told.contains("warning"), "{told}");
+    // They are out of sight: the corner looks as it did without them.
+    folder.prints(&["compare", "empty.exr", "guests.exr", "--max-rmse", "1e-7"]);
+    let red = ["--set", "material.red.diffuse=[0.7,0.1,0.1]", "--set", between, "--overwrite"];
+    let output = folder.command(&[&line[..], &red].concat()).output().expect("it runs");
+    assert!(String::from_utf8(output.stderr).expect("text").contains("other lights or materials"));
+    folder.prints(&["render", "guests.toml", "--set", between, "-o", "between.exr"]);
+    // Probes alone take the place of radiosity.
+    folder.write("corner.obj", CORNER.replace("v 0 2 2", "v 0 3 2"));
+    folder.write("own.toml", format!("{SCENE}[ambient]\nradiosity = \"baked.json\"\n"));
+    folder.prints(&["render", "own.toml", "--set", between, "-o", "own.exr"]);
+    let both = ["check", "own.toml", "--set", surfaces, "--set", between];
+    folder.fails(&both, 4, &["other triangles", "moved, changed or taken out", "bake again"]);
+}
+
 /// Who has baked light need not look up how it is used.
 #[test]
 fn how_baked_light_is_used_is_told_and_works() {

@@ -1,6 +1,7 @@
 //! Light that does not come straight from lights.
 
 use crate::lightmap::Lightmap;
+use crate::newcomers::Newcomers;
 use glam::Vec3;
 use pointillist_shprobe::Field;
 
@@ -16,6 +17,8 @@ pub enum AmbientLight {
     Probes {
         /// The light.
         field: Box<Field>,
+        /// What was not there when it was baked.
+        newcomers: Newcomers,
         /// Stands for the light in [`crate::fingerprint`]: a hash of the file that it is from, or any number.
         fingerprint: u64,
     },
@@ -28,6 +31,28 @@ pub enum AmbientLight {
         /// Stands for the light in [`crate::fingerprint`]: a hash of the file that it is from, or any number.
         fingerprint: u64,
     },
+    /// Baked on triangles where it is known there, as on what stands still; elsewhere, as on what came later, and in mirrors, between light
+    /// probes.
+    RadiosityAndProbes {
+        /// The light of triangles.
+        light: Box<Lightmap>,
+        /// The light of all else.
+        field: Box<Field>,
+        /// What was not there when these were baked.
+        newcomers: Newcomers,
+        /// Stands for both in [`crate::fingerprint`].
+        fingerprint: u64,
+    },
+}
+
+impl AmbientLight {
+    /// The probes that it is between, if it is.
+    pub(crate) fn field(&self) -> Option<&Field> {
+        match self {
+            Self::Probes { field, .. } | Self::RadiosityAndProbes { field, .. } => Some(field),
+            _ => None,
+        }
+    }
 }
 
 /// Light from two half spaces of one radiance each.

@@ -31,7 +31,10 @@ impl Scene {
             AmbientLight::Color(color) => color.is_finite(),
             AmbientLight::Sky(light) => [light.sky, light.ground, light.up].iter().all(|v| v.is_finite()),
             // These were checked when they were made.
-            AmbientLight::Probes { .. } | AmbientLight::Environment | AmbientLight::Radiosity { .. } => true,
+            AmbientLight::Environment
+            | AmbientLight::Probes { .. }
+            | AmbientLight::Radiosity { .. }
+            | AmbientLight::RadiosityAndProbes { .. } => true,
         };
         finite(ambient, || "ambient".to_owned())?;
         self.lights.iter().try_for_each(check_light)
@@ -117,7 +120,7 @@ impl Material {
     }
 
     /// All textures that it refers to.
-    fn textures(&self) -> impl Iterator<Item = usize> {
+    pub(crate) fn textures(&self) -> impl Iterator<Item = usize> {
         let own = match self.details.surroundings {
             Surroundings::Texture(texture) => Some(texture),
             Surroundings::Scene | Surroundings::Capture => None,

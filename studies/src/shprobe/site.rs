@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3, dvec3};
 use pointillist_cli::scene::{Overrides, load};
 use pointillist_radiosity::{Scene as Patches, SceneOptions, SolveOptions};
 use pointillist_render::{
-    Ambient, AmbientLight, CaptureOptions, Lamps, Lightmap, Prepared, RenderError, Scene, scene_surfaces,
-    with_lamps,
+    Ambient, AmbientLight, CaptureOptions, Lamps, Lightmap, Newcomers, Prepared, RenderError, Scene,
+    scene_surfaces, with_lamps,
 };
 use pointillist_sh::{CubeMap, CubeProjector, Sh, Weights};
 use pointillist_shade::face_normal;
@@ -367,6 +367,6 @@ pub(crate) fn lit_by(
 ) -> Result<Scene, pointillist_shprobe::ProbeError> {
     let field = Box::new(baked.field(distances)?);
     let mut scene = scene.clone();
-    scene.ambient = AmbientLight::Probes { field, fingerprint: 0 };
+    scene.ambient = AmbientLight::Probes { field, newcomers: Newcomers::NONE, fingerprint: 0 };
     Ok(scene)
 }

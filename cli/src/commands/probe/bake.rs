@@ -3,6 +3,7 @@
 use super::indirect::{self, KnownLight};
 use super::inside::{self, Outcome};
 use super::{check_output, dry_run, failed, overrides, write};
+use crate::baked_objects::BakedObject;
 use crate::commands::Report;
 use crate::commands::report::name_of_output;
 use crate::error::CliError;
@@ -45,6 +46,7 @@ pub(in crate::commands) fn run(options: &BakeOptions) -> Result<(), CliError> {
     let known = known.as_ref();
     let mark = fingerprint(&scene, options, known);
     file.fingerprint = Some(mark.clone());
+    file.objects = BakedObject::all_of(&scene.mesh);
     let bake =
         Bake { prepared: &prepared, solids: &solids, known, mark, options, report: &report, positions };
     if options.dry_run {
@@ -150,6 +152,7 @@ fn settled(
         fit: (options.fit > 0).then_some(options.fit),
         keep: (options.inside == Inside::Keep).then_some(true),
         fingerprint: None,
+        objects: vec![],
         part: options.part.map(|part| part.to_string()),
         first: options.part.map(|_| range.start),
         total: options.part.map(|_| given.probes.len()),

@@ -1,7 +1,7 @@
 //! `probe bake --indirect`: light between surfaces that is known before probes look around.
 
 use super::failed;
-use crate::baked_file::read_baked;
+use crate::baked_file::{Fit, read_baked};
 use crate::commands::Report;
 use crate::error::CliError;
 use crate::input;
@@ -10,8 +10,8 @@ use crate::job::Watch;
 use crate::options::{BakeOptions, Indirect};
 use crate::scene::Scene;
 use glam::Vec3;
+use pointillist_render::solve_indirect;
 use pointillist_render::{Ambient, IndirectError, IndirectOptions, Lightmap, Prepared, SceneError};
-use pointillist_render::{fingerprint, solve_indirect};
 use std::path::Path;
 use twox_hash::XxHash3_64;
 
@@ -67,13 +67,14 @@ fn read(path: &Path, scene: &Scene) -> Result<KnownLight, InputError> {
         let help = "bake it again with `pointillist radiosity SCENE -o baked.json`, or use --indirect solve";
         InputError { mismatched: true, ..InputError::of_file(name.as_str(), message).with_help(help) }
     };
-    if baked.geometry != format!("{:016x}", fingerprint::of_geometry(&scene.mesh)) {
+    let fit = baked.fit(&scene.mesh);
+    if fit != Fit::All {
         return Err(other("its triangles"));
     }
-    if baked.light != format!("{:016x}", fingerprint::of_sources(scene)) {
+    if baked.is_outdated(scene, &fit) {
         return Err(other("lights or materials"));
     }
-    let light = baked.lightmap(&name, scene.mesh.triangle_count())?;
+    let light = baked.lightmap(&name, scene.mesh.triangle_count(), &fit)?;
     let hash = XxHash3_64::oneshot(&input::read(path)?);
     Ok(KnownLight { light, name: format!("{hash:016x}") })
 }

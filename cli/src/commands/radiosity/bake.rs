@@ -16,9 +16,7 @@ use pointillist_radiosity as radiosity;
 use pointillist_radiosity::{
     Baked, HemicubeKind, RadiosityError, SceneOptions, Solution, SolveOptions, Transport,
 };
-use pointillist_render::{
-    IndirectOptions, Lamps, SceneError, SceneSurfaces, fingerprint, scene_surfaces, with_lamps,
-};
+use pointillist_render::{IndirectOptions, Lamps, SceneError, SceneSurfaces, scene_surfaces, with_lamps};
 use std::path::Path;
 
 /// Patches along the scene's longest side, unless said otherwise.
@@ -417,9 +415,7 @@ impl Bake<'_> {
         if let Some(path) = &options.factors {
             report.stats.stage("write", || write_factors(path, found))?;
         }
-        let mut file = BakedFile::new(baked, &self.surfaces.faces);
-        file.geometry = format!("{:016x}", fingerprint::of_geometry(&self.scene.mesh));
-        file.light = format!("{:016x}", fingerprint::of_sources(self.scene));
+        let mut file = BakedFile::new(baked, &self.surfaces.faces).of(self.scene);
         file.patches = found.patches;
         file.bound = found.bound;
         let path = &options.output;

@@ -129,6 +129,13 @@ pub enum AmbientDescription {
     Environment,
     /// A file of baked radiosity.
     Radiosity(FileReference),
+    /// The same, and a file of baked probes for what was added since.
+    RadiosityAndProbes {
+        /// The file of baked radiosity.
+        radiosity: FileReference,
+        /// The file of baked probes.
+        probes: FileReference,
+    },
 }
 
 fn read_ambient(root: &mut Table<'_>) -> Result<AmbientDescription, InputError> {
@@ -138,18 +145,20 @@ fn read_ambient(root: &mut Table<'_>) -> Result<AmbientDescription, InputError> 
     let probes = file(&mut table, "probes")?;
     let radiosity = file(&mut table, "radiosity")?;
     let environment = table.boolean("environment")?.unwrap_or(false);
+    let pair = |first, has_first, second, has_second| {
+        if has_first { (first, true) } else { (second, has_second) }
+    };
     let given = [
         ("color", color.is_some()),
-        if sky.is_some() { ("sky", true) } else { ("ground", ground.is_some()) },
-        ("probes", probes.is_some()),
-        ("radiosity", radiosity.is_some()),
+        pair("sky", sky.is_some(), "ground", ground.is_some()),
+        pair("probes", probes.is_some(), "radiosity", radiosity.is_some()),
         ("environment", environment),
     ];
     let mut given = given.iter().filter(|(_, there)| *there);
     if let (Some((first, _)), Some((second, _))) = (given.next(), given.next()) {
         return Err(table
             .error(first, format!("`ambient.{first}` and `ambient.{second}` are both given"))
-            .with_help("each of them holds all ambient light: leave one of them out"));
+            .with_help("each of them holds all ambient light: leave one of them out (`radiosity` and `probes` go together)"));
     }
     table.finish()?;
     if environment {
@@ -160,7 +169,8 @@ fn read_ambient(root: &mut Table<'_>) -> Result<AmbientDescription, InputError> 
         return Ok(AmbientDescription::Sky { sky, ground });
     }
     Ok(match (probes, radiosity, color) {
-        (Some(file), _, _) => AmbientDescription::Probes(file),
+        (Some(probes), Some(radiosity), _) => AmbientDescription::RadiosityAndProbes { radiosity, probes },
+        (Some(file), None, _) => AmbientDescription::Probes(file),
         (None, Some(file), _) => AmbientDescription::Radiosity(file),
         (None, None, Some(color)) => AmbientDescription::Color(color),
         (None, None, None) => AmbientDescription::Nothing,
