@@ -181,6 +181,8 @@ pub(crate) struct Dicer {
     cells: Vec<Cell>,
     /// Smallest `closed` of each block of cells.
     blocks: Vec<f64>,
+    /// How many cells of each block were never closed: while there are any, its smallest `closed` is known.
+    open_cells: Vec<usize>,
     block_columns: usize,
     /// Smallest `closed` of the tile.
     tile_closed: f64,
@@ -262,8 +264,13 @@ impl Dicer {
         self.block_columns = columns.div_ceil(BLOCK);
         self.cells.clear();
         self.cells.resize(columns * rows, Cell::OPEN);
+        let block_rows = rows.div_ceil(BLOCK);
         self.blocks.clear();
-        self.blocks.resize(self.block_columns * rows.div_ceil(BLOCK), f64::NEG_INFINITY);
+        self.blocks.resize(self.block_columns * block_rows, f64::NEG_INFINITY);
+        let side = |cells: usize, block: usize| BLOCK.min(cells - block * BLOCK);
+        let cells_of = |i: usize| side(columns, i % self.block_columns) * side(rows, i / self.block_columns);
+        self.open_cells.clear();
+        self.open_cells.extend((0..self.blocks.len()).map(cells_of));
         self.tile_closed = f64::NEG_INFINITY;
         self.parts.clear();
         self.next.clear();
@@ -506,8 +513,9 @@ impl Dicer {
         let (columns, rows) = ((w.x1 - w.x0) as usize, (w.y1 - w.y0) as usize);
         let (bx, by) = (cell % columns / BLOCK, cell / columns / BLOCK);
         let block = by * self.block_columns + bx;
+        self.open_cells[block] -= usize::from(before == f64::NEG_INFINITY);
         // Only the least closed cell of a block decides.
-        if before > self.blocks[block] {
+        if self.open_cells[block] > 0 || before > self.blocks[block] {
             return;
         }
         let mut least = f64::INFINITY;
