@@ -53,29 +53,35 @@ impl Casters {
         self.links.clear();
     }
 
-    /// Links a caster to the groups that it may darken, and keeps it if there are any. Returns whether it was kept.
-    pub(crate) fn link(&mut self, mut caster: Caster, grid: &mut LightGrid) -> bool {
+    /// Links a face with this outline to the groups that it may darken, and keeps it as a caster if there are any. Returns whether it was kept.
+    pub(crate) fn link(
+        &mut self,
+        face: &Face,
+        outline: &[DVec2],
+        opacity: Option<f32>,
+        grid: &mut LightGrid,
+    ) -> bool {
         let index = self.list.len() as u32;
         let Self { links, sides, .. } = self;
         let first_side = sides.len();
-        sides.extend(convex::half_planes(caster.polygon.vertices()));
-        caster.sides = first_side..sides.len();
+        sides.extend(convex::half_planes(outline));
         let own = &sides[first_side..];
+        let (bounds, opacity) = (convex::bounds(outline), opacity.map(f64::from));
         let first = links.len();
-        grid.darken_near(caster.bounds, caster.face.nearness.most, |group| {
-            match covers(&caster, own, group) {
-                Cover::Nothing => false,
-                Cover::All => true,
-                Cover::Some => {
-                    links.push(Link { caster: index, next: group.first_link });
-                    group.first_link = Some(links.len() as u32 - 1);
-                    false
-                }
+        grid.darken_near(bounds, face.nearness.most, |group| match covers((face, opacity), own, group) {
+            Cover::Nothing => false,
+            Cover::All => true,
+            Cover::Some => {
+                links.push(Link { caster: index, next: group.first_link });
+                group.first_link = Some(links.len() as u32 - 1);
+                false
             }
         });
         let used = self.links.len() > first;
         if used {
-            self.list.push(caster);
+            let polygon = ConvexPolygon::from_vertices(outline);
+            let sides = first_side..self.sides.len();
+            self.list.push(Caster { face: *face, bounds, polygon, sides, opacity });
         } else {
             self.sides.truncate(first_side);
         }
@@ -110,7 +116,7 @@ enum Cover {
     All,
 }
 
-fn covers(caster: &Caster, sides: &[HalfPlane], group: &Group) -> Cover {
+fn covers((face, opacity): (&Face, Option<f64>), sides: &[HalfPlane], group: &Group) -> Cover {
     let mut all_inside = true;
     for half in sides {
         // The corners of the rectangle farthest along the normal, and farthest against it.
@@ -121,6 +127,6 @@ fn covers(caster: &Caster, sides: &[HalfPlane], group: &Group) -> Cover {
         }
         all_inside &= half.value(against) >= 0.0;
     }
-    let clearly_before = caster.face.nearness.least > group.nearness.most + 1e-6 * group.nearness.most.abs();
-    if all_inside && clearly_before && caster.opacity == Some(1.0) { Cover::All } else { Cover::Some }
+    let clearly_before = face.nearness.least > group.nearness.most + 1e-6 * group.nearness.most.abs();
+    if all_inside && clearly_before && opacity == Some(1.0) { Cover::All } else { Cover::Some }
 }

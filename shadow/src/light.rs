@@ -1,6 +1,6 @@
 //! One light and the fractions of it that reach receivers.
 
-use crate::casters::{Caster, Casters, Nearby};
+use crate::casters::{Casters, Nearby};
 use crate::cells::LightCells;
 use crate::error::ShadowError;
 use crate::grid::LightGrid;
@@ -14,7 +14,7 @@ use crate::target::{Target, Targets, WHOLE_FACE};
 use crate::whole_faces::{self, casters_before};
 use crate::{copies, exact, layers};
 use glam::{DVec2, DVec3};
-use pointillist_dice::{ConvexPolygon, clip_ring, share_before_crossing};
+use pointillist_dice::{clip_ring, share_before_crossing};
 use pointillist_micropoint::{
     Bounds, DepthRange, Face, FaceVisitor, Geometry, GridRect, Interval, Lens, LensKind, Occlusion,
     ProjectedVertex, Setup, SurfaceOpacity, TexturedOpacity,
@@ -413,10 +413,7 @@ impl FaceVisitor for Linker<'_> {
 
     #[inline]
     fn visit(&mut self, face: Face, outline: &[DVec2], opacity: Option<f32>) {
-        let polygon = ConvexPolygon::from_vertices(outline);
-        let (bounds, opacity) = (polygon.bounds(), opacity.map(f64::from));
-        let caster = Caster { face, bounds, polygon, sides: 0..0, opacity };
-        if self.casters.link(caster, self.grid) {
+        if self.casters.link(&face, outline, opacity, self.grid) {
             self.linked += 1;
         } else {
             self.unlinked += 1;

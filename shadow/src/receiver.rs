@@ -2,14 +2,15 @@
 
 use glam::DVec3;
 use pointillist_micropoint::{Face, Fragment, Lens, Micropoint, Tile};
+use std::sync::OnceLock;
 
 /// Convex planar pieces that may be lit. Corners are relative to the viewer's lens, in world axes.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Receivers {
     pub(crate) list: Vec<Receiver>,
     pub(crate) vertices: Vec<DVec3>,
-    /// The box around all vertices, inside out if there are none.
-    around: (DVec3, DVec3),
+    /// The box around all vertices, once it was asked for: lights that are points never ask.
+    around: OnceLock<(DVec3, DVec3)>,
     /// Pieces that do not join the one before.
     wholes: usize,
 }
@@ -29,27 +30,21 @@ pub(crate) struct Receiver {
     pub(crate) wants_regions: bool,
 }
 
-const NOTHING: (DVec3, DVec3) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-
-impl Default for Receivers {
-    fn default() -> Self {
-        Self { list: Vec::new(), vertices: Vec::new(), around: NOTHING, wholes: 0 }
-    }
-}
-
 impl Receivers {
     /// Removes all pieces and keeps the memory.
     pub fn clear(&mut self) {
         self.list.clear();
         self.vertices.clear();
-        self.around = NOTHING;
+        self.around = OnceLock::new();
         self.wholes = 0;
     }
 
     /// A box around all corners: its lowest and its highest corner, relative to the viewer's lens. `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        (!self.vertices.is_empty()).then_some(self.around)
+        let (&first, rest) = self.vertices.split_first()?;
+        let grow = |(low, high): (DVec3, DVec3), &v: &DVec3| (low.min(v), high.max(v));
+        Some(*self.around.get_or_init(|| rest.iter().fold((first, first), grow)))
     }
 
     /// Number of pieces.
@@ -77,9 +72,8 @@ impl Receivers {
 
     fn add(&mut self, face: u32, corners: impl IntoIterator<Item = DVec3>, wants_regions: bool) {
         let first_vertex = self.vertices.len() as u32;
-        let (mut low, mut high) = self.around;
-        self.vertices.extend(corners.into_iter().inspect(|&v| (low, high) = (low.min(v), high.max(v))));
-        self.around = (low, high);
+        self.vertices.extend(corners);
+        self.around = OnceLock::new();
         let vertex_count = self.vertices.len() as u32 - first_vertex;
         self.wholes += 1;
         self.list.push(Receiver {
