@@ -300,16 +300,16 @@ pub fn half_planes(ring: &[DVec2]) -> impl Iterator<Item = HalfPlane> + '_ {
 #[must_use]
 #[inline]
 pub fn has_separating_edge(a: &[DVec2], b: &[DVec2]) -> bool {
-    let mut p = match a.last() {
-        Some(&last) => last,
-        None => return true,
-    };
+    let (Some(&last), Some((&first, others))) = (a.last(), b.split_first()) else { return true };
+    let mut p = last;
     for &q in a {
         let d = q - p;
         let length = d.x.abs() + d.y.abs();
         let slack = SEPARATION_SLACK * length;
-        if length > 0.0
-            && b.iter().all(|&v| d.perp_dot(v - p) <= slack)
+        // The first point alone refuses most edges.
+        if d.perp_dot(first - p) <= slack
+            && length > 0.0
+            && others.iter().all(|&v| d.perp_dot(v - p) <= slack)
             // The line through two vertices that nearly coincide may run through `a` itself.
             && a.iter().all(|&v| d.perp_dot(v - p) >= -slack)
         {

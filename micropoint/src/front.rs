@@ -34,6 +34,7 @@ pub enum Front {
 /// is affine on either, so its extremes are at corners of the common area and the line of equal
 /// nearness is straight.
 #[must_use]
+#[inline]
 pub fn in_front(
     lens: &Lens,
     corner: DVec2,
@@ -41,12 +42,24 @@ pub fn in_front(
     lower: Layer<'_>,
     if_coincident: bool,
 ) -> Front {
-    let (fu, fl) = (&upper.face.plane, &lower.face.plane);
-    let tie = lens.tie(lower.nearness.most, fu.slope.abs() + fl.slope.abs());
     // Ranges that lie apart need no planes, however steep these are.
     if upper.nearness.least >= lower.nearness.most + lens.tie(lower.nearness.most, DVec2::ZERO) {
         return Front::Everywhere;
     }
+    in_front_by_planes(lens, corner, &upper, &lower, if_coincident)
+}
+
+/// The same by the planes of the layers. Not inlined: the ranges of nearness decide most questions.
+#[inline(never)]
+fn in_front_by_planes(
+    lens: &Lens,
+    corner: DVec2,
+    upper: &Layer<'_>,
+    lower: &Layer<'_>,
+    if_coincident: bool,
+) -> Front {
+    let (fu, fl) = (&upper.face.plane, &lower.face.plane);
+    let tie = lens.tie(lower.nearness.most, fu.slope.abs() + fl.slope.abs());
     let mut common = ConvexPolygon::from_vertices(lower.outline);
     for half in convex::half_planes(upper.outline) {
         // Most half-planes hold the whole polygon, which takes less time to find out than to copy it.

@@ -2,7 +2,7 @@
 
 use crate::casters::Caster;
 use crate::lit_regions::LitRegions;
-use crate::query::{Measure, Query, values_on};
+use crate::query::{Measure, Query};
 use crate::target::Target;
 use glam::DVec2;
 use pointillist_dice::hide::{Blocker, Occluders, Regions};
@@ -138,11 +138,16 @@ enum Overlap {
 fn overlap(caster: &[HalfPlane], target: &[DVec2]) -> Overlap {
     let mut over = true;
     for half in caster {
-        let values = values_on(half, target);
-        if values.most <= 0.0 {
+        let (mut inside, mut outside) = (false, false);
+        for &p in target {
+            let value = half.value(p);
+            inside |= value > 0.0;
+            outside |= value < 0.0;
+        }
+        if !inside {
             return Overlap::Apart;
         }
-        over &= values.least >= 0.0;
+        over &= !outside;
     }
     if over { Overlap::Over } else { Overlap::Other }
 }

@@ -3,7 +3,7 @@
 use crate::casters::{Caster, Nearby};
 use glam::{DVec2, DVec3};
 use pointillist_dice::HalfPlane;
-use pointillist_micropoint::{Face, Geometry, Interval, Lens, LensKind, TexturedOpacity};
+use pointillist_micropoint::{Face, Geometry, Lens, LensKind, TexturedOpacity};
 
 /// A target with the casters that may darken it.
 #[derive(Clone, Copy)]
@@ -26,14 +26,6 @@ impl Query<'_> {
             f64::from(caster.face.rough_opacity(self.lens, surface, self.opacity, DVec2::ZERO, polygon))
         })
     }
-}
-
-/// Smallest and largest value of a half-plane at the corners of an outline.
-#[inline]
-pub(crate) fn values_on(half: &HalfPlane, outline: &[DVec2]) -> Interval {
-    let mut values = Interval::EMPTY;
-    outline.iter().for_each(|&p| values.include(half.value(p)));
-    values
 }
 
 /// Distance of a face's plane from the eye over the face's own, up to which the face is edge-on: where a region of it is in the picture

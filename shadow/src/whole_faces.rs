@@ -4,10 +4,10 @@
 //! it, matter to none of its receivers; what is left is all that these are asked of.
 
 use crate::casters::Nearby;
-use crate::query::{Query, values_on};
+use crate::query::Query;
 use crate::target::Target;
 use glam::{DVec2, DVec3};
-use pointillist_dice::convex;
+use pointillist_dice::{HalfPlane, convex};
 use pointillist_micropoint::{Face, Front, Layer, Lens, LensKind, in_front};
 
 /// Longest extent in the viewer's grid, in its cells, up to which a face is looked at whole: larger ones have casters far from what a tile sees of them.
@@ -73,23 +73,29 @@ pub(crate) fn casters_before(
         let caster = &query.casters[near.index as usize];
         let shape = caster.polygon.vertices();
         let sides = &query.sides[caster.sides.clone()];
-        let (mut apart, mut over) = (false, true);
-        for half in sides {
-            let margin = MARGIN * half.normal.abs().max_element() * query.lens.scale;
-            let values = values_on(half, outline);
-            apart |= values.most <= 0.0;
-            over &= values.least > margin;
-        }
-        if apart || convex::has_separating_edge(outline, shape) {
+        if sides.iter().any(|half| separates(half, outline)) || convex::has_separating_edge(outline, shape) {
             continue;
         }
         let upper = Layer { face: &caster.face, outline: shape, nearness: caster.face.nearness };
         let lower = Layer { face, outline, nearness: target.nearness };
         match in_front(query.lens, DVec2::ZERO, upper, lower, false) {
             Front::Nowhere => continue,
-            Front::Everywhere if over && caster.opacity == Some(1.0) => return true,
+            Front::Everywhere if caster.opacity == Some(1.0) && covers(query, sides, outline) => return true,
             Front::Everywhere | Front::Within(_) => found.push(*near),
         }
     }
     false
+}
+
+/// Whether an outline lies beyond the edge of a caster whose inner half-plane this is.
+fn separates(half: &HalfPlane, outline: &[DVec2]) -> bool {
+    outline.iter().all(|&p| half.value(p) <= 0.0)
+}
+
+/// Whether a caster reaches beyond an outline all around, by [`MARGIN`].
+fn covers(query: &Query<'_>, sides: &[HalfPlane], outline: &[DVec2]) -> bool {
+    sides.iter().all(|half| {
+        let margin = MARGIN * half.normal.abs().max_element() * query.lens.scale;
+        outline.iter().all(|&p| half.value(p) > margin)
+    })
 }
