@@ -64,7 +64,7 @@ pub(crate) struct Run {
     pub(crate) triangle_count: u32,
 }
 
-/// Up to 64 neighbouring triangles in one of their places.
+/// Up to 32 neighbouring triangles in one of their places.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
     /// Bounds in the world.
