@@ -19,6 +19,10 @@ pub(crate) struct FaceLook {
     smoothness: f32,
     /// Whether it looks the same from everywhere in any light: it glows, or is black.
     pub(crate) is_constant: bool,
+    /// Whether its colour varies.
+    pub(crate) has_color: bool,
+    /// Whether its material has anything beyond colour and opacity.
+    pub(crate) has_details: bool,
 }
 
 impl FaceLook {
@@ -82,15 +86,18 @@ impl Shader<'_> {
         let is_flat = self.scene.render.shading == Interpolation::Flat;
         let normal = if face.front { normal } else { -normal }.as_vec3();
         let corners = if is_flat { None } else { self.corner_normals(face) };
+        let has_details = self.surfaces.details(face.id).is_some();
         FaceLook {
             normal,
             material,
             varies_by_corner: self.scene.mesh.has_colors() || corners.is_some(),
             smoothness: corners.map_or(0.0, |corners| smoothness(normal, corners)),
-            is_constant: self.surfaces.details(face.id).is_none()
+            is_constant: !has_details
                 && material.diffuse == Vec3::ZERO
                 && material.ambient_albedo() == Vec3::ZERO
                 && material.specular == Vec3::ZERO,
+            has_color: self.surfaces.has_color(face.id),
+            has_details,
         }
     }
 

@@ -131,8 +131,9 @@ impl Shader<'_> {
             let of = LitFragments { tile, face, fragments, lit, first };
             first += fragments.len();
             a.fraction = of.fraction();
-            let varies = self.surfaces.varies(face.id);
-            if a.fraction > 0.0 && a.fraction < 1.0 && (varies || a.is_close) {
+            let is_partly_lit = a.fraction > 0.0 && a.fraction < 1.0;
+            let varies = is_partly_lit && self.surfaces.varies(face.id);
+            if varies || (is_partly_lit && a.is_close) {
                 a.fraction = lit_parts.collect(&of, shadow, self.surfaces).min(1.0);
                 let mut lit_part = points[a.point as usize];
                 if varies {

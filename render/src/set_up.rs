@@ -30,7 +30,7 @@ impl Shader<'_> {
         let outlines =
             |each: &mut dyn FnMut(&[SurfacePoint], f32)| self.for_outlines(tile, m, face, polygon, each);
         let (surface, mapped) = self.surface(face, look, &place, outlines);
-        let mut indirect = if self.surfaces.details(face.id).is_some() {
+        let mut indirect = if look.has_details {
             self.surrounding_light(&self.described(face).details, &surface, &mapped, hint)
         } else if surface.material.ambient_albedo() == Vec3::ZERO {
             // What reflects nothing needs no light.
@@ -68,7 +68,10 @@ impl Shader<'_> {
         mut outlines: impl FnMut(&mut dyn FnMut(&[SurfacePoint], f32)),
     ) -> (ShadedSurface, Mapped) {
         let Place { position, barycentric, to_eye, face_normal } = *place;
-        let mut material = self.textured(face, look.material, &mut outlines);
+        let mut material = look.material;
+        if look.has_color {
+            material = self.textured(face, material, &mut outlines);
+        }
         if self.economy.is_none() {
             material = self.widened_by_curvature(face, material, &mut outlines);
         }
@@ -79,9 +82,11 @@ impl Shader<'_> {
             true => self.shading_normal(face, barycentric, face_normal, to_eye),
             false => face_normal,
         };
-        let (triangle, front, side) = (face.id, face.front, look.side(normal));
+        // Only probes ask which side is lit.
+        let side = if self.ambient.field().is_some() { look.side(normal) } else { face_normal };
+        let (triangle, front) = (face.id, face.front);
         let mut s = ShadedSurface { triangle, front, position, to_eye, face_normal, side, normal, material };
-        let mapped = match self.surfaces.details(face.id) {
+        let mapped = match look.has_details.then(|| self.surfaces.details(face.id)).flatten() {
             Some(maps) => self.apply_maps(&self.described(face).details, maps, &mut s, outlines),
             None => Mapped::NOTHING,
         };
@@ -104,9 +109,6 @@ impl Shader<'_> {
         material: Material,
         outlines: &mut impl FnMut(&mut dyn FnMut(&[SurfacePoint], f32)),
     ) -> Material {
-        if !self.surfaces.has_color(face.id) {
-            return material;
-        }
         let (mut sum, mut total) = (Vec3::ZERO, 0.0);
         outlines(&mut |polygon, weight| {
             sum += self.surfaces.color(face.id, polygon) * weight;
