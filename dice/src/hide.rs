@@ -82,7 +82,13 @@ pub struct Regions {
     list: Vec<Region>,
     /// Where the polygon being divided begins in `list`.
     base: usize,
+    /// The region at hand: what is inside the occluder, and the parts outside. Polygons that stay in place, since moving whole ones costs as much
+    /// as cutting them.
+    inside: ConvexPolygon,
+    kept: ConvexPolygon,
     outside: Vec<ConvexPolygon>,
+    /// How many of `outside` are in use; the others are memory.
+    outside_count: usize,
     negligible: f64,
     /// Stack of the occluders of each half.
     stack: Vec<Blocker>,
@@ -112,16 +118,22 @@ impl Regions {
         self.negligible = negligible;
         self.stack.clear();
         self.stack.extend_from_slice(blockers);
-        self.hide_part(polygon, 0, 0, occluders);
+        self.hide_part(&polygon, 0, 0, occluders);
     }
 
     /// Adds what is left of a part of the polygon behind the blockers from `first` on the stack.
-    fn hide_part(&mut self, polygon: ConvexPolygon, first: usize, halvings: u32, occluders: &impl Occluders) {
+    fn hide_part(
+        &mut self,
+        polygon: &ConvexPolygon,
+        first: usize,
+        halvings: u32,
+        occluders: &impl Occluders,
+    ) {
         let end = self.stack.len();
         let count = end - first;
         if count <= FEW || halvings >= MOST_HALVINGS {
             self.base = self.list.len();
-            self.list.push(Region { polygon, transmittance: 1.0 });
+            self.list.push(Region { polygon: *polygon, transmittance: 1.0 });
             let is_translucent = |b: &Blocker| !occluders.is_opaque(b.number);
             let crowd = self.stack[first..].iter().filter(|b| is_translucent(b)).count() > FEW;
             for i in first..end {
@@ -149,7 +161,7 @@ impl Regions {
         for half in [below, above] {
             if self.push_blockers_of(&half, first..end, occluders) {
                 let few = 4 * (self.stack.len() - end) <= 3 * count;
-                self.hide_part(half, end, halvings + if few { 1 } else { 4 }, occluders);
+                self.hide_part(&half, end, halvings + if few { 1 } else { 4 }, occluders);
             }
             self.stack.truncate(end);
         }
@@ -222,63 +234,65 @@ impl Regions {
         let crowded = self.list.len() - self.base > most;
         // Backward, so that what is appended is not met again.
         for i in (self.base..self.list.len()).rev() {
-            let Some(inside) = self.overlap(i, occluder, front.as_ref()) else { continue };
-            let Region { polygon, transmittance } = self.list[i];
-            let opacity = opacity(&inside);
+            if !self.overlap(i, occluder, front.as_ref()) {
+                continue;
+            }
+            let opacity = opacity(&self.inside);
             if opacity <= 0.0 {
                 // A hole in a mask: not worth a cut.
                 continue;
             }
             if crowded {
-                let share = (inside.area() / polygon.area()).min(1.0);
-                self.list[i].transmittance *= 1.0 - opacity * share;
+                let region = &mut self.list[i];
+                let share = (self.inside.area() / region.polygon.area()).min(1.0);
+                region.transmittance *= 1.0 - opacity * share;
                 continue;
             }
+            let transmittance = self.list[i].transmittance;
             self.list.swap_remove(i);
-            let outside = self.outside.drain(..);
-            self.list.extend(outside.map(|polygon| Region { polygon, transmittance }));
+            let outside = self.outside[..self.outside_count].iter();
+            self.list.extend(outside.map(|&polygon| Region { polygon, transmittance }));
             let passed = transmittance * (1.0 - opacity);
             if passed > FAINT {
-                self.list.push(Region { polygon: inside, transmittance: passed });
+                self.list.push(Region { polygon: self.inside, transmittance: passed });
             }
         }
     }
 
-    /// The part of region `i` inside the occluder, with the parts outside left in `self.outside`.
-    fn overlap(&mut self, i: usize, occluder: &[DVec2], front: Option<&HalfPlane>) -> Option<ConvexPolygon> {
-        self.outside.clear();
-        let region = &self.list[i].polygon;
+    /// Whether part of region `i` is inside the occluder: it is left in `self.inside`, and the parts outside in `self.outside`.
+    fn overlap(&mut self, i: usize, occluder: &[DVec2], front: Option<&HalfPlane>) -> bool {
+        let Self { list, inside, kept, outside, outside_count, .. } = self;
+        *outside_count = 0;
+        let region = &list[i].polygon;
         if region.has_separating_edge(occluder) {
-            return None;
+            return false;
         }
         let mut edges = convex::half_planes(occluder).peekable();
         // An outline whose corners coincide has no edges that would cut anything off.
-        edges.peek()?;
-        let mut inside = *region;
-        let mut kept = ConvexPolygon::EMPTY;
+        if edges.peek().is_none() {
+            return false;
+        }
+        inside.copy(region);
         for half in edges.chain(front.copied()) {
             if inside.vertices().iter().all(|&v| half.value(v) >= 0.0) {
                 continue;
             }
-            // Divided where they are to stay: moving whole polygons costs as much as cutting them.
-            let end = self.outside.len();
-            self.outside.push(ConvexPolygon::EMPTY);
-            let cut_off = &mut self.outside[end];
-            inside.divide_into(&half, &mut kept, cut_off);
+            if outside.len() == *outside_count {
+                outside.push(ConvexPolygon::EMPTY);
+            }
+            let cut_off = &mut outside[*outside_count];
+            inside.divide_into(&half, kept, cut_off);
             if kept.is_empty() {
-                return None;
+                return false;
             }
             if cut_off.area() > self.negligible {
-                inside.copy(&kept);
-            } else {
-                let less = is_less(&kept, cut_off, half.normal);
-                self.outside.truncate(end);
-                if less {
-                    return None;
-                }
+                inside.copy(kept);
+                *outside_count += 1;
+            } else if is_less(kept, cut_off, half.normal) {
+                return false;
             }
         }
-        (inside.area() > self.negligible).then_some(inside)
+        inside.area() > self.negligible
     }
 }
 
