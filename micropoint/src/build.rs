@@ -9,8 +9,8 @@ use glam::DVec3;
 use pointillist_view::morton_code;
 
 /// Most triangles in a cluster: small enough that bounds are tight, large enough that refusing one
-/// saves real work. 32 have at most 96 vertices, so that a corner fits in a byte. Where triangles are of the size of pixels, clusters of 64 reach into
-/// nine tiles, and 16 cost more to visit than they spare.
+/// saves real work. 32 have at most 96 vertices, so that a corner fits in a byte. By instructions for a picture of spheres whose triangles are about
+/// as large as pixels, 64 take 2 % more and 16 take 1 % less, which a terrain pays for.
 const CLUSTER_SIZE: usize = 32;
 
 /// Whether the squares of coordinates, and products of three, do not overflow.
