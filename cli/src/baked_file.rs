@@ -6,7 +6,7 @@ use crate::input_error::InputError;
 use crate::json_kind::JsonKind;
 use crate::json_words;
 use pointillist_radiosity::Baked;
-use pointillist_render::{BakedLight, BakedSide, Lightmap, Mesh, Newcomers, Scene, baked_sides, fingerprint};
+use pointillist_render::{BakedLight, BakedSide, Lightmap, Mesh, Scene, Unbaked, baked_sides, fingerprint};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 use std::path::Path;
@@ -53,10 +53,10 @@ pub(crate) enum Fit {
 
 impl Fit {
     /// The triangles that light was not baked for.
-    pub(crate) fn newcomers(&self, mesh: &Mesh) -> Newcomers {
+    pub(crate) fn unbaked(&self, mesh: &Mesh) -> Unbaked {
         match self {
-            Self::Some(known) => Newcomers::all_but(known, mesh.triangle_count() as u32),
-            Self::All | Self::Other => Newcomers::NONE,
+            Self::Some(known) => Unbaked::all_but(known, mesh.triangle_count() as u32),
+            Self::All | Self::Other => Unbaked::NONE,
         }
     }
 }

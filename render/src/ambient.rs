@@ -1,8 +1,8 @@
 //! Light that does not come straight from lights: a constant, or what probes or surfaces hold.
 
 use crate::lightmap::Lightmap;
-use crate::newcomers::Newcomers;
 use crate::scene::SkyLight;
+use crate::unbaked::Unbaked;
 use glam::{DVec3, Vec3};
 use pointillist_delaunay::Hint;
 use pointillist_shade::Environment;
@@ -17,13 +17,13 @@ pub enum Ambient<'a> {
     /// From a sky and a ground, by the normal; reflected as albedo · what is seen of them.
     Sky(SkyLight),
     /// Between probes; reflected as albedo/π · E(n).
-    Probes(&'a Field, &'a Newcomers),
+    Probes(&'a Field, &'a Unbaked),
     /// From an environment, by the normal; reflected as albedo/π · E(n).
     Environment(&'a Environment),
     /// On the surfaces themselves; reflected as albedo/π · irradiance.
     Radiosity(&'a Lightmap),
     /// On the surfaces where it is known there, elsewhere and in mirrors between probes.
-    RadiosityAndProbes(&'a Lightmap, &'a Field, &'a Newcomers),
+    RadiosityAndProbes(&'a Lightmap, &'a Field, &'a Unbaked),
 }
 
 /// Where on a surface light is asked for.

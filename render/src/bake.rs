@@ -13,9 +13,9 @@ use crate::error::RenderError;
 use crate::fit_places::fit_places;
 use crate::look::{LookOptions, Seen, buried, look_again, look_all, shares_of};
 use crate::monitor::{Monitor, stage};
-use crate::newcomers::Newcomers;
 use crate::prepared::Prepared;
 use crate::solids::Solids;
+use crate::unbaked::Unbaked;
 use glam::{DVec3, Vec3};
 use pointillist_sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, place};
@@ -163,7 +163,7 @@ impl Rounds<'_> {
     ) -> Result<Vec<Seen>, RenderError> {
         let (probes, between) = self.places.split_at(self.probes);
         let (first, rest) = before.split_at(self.probes);
-        let ambient = Ambient::Probes(field, &Newcomers::NONE);
+        let ambient = Ambient::Probes(field, &Unbaked::NONE);
         let again = |places: &[DVec3], most: u32, before: &[Seen]| {
             let options = self.options_of(emission, most);
             look_again(self.prepared, places, options, ambient, before, self.monitor)

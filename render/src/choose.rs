@@ -6,9 +6,9 @@ use crate::error::RenderError;
 use crate::fit_places::on_surfaces;
 use crate::look::{LookOptions, Seen, buried, look_again, look_all, shares_of};
 use crate::monitor::{Monitor, stage};
-use crate::newcomers::Newcomers;
 use crate::prepared::Prepared;
 use crate::solids::Solids;
+use crate::unbaked::Unbaked;
 use glam::DVec3;
 use pointillist_sh::Sh;
 use pointillist_shprobe::{DEFAULT_DISTANCE_SIZE, DistanceMap, Field, place};
@@ -111,7 +111,7 @@ pub fn choose_places(
             prepared,
             &known.positions,
             look,
-            Ambient::Probes(&field, &Newcomers::NONE),
+            Ambient::Probes(&field, &Unbaked::NONE),
             &known.seen,
             monitor,
         )

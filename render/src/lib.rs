@@ -92,7 +92,6 @@ mod look;
 mod mapped_light;
 mod mirrors;
 mod monitor;
-mod newcomers;
 mod painter;
 mod partial;
 mod prepared;
@@ -109,6 +108,7 @@ mod solids;
 mod split_surfaces;
 mod surfaces;
 mod texel_sums;
+mod unbaked;
 mod uvs;
 mod whole;
 
@@ -127,7 +127,6 @@ pub use lightmap::{BakedLight, BakedSide, Lightmap, LightmapError, baked_sides};
 pub use lights::emitter;
 pub use look::{LookOptions, Seen, buried, fingerprints, look_again, look_all};
 pub use monitor::{Monitor, Watch};
-pub use newcomers::Newcomers;
 pub use partial::PartialFrame;
 pub use pointillist_shadow::check_outline;
 pub use prepared::{Prepared, PreparedMaps};
@@ -138,6 +137,7 @@ pub use scene::{
     Surroundings, Texels, Texture, Transmission, UvSet, linear_from_srgb, normal_matrix, srgb_from_linear,
 };
 pub use solids::Solids;
+pub use unbaked::Unbaked;
 
 pub use glam;
 /// Light between diffuse surfaces, what [`Lightmap`] and [`Lamps`] speak of.

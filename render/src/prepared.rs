@@ -172,14 +172,14 @@ impl<'a> Prepared<'a> {
         match &self.scene.ambient {
             AmbientLight::Color(color) => Ambient::Color(*color),
             AmbientLight::Sky(light) => Ambient::Sky(*light),
-            AmbientLight::Probes { field, newcomers, .. } => Ambient::Probes(field, newcomers),
+            AmbientLight::Probes { field, unbaked, .. } => Ambient::Probes(field, unbaked),
             AmbientLight::Environment => match self.reflections.of_scene() {
                 Some(map) => Ambient::Environment(map),
                 None => Ambient::Color(self.scene.image.background),
             },
             AmbientLight::Radiosity { light, .. } => Ambient::Radiosity(light),
-            AmbientLight::RadiosityAndProbes { light, field, newcomers, .. } => {
-                Ambient::RadiosityAndProbes(light, field, newcomers)
+            AmbientLight::RadiosityAndProbes { light, field, unbaked, .. } => {
+                Ambient::RadiosityAndProbes(light, field, unbaked)
             }
         }
     }

@@ -5,8 +5,8 @@ use pointillist_render::sh::{Lobe, Panorama, PanoramaProjector, Sh, Weights};
 use pointillist_render::shade;
 use pointillist_render::shprobe::Field;
 use pointillist_render::{
-    AmbientLight, Camera, DrawOptions, Material, Newcomers, Part, Projection, Scene, SkyLight, Texels,
-    Texture, render,
+    AmbientLight, Camera, DrawOptions, Material, Part, Projection, Scene, SkyLight, Texels, Texture, Unbaked,
+    render,
 };
 
 /// A mirror on the ground, seen at 45° from +Z: it shows what is towards −Z, at 45°. Its reflectance is 1, and it is as rough as asked.
@@ -39,7 +39,7 @@ fn probe(radiance: &Sh) -> Field {
 }
 
 fn lit_by(field: Field) -> AmbientLight {
-    AmbientLight::Probes { field: Box::new(field), newcomers: Newcomers::NONE, fingerprint: 1 }
+    AmbientLight::Probes { field: Box::new(field), unbaked: Unbaked::NONE, fingerprint: 1 }
 }
 
 const LIGHT: Vec3 = Vec3::new(0.5, 1.0, 2.0);

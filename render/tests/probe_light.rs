@@ -5,8 +5,8 @@ use pointillist_render::sh::Sh;
 use pointillist_render::shade::{self, Interpolation};
 use pointillist_render::shprobe::Field;
 use pointillist_render::{
-    AmbientLight, BakedLight, BakedSide, Camera, DrawOptions, Lightmap, Material, Newcomers, Part,
-    Projection, Scene, render,
+    AmbientLight, BakedLight, BakedSide, Camera, DrawOptions, Lightmap, Material, Part, Projection, Scene,
+    Unbaked, render,
 };
 use std::f32::consts::PI;
 use std::f64::consts::TAU;
@@ -25,8 +25,7 @@ fn amid_probes(corners: &[DVec3], normals: &[Vec3], faces: &[[u32; 3]], shading:
         (0..8).map(|i| f64::from(i) + 0.3).map(|t| dvec3(3.0 * t.sin(), 0.3 * t.cos(), 3.0 * t.cos()));
     let light = (0..8).map(|i| Sh::constant(DVec3::splat(f64::from(1 + 3 * i % 7)), 2).unwrap());
     let field = Field::new(&places.collect::<Vec<_>>(), &light.collect::<Vec<_>>()).unwrap();
-    scene.ambient =
-        AmbientLight::Probes { field: Box::new(field), newcomers: Newcomers::NONE, fingerprint: 0 };
+    scene.ambient = AmbientLight::Probes { field: Box::new(field), unbaked: Unbaked::NONE, fingerprint: 0 };
     scene
 }
 
@@ -65,11 +64,11 @@ fn faces_of_a_smooth_surface_do_not_show_in_the_light_of_probes() {
 
 /// Probes saw through what came later: it does not hide them from itself.
 #[test]
-fn newcomers_are_lit_from_all_sides() {
+fn unbaked_objects_are_lit_from_all_sides() {
     let as_newcomer = |shading| {
         let mut scene = column(24, shading);
-        let AmbientLight::Probes { newcomers, .. } = &mut scene.ambient else { unreachable!() };
-        *newcomers = Newcomers::all_but(&[], 48);
+        let AmbientLight::Probes { unbaked, .. } = &mut scene.ambient else { unreachable!() };
+        *unbaked = Unbaked::all_but(&[], 48);
         scene
     };
     let difference = difference(&as_newcomer(Interpolation::Phong), &as_newcomer(Interpolation::Flat));
@@ -99,8 +98,7 @@ fn what_no_light_was_baked_on_is_lit_between_probes() {
     let side = BakedSide { faces: &[0, 1], back: false, count: 2 };
     let light = Box::new(Lightmap::new(&light, &[side], 4).unwrap());
     let field = Box::new(Field::new(&[DVec3::Z], &[Sh::constant(DVec3::splat(3.0), 2).unwrap()]).unwrap());
-    scene.ambient =
-        AmbientLight::RadiosityAndProbes { light, field, newcomers: Newcomers::NONE, fingerprint: 0 };
+    scene.ambient = AmbientLight::RadiosityAndProbes { light, field, unbaked: Unbaked::NONE, fingerprint: 0 };
     let color = render(&scene, &DrawOptions::DEFAULT, &()).unwrap().color;
     assert!((color[0][0] - 1.0).abs() < 1e-6 && (color[1][0] - 3.0).abs() < 1e-5, "{color:?}");
     // Mirrors show what probes see, wherever they are.

@@ -8,7 +8,7 @@ use crate::input_error::InputError;
 use crate::json_kind::JsonKind;
 use crate::json_words;
 use glam::DVec3;
-use pointillist_render::{Mesh, Newcomers, buried};
+use pointillist_render::{Mesh, Unbaked, buried};
 use pointillist_sh::Sh;
 use pointillist_shprobe::{DistanceMap, Field, ProbeError};
 use serde::{Deserialize, Serialize};
@@ -80,12 +80,10 @@ impl ProbeFile {
     }
 
     /// The triangles of a scene that came after probes were baked: those of other objects than were seen, if all that were seen are still there.
-    pub fn newcomers(&self, mesh: &Mesh) -> Newcomers {
+    pub fn unbaked(&self, mesh: &Mesh) -> Unbaked {
         match find_baked(&self.objects, mesh) {
-            Some(known) if !self.objects.is_empty() => {
-                Newcomers::all_but(&known, mesh.triangle_count() as u32)
-            }
-            _ => Newcomers::NONE,
+            Some(known) if !self.objects.is_empty() => Unbaked::all_but(&known, mesh.triangle_count() as u32),
+            _ => Unbaked::NONE,
         }
     }
 

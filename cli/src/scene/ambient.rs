@@ -8,7 +8,7 @@ use crate::input_error::InputError;
 use crate::probe_io::read_probes;
 use glam::Vec3;
 use pointillist_render::shprobe::Field;
-use pointillist_render::{Lightmap, Newcomers};
+use pointillist_render::{Lightmap, Unbaked};
 use std::path::{Path, PathBuf};
 use twox_hash::XxHash3_64;
 
@@ -38,8 +38,8 @@ pub(super) fn ambient(
             }
         },
         AmbientDescription::Radiosity(file) => {
-            let Light { value: light, newcomers, fingerprint } = files.radiosity(file, warnings)?;
-            if newcomers != Newcomers::NONE {
+            let Light { value: light, unbaked, fingerprint } = files.radiosity(file, warnings)?;
+            if unbaked != Unbaked::NONE {
                 return Err(files.other_triangles(
                     file,
                     "objects were added since: bake again with `pointillist radiosity`, or have them lit between probes of the scene \
@@ -49,15 +49,14 @@ pub(super) fn ambient(
             Ok(AmbientLight::Radiosity { light, fingerprint })
         }
         AmbientDescription::Probes(file) => {
-            let Light { value: field, newcomers, fingerprint } = files.probes(file)?;
-            Ok(AmbientLight::Probes { field, newcomers, fingerprint })
+            let Light { value: field, unbaked, fingerprint } = files.probes(file)?;
+            Ok(AmbientLight::Probes { field, unbaked, fingerprint })
         }
         AmbientDescription::RadiosityAndProbes { radiosity, probes } => {
-            let Light { value: light, newcomers, fingerprint: first } =
-                files.radiosity(radiosity, warnings)?;
+            let Light { value: light, unbaked, fingerprint: first } = files.radiosity(radiosity, warnings)?;
             let Light { value: field, fingerprint: second, .. } = files.probes(probes)?;
             let fingerprint = XxHash3_64::oneshot(&[first.to_le_bytes(), second.to_le_bytes()].concat());
-            Ok(AmbientLight::RadiosityAndProbes { light, field, newcomers, fingerprint })
+            Ok(AmbientLight::RadiosityAndProbes { light, field, unbaked, fingerprint })
         }
     }
 }
@@ -65,7 +64,7 @@ pub(super) fn ambient(
 /// Light from a file, what it was not baked for, and a hash of the file.
 struct Light<T> {
     value: Box<T>,
-    newcomers: Newcomers,
+    unbaked: Unbaked,
     fingerprint: u64,
 }
 
@@ -97,14 +96,14 @@ impl Files<'_> {
                 .push(format!("`{name}` was baked with other lights or materials; bake again to see them"));
         }
         let value = Box::new(baked.lightmap(&name, mesh.triangle_count(), &fit)?);
-        Ok(Light { value, newcomers: fit.newcomers(mesh), fingerprint })
+        Ok(Light { value, unbaked: fit.unbaked(mesh), fingerprint })
     }
 
     fn probes(&self, file: &FileReference) -> Result<Light<Field>, InputError> {
         let (path, fingerprint) = self.find(file, "bake it with `pointillist probe bake`")?;
         let probes = read_probes(&path)?;
         let value = Box::new(probes.field(&path.display().to_string())?);
-        Ok(Light { value, newcomers: probes.newcomers(&self.scene.mesh), fingerprint })
+        Ok(Light { value, unbaked: probes.unbaked(&self.scene.mesh), fingerprint })
     }
 
     /// The file that a key of `[ambient]` names, and a hash of it.

@@ -1,7 +1,7 @@
 //! Light that does not come straight from lights.
 
 use crate::lightmap::Lightmap;
-use crate::newcomers::Newcomers;
+use crate::unbaked::Unbaked;
 use glam::Vec3;
 use pointillist_shprobe::Field;
 
@@ -18,7 +18,7 @@ pub enum AmbientLight {
         /// The light.
         field: Box<Field>,
         /// What was not there when it was baked.
-        newcomers: Newcomers,
+        unbaked: Unbaked,
         /// Stands for the light in [`crate::fingerprint`]: a hash of the file that it is from, or any number.
         fingerprint: u64,
     },
@@ -39,7 +39,7 @@ pub enum AmbientLight {
         /// The light of all else.
         field: Box<Field>,
         /// What was not there when these were baked.
-        newcomers: Newcomers,
+        unbaked: Unbaked,
         /// Stands for both in [`crate::fingerprint`].
         fingerprint: u64,
     },

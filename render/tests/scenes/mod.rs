@@ -6,8 +6,8 @@ use pointillist_render::shade::{self, Falloff, Light, LightOutline, MerlTable};
 use pointillist_render::shprobe::Field;
 use pointillist_render::{
     AmbientLight, BakedLight, BakedSide, Bump, BumpHeight, Camera, Details, LightSource, Lightmap, Map,
-    MapPlace, Material, MeasuredBrdf, Newcomers, Part, Scene, SkyLight, Surroundings, Texels, Texture,
-    Transmission,
+    MapPlace, Material, MeasuredBrdf, Part, Scene, SkyLight, Surroundings, Texels, Texture, Transmission,
+    Unbaked,
 };
 use proptest::prelude::*;
 use std::num::NonZeroU32;
@@ -181,7 +181,7 @@ impl Ambient {
                 let even = |color: Vec3| Sh::new(vec![color.as_dvec3()]).expect("one band");
                 let (places, light): (Vec<_>, Vec<_>) = probes.iter().map(|(p, c)| (*p, even(*c))).unzip();
                 let field = Field::new(&places, &light).expect("finite probes");
-                AmbientLight::Probes { field: Box::new(field), newcomers: Newcomers::NONE, fingerprint: 1 }
+                AmbientLight::Probes { field: Box::new(field), unbaked: Unbaked::NONE, fingerprint: 1 }
             }
             Self::Baked(corners) => {
                 let irradiance: Vec<[f32; 3]> =

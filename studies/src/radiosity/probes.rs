@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3, dvec3};
 use pointillist_delaunay::Hint;
 use pointillist_radiosity::{Scene as Patches, SceneOptions, Solution, SolveOptions};
 use pointillist_render::{
-    Ambient, CaptureOptions, Lamps, Lightmap, LookOptions, Newcomers, Prepared, Seen, look_all,
-    scene_surfaces, with_lamps,
+    Ambient, CaptureOptions, Lamps, Lightmap, LookOptions, Prepared, Seen, Unbaked, look_all, scene_surfaces,
+    with_lamps,
 };
 use pointillist_sh::{Irradiance, Sh};
 use pointillist_shprobe::{Field, place};
@@ -59,7 +59,7 @@ pub(crate) fn compare(text: &mut String) -> Result<(), Fault> {
             let light = |i: usize| field.light(places[i], &mut Hint::default()).unwrap_or(Irradiance::DARK);
             writeln!(text, "| probes, {bounce} bounces | {:.2} |", 100.0 * error(&truth, light))?;
         }
-        seen = look(&prepared, &grid, Ambient::Probes(&field, &Newcomers::NONE))?;
+        seen = look(&prepared, &grid, Ambient::Probes(&field, &Unbaked::NONE))?;
     }
     let baked = Lightmap::of_baked(&solution.bake(), &surfaces.faces, scene.mesh.triangles.len())?;
     let seen = radiance(&look(&prepared, &places, Ambient::Radiosity(&baked))?);

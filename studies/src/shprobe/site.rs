@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3, dvec3};
 use pointillist_cli::scene::{Overrides, load};
 use pointillist_radiosity::{Scene as Patches, SceneOptions, SolveOptions};
 use pointillist_render::{
-    Ambient, AmbientLight, CaptureOptions, Lamps, Lightmap, Newcomers, Prepared, RenderError, Scene,
+    Ambient, AmbientLight, CaptureOptions, Lamps, Lightmap, Prepared, RenderError, Scene, Unbaked,
     scene_surfaces, with_lamps,
 };
 use pointillist_sh::{CubeMap, CubeProjector, Sh, Weights};
@@ -367,6 +367,6 @@ pub(crate) fn lit_by(
 ) -> Result<Scene, pointillist_shprobe::ProbeError> {
     let field = Box::new(baked.field(distances)?);
     let mut scene = scene.clone();
-    scene.ambient = AmbientLight::Probes { field, newcomers: Newcomers::NONE, fingerprint: 0 };
+    scene.ambient = AmbientLight::Probes { field, unbaked: Unbaked::NONE, fingerprint: 0 };
     Ok(scene)
 }

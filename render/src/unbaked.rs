@@ -5,12 +5,12 @@ use std::ops::Range;
 /// Triangles of objects that came into a scene after its light was baked. What probes saw goes on where these stand: they take their light from all
 /// sides, where what was baked has probes behind itself that do not light it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Newcomers {
+pub struct Unbaked {
     /// Their numbers, in ascending order.
     ranges: Vec<Range<u32>>,
 }
 
-impl Newcomers {
+impl Unbaked {
     /// There are none.
     pub const NONE: Self = Self { ranges: vec![] };
 
@@ -46,15 +46,11 @@ mod tests {
     #[test]
     fn what_is_not_known_is_new() {
         let known = [7, 2, 3, 2, 9, 12];
-        let newcomers = Newcomers::all_but(&known, 11);
+        let unbaked = Unbaked::all_but(&known, 11);
         for triangle in 0..14 {
-            assert_eq!(
-                newcomers.contains(triangle),
-                triangle < 11 && !known.contains(&triangle),
-                "{triangle}"
-            );
+            assert_eq!(unbaked.contains(triangle), triangle < 11 && !known.contains(&triangle), "{triangle}");
         }
-        assert_eq!(Newcomers::all_but(&[0, 1, 2], 3), Newcomers::NONE);
-        assert_eq!(Newcomers::all_but(&[], 0), Newcomers::NONE);
+        assert_eq!(Unbaked::all_but(&[0, 1, 2], 3), Unbaked::NONE);
+        assert_eq!(Unbaked::all_but(&[], 0), Unbaked::NONE);
     }
 }
