@@ -11,7 +11,7 @@ use crate::bake_options::BakeOptions;
 use crate::capture::CaptureOptions;
 use crate::error::RenderError;
 use crate::fit_places::fit_places;
-use crate::look::{LookOptions, Seen, buried, look_again, look_all, shares_of};
+use crate::look::{LookOptions, Seen, buried_places, look_again, look_all};
 use crate::monitor::{Monitor, stage};
 use crate::prepared::Prepared;
 use crate::solids::Solids;
@@ -244,7 +244,7 @@ impl Rounds<'_> {
     }
 
     fn buried(&self, seen: &[Seen]) -> Vec<bool> {
-        if self.options.keep_buried { vec![false; seen.len()] } else { buried(&shares_of(seen)) }
+        if self.options.keep_buried { vec![false; seen.len()] } else { buried_places(seen, &self.normals) }
     }
 }
 

@@ -4,7 +4,7 @@ use crate::ambient::Ambient;
 use crate::capture::CaptureOptions;
 use crate::error::RenderError;
 use crate::fit_places::on_surfaces;
-use crate::look::{LookOptions, Seen, buried, look_again, look_all, shares_of};
+use crate::look::{LookOptions, Seen, buried_places, look_again, look_all};
 use crate::monitor::{Monitor, stage};
 use crate::prepared::Prepared;
 use crate::solids::Solids;
@@ -166,7 +166,8 @@ fn look_first(
     };
     let mut known = Known::default();
     let seen = look_from(candidates)?;
-    let out = if options.keep_buried { vec![false; seen.len()] } else { buried(&shares_of(&seen)) };
+    let in_space = vec![DVec3::ZERO; candidates.len()];
+    let out = if options.keep_buried { vec![false; seen.len()] } else { buried_places(&seen, &in_space) };
     for ((&p, seen), _) in candidates.iter().zip(seen).zip(&out).filter(|(_, out)| !**out) {
         known.push(p, DVec3::ZERO, seen);
     }
@@ -183,7 +184,7 @@ fn look_first(
         normals.extend(surfaces.iter().map(|s| s.1));
         looks += places.len();
         let seen = look_from(&places)?;
-        let out = self::buried(&shares_of(&seen));
+        let out = buried_places(&seen, &normals);
         (0..places.len()).zip(seen).filter(|(i, _)| !out[*i]).for_each(|(i, seen)| {
             known.push(places[i], normals[i], seen);
         });

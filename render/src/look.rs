@@ -47,9 +47,13 @@ pub fn buried(back_shares: &[f64]) -> Vec<bool> {
     if 2 * count > buried.len() { vec![false; buried.len()] } else { buried }
 }
 
-/// For [`buried`].
-pub(crate) fn shares_of(seen: &[Seen]) -> Vec<f64> {
-    seen.iter().map(|s| s.back_share).collect()
+/// The same of places of which some are on surfaces, with a normal that is not 0: in half of all directions those see the front of their own.
+pub(crate) fn buried_places(seen: &[Seen], normals: &[DVec3]) -> Vec<bool> {
+    let above = |(seen, normal): (&Seen, &DVec3)| {
+        let share_above = if *normal == DVec3::ZERO { 1.0 } else { 0.5 };
+        seen.back_share / share_above
+    };
+    buried(&seen.iter().zip(normals).map(above).collect::<Vec<_>>())
 }
 
 /// What a probe saw.
@@ -171,4 +175,22 @@ pub fn fingerprints(
         planes.flatten().for_each(|v| hash.write(&v.to_le_bytes()));
         Ok(hash.finish())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a wall, inside of another that stands before it, a place sees the front of the wall and nothing but backs.
+    #[test]
+    fn places_on_surfaces_are_buried_by_what_they_see_above_these() {
+        let seen = |back_share| {
+            let radiance = Sh::constant(DVec3::ZERO, 2).unwrap();
+            let sky = Sh::constant(0.0, 2).unwrap();
+            Seen { direct: radiance.clone(), radiance, sky, back_share, distances: None }
+        };
+        let seen = [seen(0.49), seen(0.49), seen(0.2), seen(0.6), seen(0.0)];
+        let normals = [DVec3::X, DVec3::ZERO, DVec3::X, DVec3::ZERO, DVec3::X];
+        assert_eq!(buried_places(&seen, &normals), [true, false, false, true, false]);
+    }
 }
