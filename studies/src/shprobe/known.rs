@@ -94,10 +94,8 @@ pub(crate) fn on_all(ground: &Ground<'_>, count: usize, seed: u64) -> Places {
         let normal = (b - a).cross(c - a).normalize_or_zero();
         (a + (b - a) * u + (c - a) * v + normal * HEIGHT, normal)
     };
-    let is_inside = |(p, _): &(DVec3, DVec3)| {
-        p.cmpgt(ground.site.low).all()
-            && p.cmplt(ground.site.high).all()
-            && ground.prepared.geometry().solids_around(*p).is_empty()
+    let is_inside = |&(p, normal): &(DVec3, DVec3)| {
+        p.cmpgt(ground.site.low).all() && p.cmplt(ground.site.high).all() && ground.is_free_above(p, normal)
     };
     let drawn = place::random(DVec3::ZERO, DVec3::ONE, 2 * count, seed);
     drawn.into_iter().map(place).filter(is_inside).take(count).collect()

@@ -300,14 +300,33 @@ impl<'a> Ground<'a> {
         }
         let mut backs = 0;
         for direction in directions(FEELERS) {
-            let Some((triangle, distance)) = self.tree.nearest(p, direction, 0.0) else { continue };
+            let Some((distance, is_back)) = self.met(p, direction) else { continue };
             if distance < CLOSE * diagonal {
                 return false;
             }
-            let [a, b, c] = corners(&self.site.scene, triangle as usize);
-            backs += u32::from(face_normal(a, b, c).dot(direction) > 0.0);
+            backs += u32::from(is_back);
         }
         f64::from(backs) <= BACKS * f64::from(FEELERS)
+    }
+
+    /// Whether a position on a surface is neither in a solid nor among the backs of other surfaces.
+    pub(crate) fn is_free_above(&self, p: DVec3, normal: DVec3) -> bool {
+        if !self.prepared.geometry().solids_around(p).is_empty() {
+            return false;
+        }
+        let (mut looks, mut backs) = (0, 0);
+        for direction in directions(FEELERS).filter(|d| d.dot(normal) > 0.0) {
+            looks += 1;
+            backs += u32::from(self.met(p, direction).is_some_and(|(_, is_back)| is_back));
+        }
+        f64::from(backs) <= BACKS * f64::from(looks)
+    }
+
+    /// How far away something is met, and whether it is the back of a surface.
+    fn met(&self, p: DVec3, direction: DVec3) -> Option<(f64, bool)> {
+        let (triangle, distance) = self.tree.nearest(p, direction, 0.0)?;
+        let [a, b, c] = corners(&self.site.scene, triangle as usize);
+        Some((distance, face_normal(a, b, c).dot(direction) > 0.0))
     }
 
     /// Whether nothing is between two positions.
