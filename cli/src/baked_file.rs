@@ -103,10 +103,7 @@ impl BakedFile {
         if self.geometry == written(fingerprint::of_geometry(mesh)) {
             return Fit::All;
         }
-        match find_baked(&self.objects, mesh) {
-            Some(numbers) if !self.objects.is_empty() => Fit::Some(numbers),
-            _ => Fit::Other,
-        }
+        find_baked(&self.objects, mesh).map_or(Fit::Other, Fit::Some)
     }
 
     /// Whether light of triangles with these numbers depends on other materials and lights now than when it was baked.

@@ -27,9 +27,12 @@ impl BakedObject {
     }
 }
 
-/// For each triangle that light was baked for, its number in this scene; `None` if not all of the objects are there. Of equal objects the first is the
-/// first.
+/// For each triangle that light was baked for, its number in this scene; `None` if not all of the objects are there, or it is not known for which light
+/// was baked. Equal objects are taken in the order of their triangles.
 pub(crate) fn find_baked(baked: &[BakedObject], mesh: &Mesh) -> Option<Vec<u32>> {
+    if baked.is_empty() {
+        return None;
+    }
     let mut there: HashMap<BakedObject, VecDeque<Range<u32>>> = HashMap::new();
     for object in of_objects(mesh) {
         there.entry(BakedObject::new(&object)).or_default().push_back(object.triangles);

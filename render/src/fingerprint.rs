@@ -141,7 +141,7 @@ pub fn of_objects(mesh: &Mesh) -> Vec<ObjectTriangles> {
     let mut triangles = mesh.world_triangles().enumerate().peekable();
     while let Some(&(first, (object, _))) = triangles.peek() {
         let mut hash = Fingerprint::default();
-        hash.int(u64::from(mesh.objects[object as usize].two_sided));
+        hash.int(u64::from(mesh.objects.get(object as usize).is_some_and(|object| object.two_sided)));
         let mut end = first as u32;
         while let Some((_, (_, corners))) = triangles.next_if(|&(_, (of, _))| of == object) {
             corners.into_iter().for_each(|p| hash.vector(p));
@@ -153,6 +153,9 @@ pub fn of_objects(mesh: &Mesh) -> Vec<ObjectTriangles> {
 }
 
 /// The hash of what baked light depends on besides the triangles: their materials and colours, textures and lights.
+///
+/// # Panics
+/// If a triangle or a material names something that is not there: [`Scene::check`] tells.
 #[must_use]
 pub fn of_sources(scene: &Scene) -> u64 {
     of_sources_for(scene, scene.mesh.numbers())
@@ -161,7 +164,7 @@ pub fn of_sources(scene: &Scene) -> u64 {
 /// The same for light of some triangles: what is only on others does not count.
 ///
 /// # Panics
-/// If there is no triangle of such a number.
+/// As [`of_sources`], and if there is no triangle of such a number.
 #[must_use]
 pub fn of_sources_for(scene: &Scene, triangles: impl IntoIterator<Item = u32>) -> u64 {
     let mut hash = Fingerprint::default();

@@ -81,10 +81,8 @@ impl ProbeFile {
 
     /// The triangles of a scene that came after probes were baked: those of other objects than were seen, if all that were seen are still there.
     pub fn unbaked(&self, mesh: &Mesh) -> Unbaked {
-        match find_baked(&self.objects, mesh) {
-            Some(known) if !self.objects.is_empty() => Unbaked::all_but(&known, mesh.triangle_count() as u32),
-            _ => Unbaked::NONE,
-        }
+        let known = find_baked(&self.objects, mesh);
+        known.map_or(Unbaked::NONE, |known| Unbaked::all_but(&known, mesh.triangle_count() as u32))
     }
 
     /// Decides which probes lie inside of walls, by what all of them see; none if they are kept. The number of those that do comes back.
