@@ -233,8 +233,15 @@ const LEAF: usize = 1;
 /// Most probes in a list. Where more are within reach, all are searched.
 const LIST: usize = 128;
 
-/// For the rounding of distances between boxes and positions to single precision: what is listed as so far is not nearer.
+/// For the rounding of distances between boxes and positions: what is listed as so far is not nearer.
 const ROUNDING: f64 = 1.0 - 1e-6;
+
+/// The largest `f32` that is not above a distance.
+fn at_most(distance: f64) -> f32 {
+    // Beyond its range it rounds to infinity, and below the least of full precision up by as much as half.
+    let rounded = distance as f32;
+    if f64::from(rounded) > distance { rounded.next_down() } else { rounded }
+}
 
 /// For each part of the box the nearest probes.
 #[derive(Clone, Debug, Default)]
@@ -269,7 +276,7 @@ struct Near {
 
 impl Near {
     fn distance(&self, space: Space) -> f32 {
-        (((space.0 - self.high).max(self.low - space.1).max(DVec3::ZERO).length()) * ROUNDING) as f32
+        at_most((space.0 - self.high).max(self.low - space.1).max(DVec3::ZERO).length() * ROUNDING)
     }
 
     fn limit(&self) -> f32 {
@@ -392,14 +399,25 @@ mod tests {
 
     #[test]
     fn what_is_found_is_what_a_search_of_all_finds() {
-        let positions = place::random(DVec3::ZERO, DVec3::ONE, 300, 3);
-        let bare = Tree::new(positions.iter().copied().zip(0..), 1.0);
+        // Lists hold distances in single precision: beyond its range, and where it has few digits.
+        for scale in [1.0, 2.0_f64.powi(130), 2.0_f64.powi(-146)] {
+            lists_are_complete(scale);
+        }
+    }
+
+    fn lists_are_complete(scale: f64) {
+        let random = |low: f64, high: f64, count: usize, seed: u64| -> Vec<DVec3> {
+            let places = place::random(DVec3::splat(low), DVec3::splat(high), count, seed);
+            places.into_iter().map(|p| p * scale).collect()
+        };
+        let positions = random(0.0, 1.0, 300, 3);
+        let bare = Tree::new(positions.iter().copied().zip(0..), scale);
         let listed = bare.clone().with_lists();
         let extent = Extent { count: 6, rim: 1.3, most: 20, unseen: 0.1 };
         // Every third probe is ten times as far.
         let seen = |probe: u32| if probe.is_multiple_of(3) { 0.0 } else { 1.0 };
         let factor = |probe: u32| 0.1 + 0.9 * seen(probe);
-        for p in place::random(DVec3::splat(-0.5), DVec3::splat(1.5), 200, 4) {
+        for p in random(-0.5, 1.5, 200, 4) {
             let mut all: Vec<(f64, u32)> =
                 (0..300).map(|i| ((positions[i as usize] - p).length() / factor(i), i)).collect();
             all.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -408,7 +426,7 @@ mod tests {
             for tree in [&bare, &listed] {
                 let found = tree.nearest(p, extent, |i, _| seen(i));
                 let found: Vec<u32> = found.iter().map(|f| f.probe).collect();
-                assert_eq!(found, wanted, "at {p}");
+                assert_eq!(found, wanted, "at {p}, scaled by {scale:e}");
             }
         }
     }
