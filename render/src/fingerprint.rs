@@ -289,18 +289,18 @@ impl Fingerprint {
         self.int(u64::from(texture.height));
         match &texture.texels {
             Texels::Srgb8(texels) => self.0.write(texels.as_flattened()),
-            Texels::OpaqueSrgb8(texels) => texels.iter().for_each(|&rgb| self.opaque(rgb)),
+            Texels::OpaqueSrgb8(texels) => self.opaque(texels, |texel| *texel),
             Texels::Linear8(texels) => {
                 self.int(1);
                 self.0.write(texels.as_flattened());
             }
             Texels::OpaqueLinear8(texels) => {
                 self.int(1);
-                texels.iter().for_each(|&rgb| self.opaque(rgb));
+                self.opaque(texels, |texel| *texel);
             }
             Texels::Gray8(texels) => {
                 self.int(1);
-                texels.iter().for_each(|&[gray]| self.opaque([gray; 3]));
+                self.opaque(texels, |&[gray]| [gray; 3]);
             }
             Texels::Opacity8(texels) => self.0.write(texels.as_flattened()),
             Texels::Float(texels) => texels.iter().flatten().for_each(|c| self.0.write(&c.to_le_bytes())),
@@ -308,8 +308,15 @@ impl Fingerprint {
     }
 
     /// How opaque texels are stored does not count: they are taken as with an alpha of 255.
-    fn opaque(&mut self, [r, g, b]: [u8; 3]) {
-        self.0.write(&[r, g, b, u8::MAX]);
+    fn opaque<T>(&mut self, texels: &[T], rgb: impl Fn(&T) -> [u8; 3]) {
+        let mut block = [u8::MAX; BLOCK];
+        let slots = block.as_chunks_mut::<4>().0;
+        for some in texels.chunks(slots.len()) {
+            for (slot, texel) in slots.iter_mut().zip(some) {
+                slot[..3].copy_from_slice(&rgb(texel));
+            }
+            self.0.write(slots[..some.len()].as_flattened());
+        }
     }
 
     fn light(&mut self, light: &Light) {

@@ -5,6 +5,7 @@ use super::{Texels, Texture, linear_from_srgb};
 use crate::image_io::{self, face_fault, faces_of_strip, strip_face};
 use image::DynamicImage;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The texture of a picture.
 ///
@@ -121,21 +122,48 @@ fn texels(image: DynamicImage, purpose: Purpose) -> Texels {
 
 /// The texels of a picture with 8 bits for each channel.
 fn bytes(image: DynamicImage, srgb: bool) -> Texels {
-    if image.color().has_alpha() {
-        let texels: Vec<_> = image.into_rgba8().pixels().map(|p| p.0).collect();
-        return if srgb { Texels::Srgb8(texels.into()) } else { Texels::Linear8(texels.into()) };
+    match with_copied_grays(image) {
+        DynamicImage::ImageLuma8(grays) if !srgb => Texels::from_grays(grays.into_raw()),
+        DynamicImage::ImageLuma8(grays) => {
+            Texels::OpaqueSrgb8(grays.as_raw().iter().map(|&gray| [gray; 3]).collect::<Vec<_>>().into())
+        }
+        image if image.color().has_alpha() => {
+            let texels = in_texels(&image.into_rgba8());
+            if srgb { Texels::Srgb8(texels) } else { Texels::Linear8(texels) }
+        }
+        image => {
+            let texels = in_texels(&image.into_rgb8());
+            if srgb {
+                Texels::OpaqueSrgb8(texels)
+            } else if texels.iter().all(|&[r, g, b]| r == g && r == b) {
+                Texels::from_grays(texels.iter().map(|texel| texel[0]).collect())
+            } else {
+                Texels::OpaqueLinear8(texels)
+            }
+        }
     }
-    let is_gray = |image: &image::RgbImage| image.pixels().all(|p| p.0 == [p.0[0]; 3]);
-    let image = image.into_rgb8();
-    if !srgb && is_gray(&image) {
-        return Texels::from_grays(image.pixels().map(|p| p.0[0]).collect());
+}
+
+/// Greys with an alpha as colours: the library's conversion takes a hundred times as long, since it allows for colour spaces.
+fn with_copied_grays(image: DynamicImage) -> DynamicImage {
+    let DynamicImage::ImageLumaA8(grays) = &image else { return image };
+    let mut colors = image::RgbaImage::new(grays.width(), grays.height());
+    for (to, &image::LumaA([gray, alpha])) in colors.pixels_mut().zip(grays.pixels()) {
+        to.0 = [gray, gray, gray, alpha];
     }
-    let texels: Vec<_> = image.pixels().map(|p| p.0).collect();
-    if srgb { Texels::OpaqueSrgb8(texels.into()) } else { Texels::OpaqueLinear8(texels.into()) }
+    colors.into()
+}
+
+fn in_texels<const CHANNELS: usize>(channels: &[u8]) -> Arc<Vec<[u8; CHANNELS]>> {
+    Arc::new(channels.as_chunks().0.to_vec())
 }
 
 fn alpha(image: &DynamicImage) -> Vec<u8> {
-    image.to_rgba8().pixels().map(|p| p.0[3]).collect()
+    match image {
+        DynamicImage::ImageLumaA8(texels) => texels.pixels().map(|p| p.0[1]).collect(),
+        DynamicImage::ImageRgba8(texels) => texels.pixels().map(|p| p.0[3]).collect(),
+        _ => image.to_rgba8().pixels().map(|p| p.0[3]).collect(),
+    }
 }
 
 fn opacity(image: &DynamicImage) -> Texels {
