@@ -3,6 +3,7 @@
 use glam::{DVec3, dvec3};
 use pointillist_micropoint::invariants::Soup;
 use pointillist_micropoint::{Projection, View};
+use pointillist_shadow::invariants::line::agrees_with_rays;
 use pointillist_shadow::invariants::{
     light_on, lit_picture, lit_regions_make_up_the_fraction, tiles_do_not_matter,
 };
@@ -144,4 +145,17 @@ fn a_face_seen_edge_on_has_no_lit_regions() {
     let view = View::look_at(DVec3::ZERO, dvec3(45.0, 24.0, 24.0) / 64.0, DVec3::Y, camera, 5, 4).unwrap();
     let emitter = Emitter::Point { position: dvec3(0.0, -1.0, -1.0) / 64.0, axis: DVec3::NEG_Y };
     lit_regions_make_up_the_fraction(&s, view, emitter, 1e-6).unwrap();
+}
+
+/// A line that shines lies on an edge of a triangle: rounding decided which of the fact's rays end before it.
+#[test]
+fn what_a_caster_hides_along_its_edge_is_in_doubt() {
+    let mut s = Soup::default();
+    let (sheet, caster) = (s.surface(112.0 / 255.0), s.surface(1.0));
+    let at = |x: f64, y: f64, z: f64| dvec3(x, y, z) / 64.0;
+    s.polygon(&[at(-89.0, 50.0, 104.0), at(117.0, -86.0, -110.0), at(-110.0, 102.0, -7.0)], sheet);
+    s.polygon(&[at(102.0, -7.0, 112.0), at(-66.0, -66.0, -66.0), at(-1.0, -1.0, -1.0)], caster);
+    let camera = Projection::Perspective { fov_y_rad: 1.0 };
+    let view = View::look_at(at(0.0, -1.0, -1.0), at(-1.0, -1.0, -1.0), DVec3::Y, camera, 5, 4).unwrap();
+    agrees_with_rays(&s, view, [at(-1.0, -1.0, -1.0), at(-2.0, -2.0, -2.0)], 1600, 0.25).unwrap();
 }

@@ -303,32 +303,61 @@ pub(super) fn agrees_with_rays_to(
     let count = targets.len() as f64;
     let (mut least, mut most) = (0.0, 0.0);
     for target in targets.filter(|t| p.normal.dot(*t - p.position) > 0.0) {
-        least += transmittance(soup, p.position, target, 0.0) / count;
-        most += transmittance(soup, p.position, target, NEAREST) / count;
+        least += transmittance(soup, p.position, target, Doubt::Hits) / count;
+        most += transmittance(soup, p.position, target, Doubt::Passes) / count;
     }
     let agrees = least - tolerance <= p.area && p.area <= most + tolerance;
     check(agrees, || format!("{p:?}: {least} to {most} by rays"))
 }
 
-/// Shares of the way to a light below which casters may count or not ([`AreaLight::visit`]).
-const NEAREST: f64 = 1.1e-6;
+/// What becomes of a ray that meets a triangle where rounding decides: along an edge, next to the end of its way, or so near its beginning
+/// that the triangle may count or not ([`AreaLight::visit`]).
+#[derive(Clone, Copy, PartialEq)]
+enum Doubt {
+    Hits,
+    Passes,
+}
 
-/// What passes through all triangles between two points, from a share of the way on; those that the first lies on, or almost, do not count.
-fn transmittance(soup: &Soup, from: DVec3, to: DVec3, nearest: f64) -> f64 {
+impl Doubt {
+    /// Shares of the way at which triangles count.
+    fn ways(self) -> std::ops::Range<f64> {
+        match self {
+            Self::Hits => 0.0..1.0 + ROUNDING,
+            Self::Passes => 1.1e-6..1.0 - ROUNDING,
+        }
+    }
+
+    /// How far inside of an edge a hit is at least, relative to what it is computed from.
+    fn inside(self) -> f64 {
+        match self {
+            Self::Hits => -ROUNDING,
+            Self::Passes => ROUNDING,
+        }
+    }
+}
+
+/// Relative distances that are taken for rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// What passes through all triangles between two points; those that the first lies on, or almost, do not count.
+fn transmittance(soup: &Soup, from: DVec3, to: DVec3, doubt: Doubt) -> f64 {
     let mut passed = 1.0;
     for (triangle, &surface) in soup.triangles.iter().zip(&soup.surface_of) {
         let [a, b, c] = triangle.map(|i| soup.positions[i as usize] - from);
         let normal = (b - a).cross(c - a);
         let towards = to - from;
         let (height, slope) = (normal.dot(a), normal.dot(towards));
-        if height.abs() <= 1e-9 * normal.length()
+        if height.abs() <= ROUNDING * normal.length()
             || slope == 0.0
-            || !(nearest..1.0).contains(&(height / slope))
+            || !doubt.ways().contains(&(height / slope))
         {
             continue;
         }
-        let sides = [b.cross(c), c.cross(a), a.cross(b)].map(|s| s.dot(towards) * slope.signum());
-        if sides.iter().all(|&s| s > 0.0) {
+        let is_inside = |p: DVec3, q: DVec3| {
+            let side = p.cross(q).dot(towards) * slope.signum();
+            side > doubt.inside() * p.length() * q.length() * towards.length()
+        };
+        if is_inside(b, c) && is_inside(c, a) && is_inside(a, b) {
             passed *= 1.0 - f64::from(soup.surfaces[surface as usize].opacity);
         }
     }
