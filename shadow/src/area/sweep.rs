@@ -16,6 +16,8 @@ use std::cmp::Ordering;
 struct Side {
     low: DVec2,
     high: DVec2,
+    /// Of x over y.
+    slope: f64,
     /// What it adds to the winding number from left to right.
     winding: i32,
     what: Border,
@@ -31,14 +33,20 @@ enum Border {
 }
 
 impl Side {
+    fn new(low: DVec2, high: DVec2, winding: i32, what: Border) -> Self {
+        let slope = (high.x - low.x) / (high.y - low.y);
+        // An overflow is that of a height next to 0: where within it the side is, does not matter.
+        let slope = if slope.is_finite() { slope } else { 0.0 };
+        Self { low, high, slope, winding, what }
+    }
+
     fn x_at(&self, y: f64) -> f64 {
         if y <= self.low.y {
             self.low.x
         } else if y >= self.high.y {
             self.high.x
         } else {
-            let share = (y - self.low.y) / (self.high.y - self.low.y);
-            self.low.x + (self.high.x - self.low.x) * share
+            self.low.x + (y - self.low.y) * self.slope
         }
     }
 
@@ -88,7 +96,6 @@ pub(crate) struct Sweep {
     steps: Vec<(Kind, f64, i32)>,
     /// For each translucent kind, the winding number at hand.
     layers: Vec<i32>,
-    heights: Vec<f64>,
     active: Vec<Active>,
     open: Vec<Open>,
     found: Vec<Open>,
@@ -103,9 +110,9 @@ impl Sweep {
         for (i, &a) in polygon.iter().enumerate() {
             let b = polygon[(i + 1) % polygon.len()];
             if a.y < b.y {
-                self.sides.push(Side { low: a, high: b, winding: -1, what: Border::Light });
+                self.sides.push(Side::new(a, b, -1, Border::Light));
             } else if b.y < a.y {
-                self.sides.push(Side { low: b, high: a, winding: 1, what: Border::Light });
+                self.sides.push(Side::new(b, a, 1, Border::Light));
             }
         }
     }
@@ -119,7 +126,7 @@ impl Sweep {
         {
             return;
         }
-        let side = Side { low, high, winding, what: Border::Sheet(kind) };
+        let side = Side::new(low, high, winding, Border::Sheet(kind));
         let (from, to) = (low.y.max(self.low.y), high.y.min(self.high.y));
         if low.x.max(high.x) <= self.low.x {
             return self.add_steps(from, to, winding, kind);
@@ -183,7 +190,7 @@ impl Sweep {
     fn push_left(&mut self, winding: i32, from: f64, to: f64, kind: Kind) {
         if winding != 0 && from < to {
             let (low, high) = (dvec2(self.low.x, from), dvec2(self.low.x, to));
-            self.sides.push(Side { low, high, winding, what: Border::Sheet(kind) });
+            self.sides.push(Side::new(low, high, winding, Border::Sheet(kind)));
         }
     }
 
@@ -194,22 +201,21 @@ impl Sweep {
             return seen.push(polygon.iter().copied(), 1.0);
         }
         self.sides.sort_unstable_by(|a, b| a.low.y.total_cmp(&b.low.y).then_with(|| a.compare(b)));
-        self.heights.clear();
-        self.heights.extend(self.sides.iter().flat_map(|s| [s.low.y, s.high.y]));
-        self.heights.sort_unstable_by(f64::total_cmp);
-        self.heights.dedup();
         self.active.clear();
         self.open.clear();
-        let mut waiting = 0;
-        for i in 1..self.heights.len() {
-            let (from, to) = (self.heights[i - 1], self.heights[i]);
+        let (mut from, mut waiting) = (self.sides[0].low.y, 0);
+        while waiting < self.sides.len() || !self.active.is_empty() {
             let sides = &self.sides;
-            self.active.retain(|a| sides[a.side as usize].high.y > from);
-            while sides.get(waiting).is_some_and(|s| s.low.y <= from) {
-                self.active.push(Active { side: waiting as u32, x: [0.0; 2] });
+            while let Some(side) = sides.get(waiting).filter(|side| side.low.y <= from) {
+                self.active.push(Active { side: waiting as u32, x: [side.low.x; 2] });
                 waiting += 1;
             }
+            let next = sides.get(waiting).map_or(f64::INFINITY, |side| side.low.y);
+            let ends = self.active.iter().map(|a| sides[a.side as usize].high.y);
+            let to = ends.fold(next, |first, end| if end < first { end } else { first });
             self.divide(from, to, sheets, seen);
+            self.active.retain(|a| self.sides[a.side as usize].high.y > to);
+            from = to;
         }
         self.found.clear();
         self.close(f64::INFINITY, seen);
@@ -235,26 +241,24 @@ impl Sweep {
         self.count(from, sheets, seen);
     }
 
-    /// Sorts the active sides by their places half way between two heights. Returns the lowest height strictly between at which
-    /// neighbours cross.
+    /// Sorts the active sides, whose places at the first of two heights are known, by their places half way. Returns the lowest height strictly between at
+    /// which neighbours cross.
     fn sort(&mut self, from: f64, to: f64) -> Option<f64> {
         let Self { sides, active, .. } = self;
-        for a in active.iter_mut() {
-            let side = &sides[a.side as usize];
-            a.x = [side.x_at(from), side.x_at(to)];
-        }
-        let middle = |a: &Active| a.x[0] + a.x[1];
+        let is_before = |a: &Active, b: &Active| {
+            let [at_a, at_b] = [a, b].map(|s| s.x[0] + s.x[1]);
+            at_a < at_b || (at_a == at_b && sides[a.side as usize].compare(&sides[b.side as usize]).is_lt())
+        };
         // Insertion: from slab to slab the order hardly changes.
-        for i in 1..active.len() {
-            let mut j = i;
-            while j > 0 && {
-                let (a, b) = (&active[j - 1], &active[j]);
-                let by_place = || sides[a.side as usize].compare(&sides[b.side as usize]);
-                middle(a).total_cmp(&middle(b)).then_with(by_place).is_gt()
-            } {
-                active.swap(j - 1, j);
-                j -= 1;
+        for i in 0..active.len() {
+            let mut next = active[i];
+            next.x[1] = sides[next.side as usize].x_at(to);
+            let mut place = i;
+            while place > 0 && is_before(&next, &active[place - 1]) {
+                active[place] = active[place - 1];
+                place -= 1;
             }
+            active[place] = next;
         }
         let crossing = |pair: &[Active]| {
             let [d0, d1] = [pair[0].x[0] - pair[1].x[0], pair[0].x[1] - pair[1].x[1]];
@@ -300,6 +304,8 @@ impl Sweep {
             }
         }
         self.close(from, seen);
+        // The slab's upper height is the next one's lower.
+        self.active.iter_mut().for_each(|a| a.x[0] = a.x[1]);
     }
 
     /// Ends at height `to` what does not go on in `found`, which becomes what is open.
