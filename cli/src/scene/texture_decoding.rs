@@ -175,3 +175,31 @@ fn opacity(image: &DynamicImage) -> Texels {
     }
     Texels::from_opacities(image.to_luma8().into_raw())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ImageBuffer, Luma, LumaA};
+
+    const SIZE: u32 = 16;
+
+    fn level(x: u32, y: u32) -> u8 {
+        (SIZE * y + x) as u8
+    }
+
+    #[test]
+    fn greys_are_what_they_are_as_colours() {
+        let grays: DynamicImage = ImageBuffer::from_fn(SIZE, SIZE, |x, y| Luma([level(x, y)])).into();
+        let veiled: DynamicImage =
+            ImageBuffer::from_fn(SIZE, SIZE, |x, y| LumaA([level(x, y), 255 - level(y, x)])).into();
+        for srgb in [false, true] {
+            let colors = DynamicImage::ImageRgb8(grays.to_rgb8());
+            assert_eq!(bytes(grays.clone(), srgb), bytes(colors, srgb));
+            let colors = DynamicImage::ImageRgba8(veiled.to_rgba8());
+            assert_eq!(bytes(veiled.clone(), srgb), bytes(colors, srgb));
+        }
+        let colors = DynamicImage::ImageRgba8(veiled.to_rgba8());
+        assert_eq!(alpha(&veiled), alpha(&colors));
+        assert_eq!(alpha(&grays), [u8::MAX; (SIZE * SIZE) as usize]);
+    }
+}
