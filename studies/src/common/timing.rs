@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use crate::common::report::{Limit, on_threads};
 use cpu_time::ThreadTime;
@@ -19,15 +20,21 @@ const DRIFT: f64 = 0.05;
 /// Quiet runs that make a time.
 const RUNS: usize = 3;
 
-/// Runs after which no quiet ones are waited for any more.
+/// Runs after which no quiet ones are waited for any more, once [`PATIENCE`] is at its end.
 const MOST_TRIES: usize = 9;
+
+/// Seconds in which quiet runs are waited for, however many runs that takes: other work on the machine comes and goes.
+const PATIENCE: f64 = 8.0;
+
+/// Pause between calibrations while the machine is busy.
+const PAUSE: Duration = Duration::from_millis(5);
 
 /// Seconds beyond which one quiet run has to do, and only [`RUNS`] are tried.
 const LONG: f64 = 1.0;
 
 /// What a report says of its times.
 pub(crate) const HOW: &str = "Times are medians of three quiet runs, or one if it takes more than a second: fixed work before and after each takes no more \
-    than 5 % longer than the fastest that the study has seen. ± is half of what they differ by; *noisy* times found too few quiet runs.";
+    than 5 % longer than the fastest that the study has seen. ± is half of what they differ by; *noisy* times found too few quiet runs in eight seconds.";
 
 /// Whether each time is that of one run, quiet or not, and each ratio that of one pair.
 static IS_TRIAL: AtomicBool = AtomicBool::new(false);
@@ -121,16 +128,29 @@ pub(crate) fn timed_by<T>(clock: Clock, mut work: impl FnMut() -> T) -> (Timing,
 /// [`timed_by`] of work of which only a part counts: it returns the seconds of that part, too.
 pub(crate) fn timed_part<T>(clock: Clock, mut work: impl FnMut() -> (f64, T)) -> (Timing, T) {
     let start = Instant::now();
+    let is_trial = IS_TRIAL.load(Ordering::Relaxed);
+    let has_patience = || !is_trial && start.elapsed().as_secs_f64() < PATIENCE;
     let mut tries = Tries { runs: vec![], enough: RUNS };
     loop {
-        let before = calibration(clock);
+        let quiet_before = begins_quietly(clock, &has_patience);
         let begin = start.elapsed();
         let (seconds, result) = work();
-        let quiet = is_quiet(clock, before.max(calibration(clock)));
+        let quiet = is_quiet(clock, calibration(clock)) && quiet_before;
         let long = (start.elapsed() - begin).as_secs_f64() > LONG;
-        if tries.end_with((seconds, quiet), long) || IS_TRIAL.load(Ordering::Relaxed) {
+        if tries.end_with((seconds, quiet), long, has_patience()) || is_trial {
             return (Timing::of(&tries.runs, tries.enough), result);
         }
+    }
+}
+
+/// Waits until the calibration is quiet, as long as there is patience; whether it is.
+fn begins_quietly(clock: Clock, has_patience: impl Fn() -> bool) -> bool {
+    loop {
+        let quiet = is_quiet(clock, calibration(clock));
+        if quiet || !has_patience() {
+            return quiet;
+        }
+        sleep(PAUSE);
     }
 }
 
@@ -143,14 +163,15 @@ struct Tries {
 }
 
 impl Tries {
-    /// Adds a run, which was `long` or not; whether it is the last.
-    fn end_with(&mut self, run: (f64, bool), long: bool) -> bool {
+    /// Adds a run, which was `long` or not; whether it is the last, if there is `patience` for more or not.
+    fn end_with(&mut self, run: (f64, bool), long: bool, patience: bool) -> bool {
         self.runs.push(run);
         if long {
             self.enough = 1;
         }
+        let enough = self.runs.iter().filter(|run| run.1).count() >= self.enough;
         let most = if long { RUNS } else { MOST_TRIES };
-        self.runs.iter().filter(|run| run.1).count() >= self.enough || self.runs.len() >= most
+        enough || (self.runs.len() >= most && (long || !patience))
     }
 }
 
@@ -293,10 +314,22 @@ mod tests {
         assert_eq!(ratio.at_most(0.9), "**missed**");
     }
 
-    /// Of runs of which these are quiet and these long, how many are made.
-    fn made(quiet: impl Fn(usize) -> bool, long: impl Fn(usize) -> bool) -> usize {
+    /// Of runs of which these are quiet and these long, how many are made with patience for some.
+    fn made_with(patience: usize, quiet: impl Fn(usize) -> bool, long: impl Fn(usize) -> bool) -> usize {
         let mut tries = Tries { runs: vec![], enough: RUNS };
-        1 + (0..).position(|i| tries.end_with((1.0, quiet(i)), long(i))).expect("they end")
+        1 + (0..).position(|i| tries.end_with((1.0, quiet(i)), long(i), i < patience)).expect("they end")
+    }
+
+    /// [`made_with`] none.
+    fn made(quiet: impl Fn(usize) -> bool, long: impl Fn(usize) -> bool) -> usize {
+        made_with(0, quiet, long)
+    }
+
+    #[test]
+    fn quiet_runs_are_waited_for_with_patience() {
+        assert_eq!(made_with(40, |i| i % 10 == 9, |_| false), 30);
+        assert_eq!(made_with(40, |_| false, |_| false), 41);
+        assert_eq!(made_with(40, |_| false, |_| true), RUNS);
     }
 
     #[test]
