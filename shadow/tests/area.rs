@@ -2,7 +2,7 @@
 
 use glam::{DVec3, dvec3};
 use pointillist_micropoint::invariants::{self as micropoint, Soup};
-use pointillist_micropoint::{MicropointOptions, PlainOpacity, Projection, View};
+use pointillist_micropoint::{MicropointOptions, PlainOpacity, Projection, SurfaceOpacity, View};
 use pointillist_shadow::invariants::area::{self, seen_picture, seen_picture_with, shares_on};
 use pointillist_shadow::invariants::line;
 use pointillist_shadow::{AreaLight, AreaOptions, LineLight, ShadowError, check_outline};
@@ -372,6 +372,50 @@ fn translucent_sheets_leave_what_they_do_not_take() {
     }
     let (area, _) = seen_at_origin(&s, &lamp(1.0, 2.0), DVec3::ZERO);
     assert!((area - 0.75 * 0.5).abs() < 1e-9, "{area}");
+}
+
+/// The ground, and strips beside one another that hide this share of a light of two by two at height 2, from its left to its right; each has a
+/// mask that is closed throughout.
+fn behind_strips(count: u32, share: f64) -> Soup {
+    let mut soup = ground();
+    let masked = SurfaceOpacity { textured_opacity: true, ..SurfaceOpacity::default() };
+    soup.surfaces.push(masked);
+    let surface = soup.surfaces.len() as u32 - 1;
+    // Half way, what hides from the origin is half as large.
+    let place = |i: u32| -0.5 + share * f64::from(i) / f64::from(count);
+    for i in 0..count {
+        let corner = |x: f64, z: f64| dvec3(x, 1.0, z);
+        let (left, right) = (place(i), place(i + 1));
+        soup.polygon(
+            &[corner(left, -0.6), corner(left, 0.6), corner(right, 0.6), corner(right, -0.6)],
+            surface,
+        );
+    }
+    soup
+}
+
+#[test]
+fn many_masks_beside_one_another_hide_what_they_cover() {
+    for (count, share) in [(3, 1.0), (8, 1.0), (8, 0.75), (11, 1.0), (16, 0.5), (27, 0.9)] {
+        let (area, _) = seen_at_origin(&behind_strips(count, share), &lamp(1.0, 2.0), DVec3::ZERO);
+        assert!((area - (1.0 - share)).abs() < 1e-3, "{count} strips over {share}: {area}");
+    }
+}
+
+#[test]
+fn what_passes_many_masks_does_not_depend_on_what_else_divides_the_light() {
+    let strips = behind_strips(11, 0.8);
+    let (area, share) = seen_at_origin(&strips, &lamp(1.0, 2.0), DVec3::ZERO);
+    let mut wires = strips;
+    let surface = wires.surface(1.0);
+    for i in 0..7 {
+        let z = -0.45 + 0.14 * f64::from(i);
+        let ends = [-0.6, 0.6].map(|x| dvec3(x, 1.1, z + 0.2 * x));
+        wires.polygon(&[ends[0], ends[1], ends[1] + DVec3::Z * 1e-7], surface);
+    }
+    let (area_behind_wires, share_behind_wires) = seen_at_origin(&wires, &lamp(1.0, 2.0), DVec3::ZERO);
+    assert!((area - area_behind_wires).abs() < 1e-5, "{area}, {area_behind_wires}");
+    assert!((share - share_behind_wires).abs() < 1e-5, "{share}, {share_behind_wires}");
 }
 
 #[test]

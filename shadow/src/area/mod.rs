@@ -12,12 +12,13 @@
 //!    shadow and drops out ([`outline`]). What is left of the edges is the shadow's outline, with winding numbers.
 //! 4. A sweep along the light's plane finds where the winding number is 0 ([`sweep`]): the visible parts, as trapezoids.
 //!    Sheets of one opacity are counted together: a winding number of n is n layers of them.
-//! 5. Masked casters divide these parts further ([`masks`]).
+//! 5. Masked casters divide these parts further ([`masks`]), each by itself or, where they are many, in the cells of a grid ([`transmittance`]).
 //!
 //! Grouping only ever leaves out casters whose projections lie outside the light's bounding rectangle. Their edges add up to a winding number
 //! of 0 there, exactly (step 4), so that what a point sees depends neither on its companions nor on the order of triangles.
 
 mod group;
+mod joined;
 pub(crate) mod light;
 pub(crate) mod masks;
 mod outline;
@@ -26,6 +27,7 @@ mod shaft;
 mod sheets;
 mod sweep;
 pub(crate) mod targets;
+mod transmittance;
 
 pub use group::AreaScratch;
 pub use light::{AreaLight, AreaOptions, LARGEST_OUTLINE, SeenLight, check_outline};
