@@ -203,7 +203,9 @@ impl Prepared<'_> {
             |(), tile| {
                 monitor.lap("visibility");
                 memory.with(|memory| {
-                    lock(&canvas).put(tile.rect(), painter.paint(tile, memory));
+                    // Before the lock is taken: others paint meanwhile.
+                    let painted = painter.paint(tile, memory);
+                    lock(&canvas).put(tile.rect(), painted);
                     let (visible, shadow, whole) = memory.take_counts();
                     let mut totals = lock(&totals);
                     totals.0 += visible;
