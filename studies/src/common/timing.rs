@@ -132,7 +132,7 @@ pub(crate) fn timed_part<T>(clock: Clock, mut work: impl FnMut() -> (f64, T)) ->
     let has_patience = || !is_trial && start.elapsed().as_secs_f64() < PATIENCE;
     let mut tries = Tries { runs: vec![], enough: RUNS };
     loop {
-        let quiet_before = begins_quietly(clock, &has_patience);
+        let quiet_before = begins_quietly(clock, has_patience);
         let begin = start.elapsed();
         let (seconds, result) = work();
         let quiet = is_quiet(clock, calibration(clock)) && quiet_before;
