@@ -78,6 +78,15 @@ fn soup() -> BoxedStrategy<Soup> {
         .boxed()
 }
 
+/// The same where the opacity of all but the ground depends on the place, as far as anybody can know: nothing decides beforehand how masks divide a light.
+fn masked_soup() -> BoxedStrategy<Soup> {
+    let mask = |mut soup: Soup| {
+        soup.surfaces[1..].iter_mut().for_each(|s| s.textured_opacity = true);
+        soup
+    };
+    soup().prop_map(mask).boxed()
+}
+
 /// Of a line that shines.
 fn ends() -> BoxedStrategy<[DVec3; 2]> {
     (point(), direction(), 0.5..3.0f64).prop_map(|(p, d, far)| [p * far, p * far + d]).boxed()
@@ -102,6 +111,16 @@ proptest! {
 
     #[test]
     fn what_is_seen_does_not_depend_on_the_order_of_triangles(s in soup(), v in view(), l in parallelogram(), seed: u64) {
+        holds!(area::triangle_order_does_not_matter(&s, v, &outline(l), seed));
+    }
+
+    #[test]
+    fn what_is_seen_through_masks_does_not_depend_on_tiles(s in masked_soup(), v in view(), l in parallelogram()) {
+        holds!(area::tiles_do_not_matter(&s, v, &outline(l)));
+    }
+
+    #[test]
+    fn what_is_seen_through_masks_does_not_depend_on_the_order_of_triangles(s in masked_soup(), v in view(), l in parallelogram(), seed: u64) {
         holds!(area::triangle_order_does_not_matter(&s, v, &outline(l), seed));
     }
 
