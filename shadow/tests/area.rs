@@ -78,7 +78,7 @@ fn soup() -> BoxedStrategy<Soup> {
         .boxed()
 }
 
-/// The same where the opacity of all but the ground depends on the place, as far as anybody can know: nothing decides beforehand how masks divide a light.
+/// The same with masks on all surfaces but the ground; they are even, but only asking them tells.
 fn masked_soup() -> BoxedStrategy<Soup> {
     let mask = |mut soup: Soup| {
         soup.surfaces[1..].iter_mut().for_each(|s| s.textured_opacity = true);
