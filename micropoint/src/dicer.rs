@@ -5,6 +5,7 @@ use crate::face::{DepthRange, Face, GridRect, ProjectedVertex, Setup, TexturedOp
 use crate::geometry::{Geometry, HiddenSides, SurfaceOpacity};
 use crate::interval::Interval;
 use crate::lens::{Lens, LensKind};
+use crate::neighbours::{self, Neighbours, THINNEST};
 use crate::visit::{FaceVisitor, VisitMemory};
 use glam::{DVec2, IVec2, Vec2};
 use pointillist_dice::{CellWindow, ConvexPolygon, Cut, convex, cut};
@@ -194,6 +195,7 @@ pub(crate) struct Dicer {
     memory: VisitMemory,
     order: Vec<u32>,
     keys: Vec<(i64, u32)>,
+    neighbours: Neighbours,
     pub(crate) counts: TileCounts,
 }
 
@@ -464,22 +466,32 @@ impl Dicer {
     /// Only disjoint parts are considered: the common case of a mesh whose triangles are about as
     /// large as cells. Whatever else there is gets sorted out when the tile is resolved.
     fn try_to_close(&mut self, cell: usize, lens: &Lens) {
+        // Comparing each with each takes longer than the parts that a closed cell refuses.
         const MOST: usize = 128;
-        let summed = self.cells[cell].opaque_area;
-        if self.cells[cell].count as usize > MOST {
+        let Cell { opaque_area: summed, count, .. } = self.cells[cell];
+        // No part is longer than the cell: fewer parts than this are not thin.
+        let thin = f64::from(count) * THINNEST > summed && self.are_thin(self.parts_of(cell));
+        if count as usize > MOST && !thin {
             self.cells[cell].next_try = summed + 1.0;
             return;
         }
         let order = self.sorted_parts(cell);
+        let disjoint = if thin { self.disjoint(&order) } else { None };
+        if disjoint.is_none() && order.len() > MOST {
+            self.cells[cell].next_try = summed + 1.0;
+            self.order = order;
+            return;
+        }
         let mut area = 0.0;
         let mut nearness = f64::INFINITY;
         let mut tiling = 0;
         for (i, &p) in order.iter().enumerate() {
             let part = &self.parts[p as usize];
-            if part.opacity < 1.0 {
-                break;
-            }
-            if order[..i].iter().any(|&o| self.overlap(p, o)) {
+            let overlaps = || match disjoint {
+                Some(count) => i >= count,
+                None => order[..i].iter().any(|&o| self.overlap(p, o)),
+            };
+            if part.opacity < 1.0 || overlaps() {
                 break;
             }
             area += part.area;
@@ -504,6 +516,25 @@ impl Dicer {
             }
         }
         self.order = order;
+    }
+
+    /// How many parts, from the first on, are disjoint; `None` where it takes comparing each with each to tell.
+    fn disjoint(&mut self, parts: &[u32]) -> Option<usize> {
+        let mut neighbours = std::mem::take(&mut self.neighbours);
+        let outlines = parts.iter().map(|&p| self.outline(self.part(p)));
+        let overlap = |a: u32, b: u32| self.overlap(parts[a as usize], parts[b as usize]);
+        let count = neighbours.disjoint(outlines, overlap);
+        self.neighbours = neighbours;
+        count
+    }
+
+    /// Whether parts are long and thin.
+    pub(crate) fn are_thin(&self, parts: impl Iterator<Item = u32>) -> bool {
+        neighbours::are_thin(parts.map(|p| {
+            let part = self.part(p);
+            let (low, high) = part.bounds.corners();
+            (part.area, (high - low).max_element())
+        }))
     }
 
     /// Closes a cell at a nearness and updates the pyramid above it.
@@ -531,17 +562,19 @@ impl Dicer {
         }
     }
 
+    /// The parts of a cell, the last first.
+    fn parts_of(&self, cell: usize) -> impl Iterator<Item = u32> + '_ {
+        let known = |p: u32| (p != NONE).then_some(p);
+        std::iter::successors(known(self.cells[cell].head), move |&p| known(self.next[p as usize]))
+    }
+
     /// The parts of a cell, nearest first, in an order that does not depend on the order of triangles.
     pub(crate) fn sorted_parts(&mut self, cell: usize) -> Vec<u32> {
         let mut order = std::mem::take(&mut self.order);
         let mut keys = std::mem::take(&mut self.keys);
         order.clear();
         keys.clear();
-        let mut next = self.cells[cell].head;
-        while next != NONE {
-            keys.push((ordered(-self.parts[next as usize].nearness.most), next));
-            next = self.next[next as usize];
-        }
+        keys.extend(self.parts_of(cell).map(|p| (ordered(-self.part(p).nearness.most), p)));
         if keys.len() > 1 {
             keys.sort_unstable_by_key(|key| key.0);
             for equal in keys.chunk_by_mut(|a, b| a.0 == b.0).filter(|equal| equal.len() > 1) {

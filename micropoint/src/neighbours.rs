@@ -13,6 +13,16 @@ use glam::DVec2;
 /// With fewer parts, comparing each with each is faster.
 pub(crate) const WORTH_IT: usize = 32;
 
+/// Parts are long and thin if on average they fill less than this of a square as long as they are.
+pub(crate) const THINNEST: f64 = 1.0 / 32.0;
+
+/// Whether parts, by their areas and lengths, are long and thin. Side by side, such parts touch the same squares of any grid, however short they are:
+/// stripes that cut off a corner of a cell.
+pub(crate) fn are_thin(parts: impl Iterator<Item = (f64, f64)>) -> bool {
+    let (area, squares) = parts.fold((0.0, 0.0), |(a, s), (area, length)| (a + area, s + length * length));
+    area < THINNEST * squares
+}
+
 /// Intervals are this much longer than computed, in cells: more than projections are rounded by.
 const SLACK: f64 = 1e-12;
 
@@ -52,15 +62,33 @@ impl Neighbours {
         outlines: impl ExactSizeIterator<Item = &'a [DVec2]> + Clone,
         overlap: impl Fn(u32, u32) -> bool,
     ) {
+        self.project(outlines);
+        self.are_compared = self.compare(overlap);
+        if !self.are_compared {
+            self.build_tree();
+        }
+    }
+
+    /// How many of some parts, from the first on, are disjoint, by their outlines and by `overlap`, as for [`Neighbours::build`]. `None` where too many
+    /// lie side by side to tell.
+    pub(crate) fn disjoint<'a>(
+        &mut self,
+        outlines: impl ExactSizeIterator<Item = &'a [DVec2]> + Clone,
+        overlap: impl Fn(u32, u32) -> bool,
+    ) -> Option<usize> {
+        let count = outlines.len();
+        self.project(outlines);
+        self.compare(overlap)
+            .then(|| self.pairs.iter().map(|&(a, b)| a.max(b) as usize).fold(count, usize::min))
+    }
+
+    /// The interval of each part, sorted.
+    fn project<'a>(&mut self, outlines: impl ExactSizeIterator<Item = &'a [DVec2]> + Clone) {
         let step = outlines.len().div_ceil(FITTED).max(1);
         let pencil = Pencil::along(outlines.clone().step_by(step));
         self.intervals.clear();
         self.intervals.extend((0..).zip(outlines).map(|(rank, outline)| pencil.interval(outline, rank)));
         self.intervals.sort_unstable_by(|a, b| a.low.total_cmp(&b.low).then(a.rank.cmp(&b.rank)));
-        self.are_compared = self.compare(overlap);
-        if !self.are_compared {
-            self.build_tree();
-        }
     }
 
     /// Compares all pairs whose intervals overlap. Gives up, and returns `false`, where those are many.
@@ -223,6 +251,46 @@ mod tests {
             dvec2(1.0, at(i + 1) + slope),
             dvec2(0.0, at(i + 1)),
         ]
+    }
+
+    #[test]
+    fn disjoint_parts_are_counted_up_to_the_first_overlap() {
+        let overlap_of = |outlines: &[Vec<DVec2>]| {
+            let overlap =
+                |a: u32, b: u32| !convex::are_disjoint(&outlines[a as usize], &outlines[b as usize]);
+            Neighbours::default().disjoint(outlines.iter().map(Vec::as_slice), overlap)
+        };
+        let mut stripes: Vec<_> = (0..100).map(|i| stripe(i * 37 % 100, 100, 0.3)).collect();
+        assert_eq!(overlap_of(&stripes), Some(100));
+        stripes[60] = stripe(77, 90, 0.3);
+        let meets = |a: usize, b: usize| !convex::are_disjoint(&stripes[a], &stripes[b]);
+        let first = (0..100).find(|&b| (0..b).any(|a| meets(a, b)));
+        assert!(first >= Some(60));
+        assert_eq!(overlap_of(&stripes), first);
+        // Layers of copies.
+        stripes.iter_mut().for_each(|s| *s = stripe(0, 2, 0.0));
+        assert_eq!(overlap_of(&stripes), None);
+    }
+
+    #[test]
+    fn stripes_are_thin_wherever_they_cross_a_cell_and_meshes_are_not() {
+        let of = |outline: &[DVec2]| {
+            let (low, high) = convex::bounds(outline);
+            (convex::area(outline), (high - low).max_element())
+        };
+        // Across the cell, and along a line that cuts off its corner.
+        assert!(are_thin((0..100).map(|i| of(&stripe(i, 100, 0.3)))));
+        let corner = |i: u32| [0.1, 0.2].map(|x| dvec2(x, 0.3 - x + 1e-4 * f64::from(i)));
+        assert!(are_thin((0..100).map(|i| {
+            let ([a, b], [d, c]) = (corner(i), corner(i + 1));
+            of(&[a, b, c, d])
+        })));
+        // Triangles, each ten times as long as wide.
+        assert!(!are_thin((0..100).map(|i| of(&[
+            dvec2(0.0, 0.0),
+            dvec2(0.1, 0.01 * f64::from(i % 9)),
+            dvec2(0.1, 0.01 * f64::from(i % 9 + 1))
+        ]))));
     }
 
     /// The neighbours of each, and whether all pairs were compared.

@@ -272,7 +272,8 @@ impl Others {
         if order.len() < neighbours::WORTH_IT {
             return;
         }
-        if self.fine.build(order.iter().map(|&p| dicer.part(p).bounds.corners())) {
+        let bounds = order.iter().map(|&p| dicer.part(p).bounds.corners());
+        if !dicer.are_thin(order.iter().copied()) && self.fine.build(bounds) {
             self.search = Search::Fine;
         } else {
             self.search = Search::Pencil;
