@@ -1,5 +1,5 @@
-//! Triangles, polygonal lights, lines that shine and views of any kind: what is seen of a light depends neither on tiles nor on the order of
-//! triangles, and is what rays find.
+//! Triangles, masks, polygonal lights, lines that shine and views of any kind: what is seen of a light depends neither on tiles nor on the order of
+//! triangles, and is what rays find where there are no masks.
 #![no_main]
 
 mod steps;
@@ -20,6 +20,8 @@ struct Input {
     corner: [i8; 3],
     edges: [[i8; 3]; 2],
     seed: u64,
+    /// A bit for each of the first triangles: whether its opacity is a mask's.
+    masks: u8,
 }
 
 /// An edge across the light misplaces half a cell of each row or column at most; twelve triangles and a box have 48.
@@ -28,7 +30,12 @@ const TOLERANCE: f64 = 0.25;
 const PLACES: u32 = 40;
 
 fuzz_target!(|input: Input| {
-    let soup = soup_of(&input.triangles, 12, input.box_at);
+    let mut soup = soup_of(&input.triangles, 12, input.box_at);
+    for (i, surface) in soup.surfaces.iter_mut().take(8).enumerate() {
+        surface.textured_opacity = input.masks >> i & 1 == 1;
+    }
+    let masked = soup.surfaces.iter().any(|surface| surface.textured_opacity);
+    let by_rays = |fact: &dyn Fn() -> Result<(), String>| if masked { Ok(()) } else { fact() };
     let corner = steps(input.corner);
     let [u, v] = input.edges.map(steps);
     let camera = Projection::Perspective { fov_y_rad: 1.0 };
@@ -39,10 +46,10 @@ fuzz_target!(|input: Input| {
     let ends = [corner, corner + u];
     let facts = area::tiles_do_not_matter(&soup, view, &outline)
         .and_then(|()| area::triangle_order_does_not_matter(&soup, view, &outline, input.seed))
-        .and_then(|()| area::agrees_with_rays(&soup, view, [corner, u, v], PLACES, TOLERANCE))
+        .and_then(|()| by_rays(&|| area::agrees_with_rays(&soup, view, [corner, u, v], PLACES, TOLERANCE)))
         .and_then(|()| line::tiles_do_not_matter(&soup, view, ends))
         .and_then(|()| line::triangle_order_does_not_matter(&soup, view, ends, input.seed))
-        .and_then(|()| line::agrees_with_rays(&soup, view, ends, PLACES * PLACES, TOLERANCE));
+        .and_then(|()| by_rays(&|| line::agrees_with_rays(&soup, view, ends, PLACES * PLACES, TOLERANCE)));
     if let Err(broken) = facts {
         panic!("{broken}");
     }

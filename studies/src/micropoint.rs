@@ -5,7 +5,6 @@ pub(crate) mod checker;
 mod embree;
 pub(crate) mod foliage;
 mod growth;
-mod leaves;
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -10,6 +10,7 @@ pub(crate) mod draw;
 pub(crate) mod frame_error;
 pub(crate) mod kept;
 pub(crate) mod layers;
+pub(crate) mod leaves;
 pub(crate) mod line_reference;
 pub(crate) mod loop_subdivision;
 pub(crate) mod machine;

@@ -196,13 +196,8 @@ fn ambient_color(scene: &Scene) -> Vec3 {
 
 /// Radiance towards the eye with flat, two-sided shading.
 pub(crate) fn radiance(scene: &Scene, at: &SurfaceSample, visible: &Visibility<'_>) -> DVec3 {
-    let mesh = &scene.mesh;
     let t = at.triangle as usize;
-    let material = &scene.materials[mesh.material_of[t] as usize];
-    let mut surface = material.surface;
-    if let (Some(map), Some(uv)) = (material.diffuse_map, uv_at(scene, at)) {
-        surface.diffuse *= scene.textures[map].lookup(material.wrap, uv).truncate();
-    }
+    let surface = surface_at(scene, at);
     let mut color = surface.emission + ambient_color(scene) * surface.diffuse;
     if surface.diffuse == Vec3::ZERO && surface.specular == Vec3::ZERO {
         return color.as_dvec3();
@@ -221,6 +216,16 @@ pub(crate) fn radiance(scene: &Scene, at: &SurfaceSample, visible: &Visibility<'
         }
     }
     color.as_dvec3()
+}
+
+/// The material at a point, its texture looked up.
+pub(crate) fn surface_at(scene: &Scene, at: &SurfaceSample) -> shade::Material {
+    let material = &scene.materials[scene.mesh.material_of[at.triangle as usize] as usize];
+    let mut surface = material.surface;
+    if let (Some(map), Some(uv)) = (material.diffuse_map, uv_at(scene, at)) {
+        surface.diffuse *= scene.textures[map].lookup(material.wrap, uv).truncate();
+    }
+    surface
 }
 
 /// Unit normal of a triangle on the side of `to_eye`.

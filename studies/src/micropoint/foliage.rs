@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::leaves::{CARDS, Cards, SIZE, bush};
 use crate::common::against_samples::{CELLS, MORE, Subject, conditions, draw_cells, summary};
+use crate::common::leaves::{CARDS, Cards, SIZE, bush};
 use crate::common::ray_reference::sampled_with_shadows;
 use crate::common::report::{Outcome, Row, table, verdict, write, write_csv};
 

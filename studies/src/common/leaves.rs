@@ -1,19 +1,20 @@
 //! A bush of leaf cards with a mask, made by code.
 
 use std::f64::consts::TAU;
+use std::num::NonZeroU32;
 
 use glam::{DVec2, DVec3, Vec3, Vec4, dvec2, dvec3};
-use pointillist_render::{Scene, Texels, Texture};
-use pointillist_shade as shade;
+use pointillist_render::{LightSource, Scene, Texels, Texture};
+use pointillist_shade::{self as shade, Falloff, Light};
 
 use crate::common::ray_reference::random;
 use crate::common::scenes::Sketch;
 
 /// Pixels on a side.
-pub(super) const SIZE: u32 = 96;
+pub(crate) const SIZE: u32 = 96;
 
 /// Cards of the bush.
-pub(super) const CARDS: u32 = 500;
+pub(crate) const CARDS: u32 = 500;
 
 /// Half a side of a card.
 const HALF: f64 = 0.14;
@@ -23,13 +24,13 @@ const MASK_POINTS: u32 = 4;
 
 /// Whether each card is one quad, or two in one place that face opposite ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Cards {
+pub(crate) enum Cards {
     Single,
     Pairs,
 }
 
 /// The bush above the ground, under a sun and a lamp; its mask has `texels` × `texels` texels.
-pub(super) fn bush(texels: u32, cards: Cards) -> Scene {
+pub(crate) fn bush(texels: u32, cards: Cards) -> Scene {
     let mut s = Sketch::new(dvec3(0.4, 1.5, 4.4), dvec3(0.0, 0.75, 0.0), 30.0, SIZE);
     let ground = s.matt(0.6, 1.0);
     let corner = |x: f64, z: f64| dvec3(4.0 * x, 0.0, 4.0 * z);
@@ -48,6 +49,22 @@ pub(super) fn bush(texels: u32, cards: Cards) -> Scene {
     s.sun(dvec3(-0.5, -1.0, -0.6));
     s.lamp(dvec3(1.6, 2.0, 1.8), 1.6);
     s.scene
+}
+
+/// The bush under a rectangular light of `samples` points, 0 for the whole of it, twice as wide as itself.
+pub(crate) fn bush_under_area(size: u32, samples: u32) -> Scene {
+    let mut scene = bush(64, Cards::Single);
+    [scene.image.width, scene.image.height] = [size; 2];
+    let light = Light::Rect {
+        corner: dvec3(-1.6, 4.0, -1.6),
+        edge_u: dvec3(3.2, 0.0, 0.0),
+        edge_v: dvec3(0.0, 0.0, 3.2),
+        radiance: Vec3::splat(4.0),
+        samples: NonZeroU32::new(samples),
+        falloff: Falloff::InverseSquare,
+    };
+    scene.lights = vec![LightSource::new("sky", light)];
+    scene
 }
 
 /// Four corners of a card somewhere in an ellipsoid above the ground, turned at random.
