@@ -85,6 +85,7 @@ pub(crate) fn visit(
     stack.clear();
     stack.extend(0..sheets.list.len() as u32);
     point.outline.start(sheets, light.coincident);
+    point.masks.start(sheets);
     point.seen.frame = light.frame;
     Groups { light, pieces, corners, sheets, beyond, stack, point, counts, has_casters: false, visit }
         .divide(targets, 0);

@@ -20,29 +20,42 @@ struct Cells {
     window: CellWindow,
 }
 
-/// The share of light that passes in each cell. Masks that meet in one cell count as independent there, unless they are covered together.
+/// The share of light that passes in each cell that is asked for. Masks that meet in one cell count as independent there, unless they are covered together.
 #[derive(Debug)]
 pub(crate) struct TransmittanceGrid {
     cells: Cells,
     passed: [f64; MOST_CELLS],
     /// What was covered since the last [`TransmittanceGrid::weaken`].
     covered: [f64; MOST_CELLS],
+    is_needed: bool,
 }
 
 impl Default for TransmittanceGrid {
     fn default() -> Self {
         let window = CellWindow { x0: 0, y0: 0, x1: 0, y1: 0 };
         let cells = Cells { low: DVec2::ZERO, size: DVec2::ONE, window };
-        Self { cells, passed: [1.0; MOST_CELLS], covered: [0.0; MOST_CELLS] }
+        Self { cells, passed: [0.0; MOST_CELLS], covered: [0.0; MOST_CELLS], is_needed: false }
     }
 }
 
 impl TransmittanceGrid {
-    /// Begins with a light in front of which nothing is.
+    /// Begins with a light of which nothing is asked for.
     pub(crate) fn start(&mut self, outline: &[DVec2]) {
         self.cells = Cells::over(outline);
-        self.passed.fill(1.0);
+        self.passed.fill(0.0);
         self.covered.fill(0.0);
+        self.is_needed = false;
+    }
+
+    /// Asks for the cells that a part of the light touches; nothing is in front of it yet.
+    pub(crate) fn need(&mut self, part: &ConvexPolygon) {
+        self.is_needed = true;
+        self.cells.cut(part, |cell, _, _| self.passed[cell] = 1.0);
+    }
+
+    /// Whether any cells are asked for.
+    pub(crate) fn is_needed(&self) -> bool {
+        self.is_needed
     }
 
     /// Covers each cell by what a convex polygon covers of it, times the mean opacity of that part. Parts of less than `negligible` of a
@@ -53,12 +66,31 @@ impl TransmittanceGrid {
         negligible: f64,
         mut mean_opacity: impl FnMut(&[DVec2]) -> f64,
     ) {
-        let Self { cells, passed, covered } = self;
+        let Self { cells, passed, covered, .. } = self;
         cells.cut(polygon, |cell, share, part| {
             if passed[cell] > 0.0 && share > negligible {
                 covered[cell] += share * mean_opacity(part);
             }
         });
+    }
+
+    /// The cell in which all of a rectangle is.
+    pub(crate) fn cell_around(&self, bounds: (DVec2, DVec2)) -> Option<usize> {
+        self.cells.around(bounds)
+    }
+
+    /// Covers a cell by a polygon of this area within it, as [`Self::cover`] does.
+    pub(crate) fn cover_within(
+        &mut self,
+        cell: usize,
+        area: f64,
+        negligible: f64,
+        mean_opacity: impl FnOnce() -> f64,
+    ) {
+        let share = area / self.cells.size.element_product();
+        if self.passed[cell] > 0.0 && share > negligible {
+            self.covered[cell] += share * mean_opacity();
+        }
     }
 
     /// Weakens each cell by what covers it.
@@ -70,7 +102,7 @@ impl TransmittanceGrid {
         }
     }
 
-    /// Calls `visit` with the pieces of a part of the light through which some light passes, and the share that does.
+    /// Calls `visit` with the pieces of a part of the light that was asked for through which some light passes, and the share that does.
     pub(crate) fn divide(&self, part: &ConvexPolygon, mut visit: impl FnMut(&[DVec2], f64)) {
         self.cells.cut(part, |cell, _, piece| {
             let passed = self.passed[cell];
@@ -90,6 +122,14 @@ impl Cells {
         let rows = (most / columns).floor();
         let window = CellWindow { x0: 0, y0: 0, x1: columns as i32, y1: rows as i32 };
         Self { low, size: extent / DVec2::new(columns, rows), window }
+    }
+
+    /// The cell in which all of a rectangle is.
+    fn around(&self, (low, high): (DVec2, DVec2)) -> Option<usize> {
+        let [first, last] = [low, high].map(|corner| ((corner - self.low) / self.size).floor());
+        let CellWindow { x1, y1, .. } = self.window;
+        let is_inside = first.cmpge(DVec2::ZERO).all() && last.cmplt(DVec2::new(x1.into(), y1.into())).all();
+        (is_inside && first == last).then(|| (first.y as i32 * x1 + first.x as i32) as usize)
     }
 
     /// Calls `visit` with the number of each cell that a convex polygon covers some of, the share that it covers, and the part of the polygon in it.
@@ -184,6 +224,7 @@ mod tests {
         let light = rectangle((0.0, 0.0), (2.0, 2.0));
         let mut grid = TransmittanceGrid::default();
         grid.start(light.vertices());
+        grid.need(&light);
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0)].map(DVec2::from);
         for half in [[0, 1, 2], [0, 2, 3]] {
             grid.cover(&ConvexPolygon::from_vertices(&half.map(|i| corners[i])), 0.0, |_| 1.0);
@@ -207,6 +248,7 @@ mod tests {
             let ring: Vec<DVec2> = (0..n).map(corner).collect();
             let mut grid = TransmittanceGrid::default();
             grid.start(&ring);
+            grid.need(&ConvexPolygon::from_vertices(&ring));
             let all = passed(&grid, &ConvexPolygon::from_vertices(&ring));
             assert!((all - convex::area(&ring)).abs() < 1e-13, "{n} corners: {all}");
         }
@@ -217,6 +259,7 @@ mod tests {
         let light = rectangle((0.0, 0.0), (1.0, 1.0));
         let mut grid = TransmittanceGrid::default();
         grid.start(light.vertices());
+        grid.need(&light);
         let endless = [DVec2::ZERO, dvec2(f64::INFINITY, 0.0), dvec2(0.0, f64::INFINITY)];
         grid.cover(&ConvexPolygon::from_vertices(&endless), 0.0, |_| 1.0);
         grid.weaken();

@@ -55,10 +55,10 @@ impl Subject {
         }
     }
 
-    /// The scene by 1, 2×2 and 4×4 cells a pixel.
-    pub(crate) fn cells(&self, series: &str, scene: &Scene) -> Vec<Row> {
+    /// The scene by these numbers of cells along a side of a pixel.
+    pub(crate) fn cells(&self, series: &str, cells: &[u32], scene: &Scene) -> Vec<Row> {
         let draw = |cells| draw_cells(scene, cells).expect("the scene is valid");
-        CELLS.map(|cells| self.row(series, format!("{cells}×{cells} cells"), || draw(cells))).into()
+        cells.iter().map(|&n| self.row(series, format!("{n}×{n} cells"), || draw(n))).collect()
     }
 
     /// The scene by 1 to 256 samples a pixel, as `draw` takes them: its argument is the number along a side.

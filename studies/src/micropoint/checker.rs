@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3, Vec3, dvec3};
 use pointillist_render::Scene;
 use pointillist_shade::{self as shade, Source};
 
-use crate::common::against_samples::{MORE, Subject, conditions, summary};
+use crate::common::against_samples::{CELLS, MORE, Subject, conditions, summary};
 use crate::common::line_reference;
 use crate::common::ray_reference::sampled_with_shadows;
 use crate::common::report::{Outcome, Row, table, write, write_csv};
@@ -48,7 +48,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
             let floor = expected.rmse(&coarser);
             let subject = Subject { name: format!("{name} {size}×{size}"), expected, floor };
             let scene = with_slats(lit, size);
-            rows.extend(subject.cells("points", &scene));
+            rows.extend(subject.cells("points", &CELLS, &scene));
             rows.extend(subject.samples(|n| sampled_with_shadows(&scene, n, 1)));
             subjects.push(subject);
         }

@@ -24,8 +24,8 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
         let [single, pairs] = [Cards::Single, Cards::Pairs].map(|cards| bush(texels, cards));
         let name = format!("mask {texels}×{texels}");
         let subject = Subject::between(name, [2, 3].map(|seed| sampled_with_shadows(&single, FINE, seed)));
-        rows.extend(subject.cells("cards", &single));
-        rows.extend(subject.cells("pairs", &pairs));
+        rows.extend(subject.cells("cards", &CELLS, &single));
+        rows.extend(subject.cells("pairs", &CELLS, &pairs));
         rows.extend(subject.samples(|n| sampled_with_shadows(&single, n, 1)));
         for cells in CELLS {
             let [single, pairs] = [draw_cells(&single, cells)?, draw_cells(&pairs, cells)?];

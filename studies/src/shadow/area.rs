@@ -6,7 +6,7 @@ use glam::DVec3;
 use pointillist_render::Scene;
 use pointillist_shade::sees_light;
 
-use crate::common::against_samples::{MORE, Subject, conditions, draw_cells, summary};
+use crate::common::against_samples::{CELLS, MORE, Subject, conditions, draw_cells, summary};
 use crate::common::casters;
 use crate::common::draw;
 use crate::common::leaves;
@@ -33,7 +33,7 @@ const CHECK: u32 = 64;
 const FOLIAGE_SIZE: u32 = 32;
 
 /// Samples along a side of its pixels in each half of its expected picture, and points of the light for each, along a side of it.
-const FOLIAGE_SAMPLES: [u32; 2] = [40, 4];
+const FOLIAGE_SAMPLES: [u32; 2] = [32, 4];
 
 /// Names a program that takes scenes as `studies/peers/mitsuba` does.
 const MITSUBA: &str = "POINTILLIST_MITSUBA";
@@ -62,7 +62,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
         let fewer = casters::area_light(SIZE, CONVERGED / 4, glossy);
         let floor = draw_cells(&fewer, CONVERGED_CELLS)?.rmse(&expected);
         let subject = Subject { name: name.to_owned(), expected, floor };
-        rows.extend(of_scene(&subject, &[1, 4, 16, 64, 256], &|points| {
+        rows.extend(of_scene(&subject, &CELLS, &[1, 4, 16, 64, 256], &|points| {
             casters::area_light(SIZE, points, glossy)
         }));
         rows.extend(by_mitsuba(&subject, &converged)?);
@@ -71,7 +71,7 @@ pub(crate) fn run(out_dir: &Path) -> Outcome {
     eprintln!("shadow: area light, foliage");
     let foliage = |points| leaves::bush_under_area(FOLIAGE_SIZE, points);
     let subject = below_foliage(&foliage(CONVERGED));
-    rows.extend(of_scene(&subject, &[1, 4, 16, 64], &foliage));
+    rows.extend(of_scene(&subject, &CELLS[..2], &[1, 4, 16, 64], &foliage));
     subjects.push(subject);
     write_csv(out_dir, "shadow-area", &MORE, &rows)?;
     write(out_dir, "shadow-area.md", &markdown(&subjects, &rows, checks.trim_matches([' ', ';'])))?;
@@ -87,8 +87,13 @@ fn below_foliage(scene: &Scene) -> Subject {
 }
 
 /// All rows of a scene of which `with_points` makes one whose light is that many points, or whole if they are 0.
-fn of_scene(subject: &Subject, points: &[u32], with_points: &dyn Fn(u32) -> Scene) -> Vec<Row> {
-    let mut rows = subject.cells("exact", &with_points(0));
+fn of_scene(
+    subject: &Subject,
+    cells: &[u32],
+    points: &[u32],
+    with_points: &dyn Fn(u32) -> Scene,
+) -> Vec<Row> {
+    let mut rows = subject.cells("exact", cells, &with_points(0));
     for &points in points {
         let scene = with_points(points);
         let draw = || draw::with_pipeline(&scene).expect("the scene is valid");
