@@ -231,7 +231,7 @@ impl View<'_> {
                 if pane.is_whole
                     && let Some(cell) = grid.cell_around(pane.bounds)
                 {
-                    let mean = || *known(&mut means[pane.sheet as usize], || self.whole_mask(&pane.face));
+                    let mean = || known(&mut means[pane.sheet as usize], || self.whole_mask(&pane.face));
                     grid.cover_within(cell, pane.polygon.area(), NEGLIGIBLE, mean);
                 } else {
                     grid.cover(&pane.polygon, NEGLIGIBLE, |part| self.mask(&pane.face, part, false));
@@ -280,11 +280,11 @@ impl View<'_> {
 }
 
 /// A number that is computed when it is first asked for.
-fn known(number: &mut f64, compute: impl FnOnce() -> f64) -> &f64 {
+fn known(number: &mut f64, compute: impl FnOnce() -> f64) -> f64 {
     if number.is_nan() {
         *number = compute();
     }
-    number
+    *number
 }
 
 /// Where the line from a point towards a place meets a triangle's plane, on the triangle; corners are relative to the point.
