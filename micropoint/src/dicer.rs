@@ -118,9 +118,9 @@ impl Cell {
     };
 }
 
-/// A cell whose disjoint parts leave less than this uncovered is covered; the parts' own rounding
-/// is a thousand times smaller.
-const COVERED: f64 = 1e-9;
+/// A cell whose disjoint parts leave less than this uncovered is covered: the tolerance to which sums of weights are tested. The parts' own rounding is a
+/// hundred times smaller.
+const COVERED: f64 = 1e-12;
 
 /// Counts of work done and of work skipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -198,8 +198,9 @@ pub struct ProjectedVertex {
     pub in_front: bool,
 }
 
-/// Grid positions beyond this are clipped before they are used: 2²⁴ cells leave 28 bits to a cell.
-const GUARD: f64 = (1 << 24) as f64;
+/// Grid positions beyond this are clipped before they are used: 2¹⁸ cells leave 34 bits to a cell. A triangle that is clipped and its neighbour that is not
+/// have their common edge apart by an ulp of its farther end at most.
+const GUARD: f64 = (1 << 18) as f64;
 
 /// Nearest depth relative to the largest coordinate of the triangle. What is nearer has lost its direction
 /// to rounding, and is cut away; a ground that reaches 10¹² eye heights still comes out right.
@@ -378,7 +379,7 @@ pub(crate) fn set_up_face(
     Some((Face { id, surface, source, front, corners, plane, nearness }, outline))
 }
 
-/// Clips a triangle against the planes of the depth range and the sides of the rectangle, in the lens's frame.
+/// Clips a triangle against the sides of the rectangle and the planes of the depth range, in the lens's frame.
 #[cold]
 fn clip_outline(setup: &Setup<'_>, corners: [DVec3; 3], front: bool) -> Option<(Outline, Interval)> {
     let Setup { lens, rect, range, .. } = *setup;
@@ -393,16 +394,18 @@ fn clip_outline(setup: &Setup<'_>, corners: [DVec3; 3], front: bool) -> Option<(
     let mut ring = [DVec3::ZERO; MOST_CORNERS];
     ring[..3].copy_from_slice(&corners);
     let mut len = 3;
+    // The plane of what is too near depends on the size of the triangle and comes after the sides, which leave nothing behind the eye: the triangles at an
+    // edge are cut in the same places, bit for bit.
     for cut in 0..6 {
         let value = |p: DVec3| match cut {
-            0 => p.z - near,
+            0 => side(p, x, rect.low.x - lens.centre.x, 1.0),
+            1 => side(p, x, rect.high.x - lens.centre.x, -1.0),
+            2 => side(p, y, rect.low.y - lens.centre.y, 1.0),
+            3 => side(p, y, rect.high.y - lens.centre.y, -1.0),
+            4 => p.z - near,
             // No plane cuts at infinity, and a difference from it has no use as a weight.
-            5 if range.far.is_finite() => range.far - p.z,
-            5 => 1.0,
-            1 => side(p, x, rect.low.x - lens.centre.x, 1.0),
-            2 => side(p, x, rect.high.x - lens.centre.x, -1.0),
-            3 => side(p, y, rect.low.y - lens.centre.y, 1.0),
-            _ => side(p, y, rect.high.y - lens.centre.y, -1.0),
+            _ if range.far.is_finite() => range.far - p.z,
+            _ => 1.0,
         };
         (ring, len) = clipped(&ring[..len], value);
     }

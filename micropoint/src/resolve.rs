@@ -60,7 +60,7 @@ impl Visible<'_> {
 pub(crate) const NEGLIGIBLE_AREA: f64 = 1e-13;
 
 /// A cell in which less than this is still open is finished.
-const FINISHED: f64 = 1e-11;
+const FINISHED: f64 = 1e-13;
 
 /// Depth ranges closer than this, relative to their nearness, touch (algorithms: 1e-9…1e-6).
 const TOUCH: f64 = 1e-7;
