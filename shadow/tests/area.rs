@@ -79,6 +79,21 @@ fn soup() -> BoxedStrategy<Soup> {
 }
 
 /// The same with masks on all surfaces but the ground; they are even, but only asking them tells.
+/// Balls by the dozen between the ground and a lamp: hundreds of outlines before it, which are then asked for cell by cell.
+fn thicket() -> BoxedStrategy<Soup> {
+    let ball = (point(), 0.05..0.4f64, prop_oneof![7 => Just(1.0f32), 1 => 0.0..1.0f32]);
+    prop::collection::vec(ball, 40..70)
+        .prop_map(|balls| {
+            let mut soup = ground().moved(|p| p - DVec3::Y);
+            for (centre, radius, opacity) in balls {
+                let surface = soup.surface(opacity);
+                soup.sphere(centre * dvec3(1.5, 0.6, 1.5), radius, 5, 9, surface);
+            }
+            soup
+        })
+        .boxed()
+}
+
 fn masked_soup() -> BoxedStrategy<Soup> {
     let mask = |mut soup: Soup| {
         soup.surfaces[1..].iter_mut().for_each(|s| s.textured_opacity = true);
@@ -150,6 +165,20 @@ proptest! {
     fn what_is_seen_of_a_line_is_what_rays_find(s in soup(), v in view(), l in ends()) {
         // A caster misplaces half a place at each end.
         holds!(line::agrees_with_rays(&s, v, l, 200, 0.1));
+    }
+}
+
+proptest! {
+    #![proptest_config(testkit::config(8))]
+
+    #[test]
+    fn what_is_seen_through_a_thicket_does_not_depend_on_tiles(s in thicket(), v in view(), half in 1.0..3.0f64) {
+        holds!(area::tiles_do_not_matter(&s, v, &lamp(half, 2.0)));
+    }
+
+    #[test]
+    fn what_is_seen_through_a_thicket_does_not_depend_on_the_order_of_triangles(s in thicket(), v in view(), half in 1.0..3.0f64, seed: u64) {
+        holds!(area::triangle_order_does_not_matter(&s, v, &lamp(half, 2.0), seed));
     }
 }
 

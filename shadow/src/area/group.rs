@@ -1,6 +1,7 @@
 //! Receivers in groups, each with the casters that may matter to it.
 
 use super::light::{AreaLight, SeenLight, above_horizon};
+use super::light_cells::LightCells;
 use super::masks::Masks;
 use super::outline::Outline;
 use super::piece::{self, Piece, around};
@@ -48,6 +49,7 @@ impl AreaScratch {
 struct PointScratch {
     outline: Outline,
     masks: Masks,
+    cells: LightCells,
     sweep: Sweep,
     polygon: Vec<DVec2>,
     seen: SeenLight,
@@ -86,6 +88,7 @@ pub(crate) fn visit(
     stack.extend(0..sheets.list.len() as u32);
     point.outline.start(sheets, light.coincident);
     point.masks.start(sheets);
+    point.cells.start();
     point.seen.frame = light.frame;
     Groups { light, pieces, corners, sheets, beyond, stack, point, counts, has_casters: false, visit }
         .divide(targets, 0);
@@ -225,7 +228,7 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         (lowest, highest): (f64, f64),
         most: f64,
     ) -> bool {
-        let PointScratch { outline, masks, sweep, polygon, seen } = &mut *self.point;
+        let PointScratch { outline, masks, cells, sweep, polygon, seen } = &mut *self.point;
         seen.clear();
         seen.point = point;
         if point.z <= self.light.coincident {
@@ -242,9 +245,9 @@ impl<F: FnMut(usize, f64, &SeenLight)> Groups<'_, F> {
         if most < f64::INFINITY && (crosses || outline.moves_by_more(most, (point, normal), shaft)) {
             return false;
         }
-        sweep.start(polygon);
-        outline.cast(self.sheets, point, sweep);
-        sweep.finish(polygon, self.sheets, seen);
+        cells.clear();
+        outline.cast(self.sheets, point, |edge| cells.push(edge));
+        cells.see(polygon, self.sheets, sweep, seen);
         masks.dim(self.light, self.sheets, seen);
         true
     }

@@ -10,7 +10,8 @@
 //!    behind translucent surfaces, what is seen of a surface comes in many pieces.
 //! 3. From each point, a caster is seen from one side or the other; an edge between two casters seen from the same side is inside of the
 //!    shadow and drops out ([`outline`]). What is left of the edges is the shadow's outline, with winding numbers.
-//! 4. A sweep along the light's plane finds where the winding number is 0 ([`sweep`]): the visible parts, as trapezoids.
+//! 4. A sweep along the light's plane finds where the winding number is 0 ([`sweep`]): the visible parts, as trapezoids. A light behind many outlines
+//!    is divided into cells first, and those that one connected piece of casters covers are left out ([`light_cells`]).
 //!    Sheets of one opacity are counted together: a winding number of n is n layers of them.
 //! 5. Masked casters divide these parts further ([`masks`]), each by itself or, where they are many, in the cells of a grid ([`transmittance`]).
 //!
@@ -20,6 +21,7 @@
 mod group;
 mod joined;
 pub(crate) mod light;
+mod light_cells;
 pub(crate) mod masks;
 mod outline;
 pub(crate) mod piece;

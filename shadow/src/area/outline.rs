@@ -3,9 +3,9 @@
 //! From a point P, a sheet's projection winds one way or the other, by the side of its plane that P is on. An edge between two sheets
 //! that wind the same way is passed once in each direction: inside of the shadow. The others count by the sum over their sheets.
 
+use super::light_cells::Outlined;
 use super::shaft::Shaft;
 use super::sheets::{Kind, Sheet, Sheets, at_height};
-use super::sweep::Sweep;
 use glam::{DVec2, DVec3};
 
 /// Casters are cut off at this distance below a receiver's height, relative to the height: what is nearer to the receiver than this share
@@ -21,6 +21,7 @@ const SURE: f64 = 2.0;
 struct OutlineEdge {
     ends: [DVec3; 2],
     kind: Kind,
+    number: u32,
     /// Sum over the sheets whose side is the same for all points of the group.
     sure: i32,
     /// Sum over all sheets, for the point at hand.
@@ -30,7 +31,8 @@ struct OutlineEdge {
 }
 
 impl OutlineEdge {
-    const NOTHING: Self = Self { ends: [DVec3::NEG_INFINITY; 2], kind: 0, sure: 0, now: 0, open: false };
+    const NOTHING: Self =
+        Self { ends: [DVec3::NEG_INFINITY; 2], kind: 0, number: 0, sure: 0, now: 0, open: false };
 
     /// The height of its higher end.
     fn top(&self) -> f64 {
@@ -126,8 +128,9 @@ impl Outline {
             if *position == NONE {
                 *position = self.edges.len() as u32;
                 self.numbers.push(e.edge());
-                let (ends, kind) = (sheets.ends(e.edge()), sheets.kind_of(e.edge()));
-                self.edges.push(OutlineEdge { ends, kind, ..OutlineEdge::NOTHING });
+                let number = e.edge();
+                let (ends, kind) = (sheets.ends(number), sheets.kind_of(number));
+                self.edges.push(OutlineEdge { ends, kind, number, ..OutlineEdge::NOTHING });
             }
             act(&mut self.edges[*position as usize], e.turn());
         }
@@ -186,15 +189,16 @@ impl Outline {
         })
     }
 
-    /// Adds the outlines that the point of [`Outline::turn_to`] sees to a sweep.
-    pub(crate) fn cast(&self, sheets: &Sheets, point: DVec3, sweep: &mut Sweep) {
+    /// Calls `visit` for the outlines that the point of [`Outline::turn_to`] sees.
+    pub(crate) fn cast(&self, sheets: &Sheets, point: DVec3, mut visit: impl FnMut(Outlined)) {
         let top = highest_caster(point.z);
         for open in self.open.iter().filter(|open| open.rises && open.side != 0) {
-            cast_cut(sheets, &sheets.list[open.number as usize], (point, top), open.side, sweep);
+            cast_cut(sheets, &sheets.list[open.number as usize], (point, top), open.side, &mut visit);
         }
         for edge in &self.live {
             if let Some([a, b]) = edge.below(top) {
-                sweep.add(projected(point, a), projected(point, b), edge.now, edge.kind);
+                let (from, to) = (projected(point, a), projected(point, b));
+                visit(Outlined { from, to, winding: edge.now, kind: edge.kind, edge: edge.number });
             }
         }
     }
@@ -226,11 +230,17 @@ impl Outline {
 }
 
 /// The edge along which a sheet is cut off at height `top`, for a point on this side of it.
-fn cast_cut(sheets: &Sheets, sheet: &Sheet, (point, top): (DVec3, f64), side: i32, sweep: &mut Sweep) {
-    let (mut leaves, mut returns, mut kind) = (None, None, 0);
+fn cast_cut(
+    sheets: &Sheets,
+    sheet: &Sheet,
+    (point, top): (DVec3, f64),
+    winding: i32,
+    visit: &mut impl FnMut(Outlined),
+) {
+    let (mut leaves, mut returns, mut edge) = (None, None, 0);
     for e in sheet.edges() {
-        let [a, b] = sheets.ends(e.edge());
-        kind = sheets.kind_of(e.edge());
+        edge = e.edge();
+        let [a, b] = sheets.ends(edge);
         if (a.z > top) != (b.z > top) {
             let at = Some(at_height(a, b, top));
             // Upward as the sheet goes along it.
@@ -239,7 +249,8 @@ fn cast_cut(sheets: &Sheets, sheet: &Sheet, (point, top): (DVec3, f64), side: i3
         }
     }
     if let (Some(from), Some(to)) = (leaves, returns) {
-        sweep.add(projected(point, from), projected(point, to), side, kind);
+        let (from, to) = (projected(point, from), projected(point, to));
+        visit(Outlined { from, to, winding, kind: sheets.kind_of(edge), edge });
     }
 }
 

@@ -246,6 +246,26 @@ impl Sheets {
         self.edges[edge as usize].1
     }
 
+    /// For each edge, which connected piece of casters it belongs to: the least number of that piece's edges.
+    pub(crate) fn connected_edges(&self) -> Vec<u32> {
+        let mut parents: Vec<u32> = (0..self.edges.len() as u32).collect();
+        let root = |parents: &mut [u32], mut edge: u32| {
+            while parents[edge as usize] != edge {
+                let above = parents[parents[edge as usize] as usize];
+                parents[edge as usize] = above;
+                edge = above;
+            }
+            edge
+        };
+        for sheet in &self.list {
+            for pair in sheet.edges().windows(2) {
+                let [a, b] = [pair[0], pair[1]].map(|e| root(&mut parents, e.edge()));
+                parents[a.max(b) as usize] = a.min(b);
+            }
+        }
+        (0..parents.len() as u32).map(|edge| root(&mut parents, edge)).collect()
+    }
+
     /// The triangle of a masked sheet.
     pub(crate) fn mask(&self, sheet: &Sheet) -> Option<ClusterFace> {
         sheet.mask.map(|number| self.masks[number.get() as usize - 1])

@@ -13,6 +13,9 @@ use super::sheets::{Kind, Sheets};
 use glam::{DVec2, dvec2};
 use std::cmp::Ordering;
 
+/// A visible part is no wider than this share of the polygon where sides that coincide are rounded.
+const NARROW: f64 = 1e-15;
+
 /// An edge, upward along y.
 #[derive(Clone, Copy, Debug)]
 struct Side {
@@ -102,6 +105,8 @@ impl Active {
 pub(crate) struct Sweep {
     low: DVec2,
     high: DVec2,
+    /// What is not wider is rounding.
+    narrow: f64,
     sides: Vec<Side>,
     /// Steps of the winding numbers along the left side: kind, height, and what is added from there on.
     steps: Vec<(Kind, f64, i32)>,
@@ -119,6 +124,7 @@ impl Sweep {
         self.sides.clear();
         self.steps.clear();
         (self.low, self.high) = pointillist_dice::convex::bounds(polygon);
+        self.narrow = NARROW * (self.high.x - self.low.x);
         for (i, &a) in polygon.iter().enumerate() {
             let b = polygon[(i + 1) % polygon.len()];
             if a.y < b.y {
@@ -144,6 +150,11 @@ impl Sweep {
             return self.add_steps(from, to, winding, kind);
         }
         self.add_clipped(side.between(from, to), kind);
+    }
+
+    /// How many edges of what hides or dims the polygon lie over its bounding rectangle.
+    pub(crate) fn outline_count(&self) -> usize {
+        self.sides.iter().filter(|s| s.what != Border::Light).count()
     }
 
     fn add_steps(&mut self, from: f64, to: f64, winding: i32, kind: Kind) {
@@ -241,7 +252,7 @@ impl Sweep {
             let ends = |a: &Active| self.sides[a.side as usize].high.y <= y;
             for i in 1..self.active.len() {
                 if ends(&self.active[i - 1]) || ends(&self.active[i]) {
-                    close(&self.sides, &mut self.active, i - 1, y, seen);
+                    close((&self.sides, self.narrow), &mut self.active, i - 1, y, seen);
                 }
             }
             self.active.retain(|a| !ends(a));
@@ -272,7 +283,7 @@ impl Sweep {
         let at = self.sides[side as usize].low;
         let place = self.active.partition_point(|a| !self.is_before(side, at.x, a));
         if place > 0 {
-            close(&self.sides, &mut self.active, place - 1, at.y, seen);
+            close((&self.sides, self.narrow), &mut self.active, place - 1, at.y, seen);
         }
         self.active.insert(place, Active::new(side, at));
     }
@@ -280,7 +291,7 @@ impl Sweep {
     /// Two neighbours, the left one by its place, change theirs. The winding number between them is to be counted.
     fn swap(&mut self, left: usize, y: f64, seen: &mut SeenLight) {
         for gap in left.saturating_sub(1)..=left + 1 {
-            close(&self.sides, &mut self.active, gap, y, seen);
+            close((&self.sides, self.narrow), &mut self.active, gap, y, seen);
         }
         let [(a, xa), (b, xb)] = [left, left + 1].map(|i| (self.active[i].side, self.active[i].x));
         (self.active[left].side, self.active[left].x) = (b, xb);
@@ -297,7 +308,7 @@ impl Sweep {
             (light, hidden) = counted(side, sheets, (light, hidden), &mut self.layers);
             let passed = if light != 0 && hidden == 0 { sheets.passed(&self.layers) } else { 0.0 };
             if passed != self.active[i].passed {
-                close(&self.sides, &mut self.active, i, y, seen);
+                close((&self.sides, self.narrow), &mut self.active, i, y, seen);
                 self.active[i].passed = passed;
             }
             (self.active[i].light, self.active[i].hidden) = (light, hidden);
@@ -371,7 +382,7 @@ fn counted(side: &Side, sheets: &Sheets, (light, hidden): (i32, i32), layers: &m
 }
 
 /// Ends the trapezoid of a gap at height `to`: above, it is another one.
-fn close(sides: &[Side], active: &mut [Active], gap: usize, to: f64, seen: &mut SeenLight) {
+fn close((sides, narrow): (&[Side], f64), active: &mut [Active], gap: usize, to: f64, seen: &mut SeenLight) {
     let Some(&Active { side, passed, from, .. }) = active.get(gap) else { return };
     if passed > 0.0
         && from < to
@@ -382,22 +393,25 @@ fn close(sides: &[Side], active: &mut [Active], gap: usize, to: f64, seen: &mut 
         let at = |s: &Side, y: f64| dvec2(s.x_at(y), y);
         // Rounding may put the ends of two sides that meet on each other's other side.
         let right = |y: f64| dvec2(r.x_at(y).max(l.x_at(y)), y);
-        seen.push([at(l, from), right(from), right(to), at(l, to)].into_iter(), passed);
+        let ring = [at(l, from), right(from), right(to), at(l, to)];
+        if (ring[1].x - ring[0].x).max(ring[2].x - ring[3].x) > narrow {
+            seen.push(ring.into_iter(), passed);
+        }
     }
     active[gap].from = to;
     active[gap].is_new = true;
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use pointillist_dice::convex;
 
     /// Numbers in 0..1, by a linear congruence.
-    struct Numbers(u64);
+    pub(crate) struct Numbers(pub(crate) u64);
 
     impl Numbers {
-        fn next(&mut self) -> f64 {
+        pub(crate) fn next(&mut self) -> f64 {
             self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (self.0 >> 11) as f64 / (1_u64 << 53) as f64
         }
