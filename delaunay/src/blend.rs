@@ -19,6 +19,7 @@ impl Blend {
 
     /// From barycentric coordinates, which may be below 0 by rounding, or NaN where a cell is flat to the last digit:
     /// the first point then has weight 1.
+    #[inline]
     pub(crate) fn clamped(points: [u32; 4], coordinates: [f64; 4]) -> Self {
         let weights = coordinates.map(|w| if w.is_nan() { 0.0 } else { w.clamp(0.0, 1.0) });
         let sum: f64 = weights.iter().sum();

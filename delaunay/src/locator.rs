@@ -83,6 +83,7 @@ impl Locator {
     ///
     /// # Errors
     /// [`DelaunayError::QueryNotFinite`].
+    #[inline]
     pub fn locate(&self, p: DVec3, hint: &mut Hint) -> Result<Blend, DelaunayError> {
         let p = self.local(p)?;
         Ok(self.blend(p, hint))
@@ -92,6 +93,7 @@ impl Locator {
     ///
     /// # Errors
     /// [`DelaunayError::QueryNotFinite`].
+    #[inline]
     pub fn locate_anywhere(&self, p: DVec3) -> Result<Blend, DelaunayError> {
         let p = self.local(p)?;
         Ok(self.blend(p, &mut Hint(self.starts.at(p))))
@@ -146,6 +148,7 @@ impl Locator {
         self.local(p).map_or(Hint::START, |p| Hint(self.starts.at(p)))
     }
 
+    #[inline]
     fn blend(&self, p: DVec3, hint: &mut Hint) -> Blend {
         if self.cells.is_empty() {
             return Blend::of_one(self.only);
@@ -157,13 +160,20 @@ impl Locator {
             }
             End::Outside { cell, facet } => {
                 *hint = Hint(cell);
-                let nearest = self.hull.nearest(&self.vertices, facet, p);
-                let ([a, b, c], [wa, wb, wc]) = (nearest.corners, nearest.weights);
-                Blend::clamped([a, b, c, a], [wa, wb, wc, 0.0])
+                self.blend_outside(p, facet)
             }
         }
     }
 
+    /// Of the nearest point of the hull, found from `facet` on. Apart, so that the way to a cell that holds `p` stays short.
+    #[inline(never)]
+    fn blend_outside(&self, p: DVec3, facet: u32) -> Blend {
+        let nearest = self.hull.nearest(&self.vertices, facet, p);
+        let ([a, b, c], [wa, wb, wc]) = (nearest.corners, nearest.weights);
+        Blend::clamped([a, b, c, a], [wa, wb, wc, 0.0])
+    }
+
+    #[inline]
     fn local(&self, p: DVec3) -> Result<DVec3, DelaunayError> {
         if !p.is_finite() {
             return Err(DelaunayError::QueryNotFinite { index: 0 });

@@ -31,6 +31,7 @@ impl Locator {
     ///
     /// Among Delaunay cells such a walk never visits a cell twice. If rounding makes it do so for as many steps as there are cells, all are
     /// looked at.
+    #[inline]
     pub(crate) fn walk(&self, p: DVec3, start: u32) -> End {
         let mut cell = if (start as usize) < self.cells.len() { start } else { 0 };
         let mut before = cell;
