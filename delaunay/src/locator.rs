@@ -165,7 +165,8 @@ impl Locator {
         }
     }
 
-    /// Of the nearest point of the hull, found from `facet` on. Apart, so that the way to a cell that holds `p` stays short.
+    /// The blend at the point of the hull that is nearest to `p`, found from `facet` on. Not inlined: the usual case, a position
+    /// inside, would be slower.
     #[inline(never)]
     fn blend_outside(&self, p: DVec3, facet: u32) -> Blend {
         let nearest = self.hull.nearest(&self.vertices, facet, p);

@@ -78,7 +78,6 @@ fn soup() -> BoxedStrategy<Soup> {
         .boxed()
 }
 
-/// The same with masks on all surfaces but the ground; they are even, but only asking them tells.
 /// Balls by the dozen between the ground and a lamp: hundreds of outlines before it, which are then asked for cell by cell.
 fn thicket() -> BoxedStrategy<Soup> {
     let ball = (point(), 0.05..0.4f64, prop_oneof![7 => Just(1.0f32), 1 => 0.0..1.0f32]);
@@ -94,6 +93,7 @@ fn thicket() -> BoxedStrategy<Soup> {
         .boxed()
 }
 
+/// [`soup`] with masks on all surfaces but the ground; they are even, but only asking them tells.
 fn masked_soup() -> BoxedStrategy<Soup> {
     let mask = |mut soup: Soup| {
         soup.surfaces[1..].iter_mut().for_each(|s| s.textured_opacity = true);
