@@ -111,6 +111,12 @@ fn append(
             format!("{corners} corners of faces are more than can be numbered"),
         ));
     }
+    // The parser leaves out what faces ask for before the file has any; a look at single lines then names the line.
+    let has_all = |is_asked: bool, list: &[u32]| !is_asked || list.len() == corners;
+    if !has_all(kinds.uv, &model.texcoord_indices) || !has_all(kinds.normal, &model.normal_indices) {
+        let message = "faces use texture coordinates or normals that are defined after them".to_owned();
+        return Err(InputError::of_file(name, message));
+    }
     mesh.positions.extend(model.positions.chunks_exact(3).map(DVec3::from_slice));
     if kinds.uv {
         mesh.uvs.extend(model.texcoords.chunks_exact(2).map(DVec2::from_slice));

@@ -211,6 +211,7 @@ impl<'a> ObjLines<'a> {
 
     fn face<'w>(&mut self, words: impl Iterator<Item = &'w str>) -> Result<(), LineFault> {
         let start = self.out.len();
+        let before = self.ranges;
         let mut kinds = Kinds::ALL;
         let mut corners = 0;
         self.out.push(b'f');
@@ -225,6 +226,8 @@ impl<'a> ObjLines<'a> {
             );
         }
         if self.group != Some((kinds, self.material)) {
+            // The parser ends the group before, and looks up what its faces ask for.
+            check_ranges(&before, "before faces of another kind or material there are")?;
             let group = self.open_group(kinds);
             self.out.splice(start..start, group.into_bytes());
         }
@@ -279,20 +282,20 @@ impl<'a> ObjLines<'a> {
         });
         index as u32
     }
+}
 
-    /// Once all lines are read: an index beyond what the whole file defines.
-    fn check_ranges(&self) -> Result<(), LineFault> {
-        for (range, name) in self.ranges.iter().zip(["vertices", "texture coordinates", "normals"]) {
-            if range.largest > range.count {
-                return Err(LineFault {
-                    line: range.line_of_largest,
-                    message: format!("index {} of {name}, but the file has {}", range.largest, range.count),
-                    help: "indices count from 1",
-                });
-            }
+/// An index of a face beyond what is defined by now; `so_far` introduces how many that are.
+fn check_ranges(ranges: &[Range; 3], so_far: &str) -> Result<(), LineFault> {
+    for (range, name) in ranges.iter().zip(["vertices", "texture coordinates", "normals"]) {
+        if range.largest > range.count {
+            return Err(LineFault {
+                line: range.line_of_largest,
+                message: format!("index {} of {name}, but {so_far} {}", range.largest, range.count),
+                help: "indices count from 1, and what faces use comes before them",
+            });
         }
-        Ok(())
     }
+    Ok(())
 }
 
 fn number_help(keyword: &str) -> &'static str {
@@ -318,7 +321,7 @@ impl BufRead for ObjLines<'_> {
                 Err(fault) => Err(fault),
                 Ok(Some(line)) => self.convert(&line),
                 Ok(None) => {
-                    self.check_ranges().map_err(|fault| self.stop(fault))?;
+                    check_ranges(&self.ranges, "the file has").map_err(|fault| self.stop(fault))?;
                     break;
                 }
             };

@@ -221,3 +221,18 @@ fn indices_without_elements_are_found_by_the_second_look() {
         assert_eq!(error.place.map(|place| place.line), Some(5), "{face}");
     }
 }
+
+/// The parser ends a group where faces of another kind begin, and gives a kind of index that the file has none of by then no list at all.
+#[test]
+fn what_faces_use_is_defined_before_other_faces_begin() {
+    for (face, element) in
+        [("f 1/1 2/1 3/1", "vt 0 0"), ("f 1//1 2//1 3//1", "vn 0 0 1"), ("f 1/2 2/2 3/2", "vt 0 0\nvt 0 1")]
+    {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{face}\nf 1 2 3\n{element}\n");
+        let error = read_obj("a", text.as_bytes()).unwrap_err();
+        assert_eq!(error.place.map(|place| place.line), Some(4), "{face}");
+        // Within the same group they may follow.
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{face}\n{element}\n{face}\n");
+        assert_eq!(read_obj("a", text.as_bytes()).map(|mesh| mesh.triangles.len()), Ok(2), "{face}");
+    }
+}
