@@ -237,18 +237,20 @@ fn agree<'m>(found: &[Found], weights: &mut [(u32, f64)], map: impl Fn(u32) -> O
     // Their votes fall to nothing before they are not asked.
     let judges = found.iter().zip(&*weights).map(|(f, w)| (f, w.1 - JUDGE * most));
     let judges: Vec<(&Found, f64)> = judges.filter(|judge| judge.1 > 0.0).collect();
-    let votes: f64 = judges.iter().map(|judge| judge.1).sum();
+    let enough = SUPPORT * judges.iter().map(|judge| judge.1).sum::<f64>();
     for (of, weight) in found.iter().zip(weights) {
         let doubt = doubt(of);
         if doubt == 0.0 || weight.1 <= 0.0 {
             continue;
         }
-        let sees = |judge: &Found| match map(judge.probe) {
-            Some(map) if judge.probe != of.probe => map.visibility(of.offset - judge.offset),
-            _ => 1.0,
-        };
-        let support: f64 = judges.iter().map(|(judge, vote)| vote * sees(judge)).sum();
-        weight.1 *= 1.0 - doubt * (1.0 - (support / (SUPPORT * votes)).min(1.0));
+        // Its own vote and those of the nearest others, which mostly see it, tend to be enough: the rest is not asked.
+        let mut support = (weight.1 - JUDGE * most).max(0.0);
+        let mut others = judges.iter().filter(|judge| judge.0.probe != of.probe);
+        while support < enough {
+            let Some((judge, vote)) = others.next() else { break };
+            support += vote * map(judge.probe).map_or(1.0, |map| map.visibility(of.offset - judge.offset));
+        }
+        weight.1 *= 1.0 - doubt * (1.0 - (support / enough).min(1.0));
     }
 }
 
