@@ -14,6 +14,7 @@ mod micropoint;
 mod mutants;
 mod quote;
 mod radiosity;
+mod real;
 mod report;
 mod shade;
 mod shadow;
@@ -48,7 +49,7 @@ impl Study {
     }
 }
 
-const STUDIES: [Study; 16] = [
+const STUDIES: [Study; 17] = [
     Study::new("dice", "areas of a triangle in the cells of a grid", dice::run).with_quick(dice::run_quick),
     Study::new(
         "micropoint",
@@ -56,6 +57,7 @@ const STUDIES: [Study; 16] = [
         micropoint::run,
     )
     .with_quick(micropoint::run_quick),
+    Study::new("real", "buildings and trees with textures and masks, against samples", real::run),
     Study::new("shadow", "shadows against a shadow map, area lights against samples", shadow::run),
     Study::new(
         "shade",

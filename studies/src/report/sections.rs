@@ -17,7 +17,8 @@ pub(super) struct Section {
 }
 
 /// Names in the order of the page; those that are not here come last, by name.
-const ORDER: [&str; 17] = [
+const ORDER: [&str; 18] = [
+    "real",
     "micropoint",
     "micropoint-foliage",
     "micropoint-checker",

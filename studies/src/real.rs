@@ -1,0 +1,288 @@
+//! `real`: buildings and trees with their textures and masks, against samples in double precision.
+//!
+//! Surfaces are matt and flat, which is what both ways of drawing agree on: what is left is coverage, occlusion, textures, masks and shadows.
+
+use std::collections::HashSet;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use glam::dvec2;
+use pointillist_cli::scene::{Overrides, load};
+use pointillist_render::{Material, Scene};
+use pointillist_shade::{self as shade, Interpolation};
+use rayon::prelude::*;
+
+use crate::common::against_samples::{CELLS, MORE, Subject, draw_cells};
+use crate::common::data;
+use crate::common::picture::Picture;
+use crate::common::point_sampling::Pinhole;
+use crate::common::provenance::provenance;
+use crate::common::ray_reference::{Tree, sampled, with_shadows};
+use crate::common::report::{Outcome, Row, on_one_thread, scenes, table, time_ratio, write, write_csv};
+use crate::common::timing::{Clock, HOW, timed_by};
+
+/// A scene of the data, and how it is looked at and lit.
+struct View {
+    name: &'static str,
+    mesh: &'static str,
+    /// The rest of a scene file: camera, a sun and a lamp.
+    setting: &'static str,
+}
+
+const VIEWS: [View; 5] = [
+    View {
+        name: "Sponza, Crytek",
+        mesh: "scenes/sponza-crytek/sponza.obj",
+        setting: "[camera]\neye = [-420, 190, -130]\ntarget = [-1400, 260, 60]\nfov = 62\n\
+                  [[light]]\ntype = \"directional\"\ndirection = [0.25, -1, -0.28]\nirradiance = [3.2, 2.9, 2.4]\n\
+                  [[light]]\ntype = \"point\"\nposition = [-900, 260, 40]\nintensity = [160000, 130000, 90000]\n",
+    },
+    View {
+        name: "Sponza, Dabrovic",
+        mesh: "scenes/sponza-dabrovic/sponza.obj",
+        setting: "[camera]\neye = [-11, 3, 1]\ntarget = [6, 4.2, -1.5]\nfov = 60\n\
+                  [[light]]\ntype = \"directional\"\ndirection = [0.3, -1, -0.22]\nirradiance = [3.2, 2.9, 2.4]\n\
+                  [[light]]\ntype = \"point\"\nposition = [-2.5, 2.5, 0.7]\nintensity = [9, 7, 5]\n",
+    },
+    View {
+        name: "Šibenik",
+        mesh: "scenes/sibenik/sibenik.obj",
+        setting: "[camera]\neye = [600, 120, -60]\ntarget = [-100, 90, 20]\nfov = 60\n\
+                  [[light]]\ntype = \"directional\"\ndirection = [-0.35, -1, 0.6]\nirradiance = [3.2, 2.9, 2.4]\n\
+                  [[light]]\ntype = \"point\"\nposition = [250, 160, 50]\nintensity = [60000, 50000, 40000]\n",
+    },
+    View {
+        name: "oak",
+        mesh: "scenes/oaktree/oaktree.obj",
+        setting: "[camera]\neye = [1.2, 1.3, 3.1]\ntarget = [0, 1, 0]\nfov = 36\n\
+                  [[light]]\ntype = \"directional\"\ndirection = [-0.7, -1, -0.8]\nirradiance = [3.4, 3.2, 2.8]\n\
+                  [[light]]\ntype = \"point\"\nposition = [1.1, 0.6, 0.9]\nintensity = [1.5, 1.2, 0.8]\n",
+    },
+    View {
+        name: "pine",
+        mesh: "scenes/pine/pine.obj",
+        setting: "[camera]\neye = [45, 45, 120]\ntarget = [0, 37, 0]\nfov = 36\n\
+                  [[light]]\ntype = \"directional\"\ndirection = [-0.7, -1, -0.8]\nirradiance = [3.4, 3.2, 2.8]\n\
+                  [[light]]\ntype = \"point\"\nposition = [30, 20, 30]\nintensity = [2000, 1600, 1100]\n",
+    },
+];
+
+/// Width and height in pixels.
+const SIZE: [u32; 2] = [640, 360];
+
+/// Samples along a side of a pixel: as a method, and in each half of what is expected.
+const SIDES: [u32; 4] = [1, 2, 4, 8];
+const FINE: u32 = 24;
+
+/// The series of rows by samples.
+const SAMPLES: &str = "samples";
+
+/// Rays along a side of a pixel by which faces in one place are found.
+const FEELERS: u32 = 8;
+
+/// Two faces are in one place that a ray meets within this share of the way to them.
+const TOGETHER: f64 = 1e-9;
+
+type Fault = Box<dyn std::error::Error + Send + Sync>;
+
+/// Measures and writes `real.csv` and `real.md`.
+pub(crate) fn run(out_dir: &Path) -> Outcome {
+    let (mut subjects, mut rows) = (vec![], vec![]);
+    for view in &VIEWS {
+        let Some(scene) = view.scene()? else { continue };
+        eprintln!("real: {}", view.name);
+        let subject = Measured::new(view.name, &scene);
+        rows.extend(subject.rows(&scene)?);
+        subjects.push(subject);
+    }
+    let text = if subjects.is_empty() { data::SKIPPED.to_owned() } else { markdown(&subjects, &rows) };
+    write(out_dir, "real.md", &text)?;
+    if !rows.is_empty() {
+        write_csv(out_dir, "real", &MORE, &rows)?;
+    }
+    Ok(true)
+}
+
+impl View {
+    /// The scene, matt, without triangles that are there twice; `None` where the data are not there.
+    fn scene(&self) -> Result<Option<Scene>, Fault> {
+        let Some(mesh) = data::folder().map(|folder| folder.join(self.mesh)).filter(|path| path.is_file())
+        else {
+            return Ok(None);
+        };
+        let mesh = mesh.canonicalize()?.display().to_string();
+        let path = std::env::temp_dir().join(format!("real-{}.toml", std::process::id()));
+        std::fs::write(&path, format!("{}[[object]]\nmesh = {mesh:?}\n", self.setting))?;
+        let loaded = load(&path, &Overrides::default());
+        std::fs::remove_file(&path)?;
+        let mut scene = loaded?.scene;
+        [scene.image.width, scene.image.height] = SIZE;
+        scene.render.shading = Interpolation::Flat;
+        scene.materials.iter_mut().for_each(make_matt);
+        drop_copies(&mut scene);
+        Ok(Some(scene))
+    }
+}
+
+/// Leaves what both ways of drawing know: the diffuse colour, the opacity, and a texture of each.
+fn make_matt(material: &mut Material) {
+    let surface = shade::Material::lambert(material.surface.diffuse).with_opacity(material.surface.opacity);
+    let mut plain = Material::new(&*material.name, surface);
+    (plain.diffuse_map, plain.opacity_map, plain.wrap) =
+        (material.diffuse_map, material.opacity_map, material.wrap);
+    *material = plain;
+}
+
+/// Takes out triangles with the corners of an earlier one: the leaves of the oak are cards back to back, which samples would count twice.
+fn drop_copies(scene: &mut Scene) {
+    let mesh = &mut scene.mesh;
+    let mut seen = HashSet::new();
+    let is_new = |triangle: &[u32; 3]| {
+        let mut corners = triangle.map(|v| mesh.positions[v as usize].to_array().map(f64::to_bits));
+        corners.sort_unstable();
+        seen.insert(corners)
+    };
+    let kept: Vec<bool> = mesh.triangles.iter().map(is_new).collect();
+    let mut of_triangle = kept.iter();
+    mesh.triangles.retain(|_| of_triangle.next() == Some(&true));
+    retain(&mut mesh.material_of, &kept);
+    retain(&mut mesh.object_of, &kept);
+    retain(&mut mesh.normal_of, &kept);
+    retain(&mut mesh.uv_of, &kept);
+}
+
+/// Keeps what belongs to the triangles that stay, of a list that may be empty.
+fn retain<T>(list: &mut Vec<T>, kept: &[bool]) {
+    let mut of_triangle = kept.iter();
+    list.retain(|_| of_triangle.next() == Some(&true));
+}
+
+/// A scene with what is expected of it.
+struct Measured {
+    subject: Subject,
+    triangles: usize,
+    tree: Tree,
+    /// Pixels in which faces of different looks lie in one place: which of them is seen is not defined.
+    undefined: Vec<bool>,
+}
+
+impl Measured {
+    fn new(name: &str, scene: &Scene) -> Self {
+        let tree = Tree::new(scene);
+        let show = with_shadows(scene, &tree);
+        let halves = [2, 3].map(|seed| sampled(scene, &tree, &show, FINE, seed));
+        drop(show);
+        let undefined = undefined(scene, &tree);
+        let [a, b] = halves;
+        let b = without(&undefined, b, &a);
+        Self {
+            subject: Subject::between(name, [a, b]),
+            triangles: scene.mesh.triangles.len(),
+            tree,
+            undefined,
+        }
+    }
+
+    fn rows(&self, scene: &Scene) -> Result<Vec<Row>, Fault> {
+        let mut rows = vec![];
+        for cells in CELLS {
+            rows.push(self.row("points", format!("{cells}×{cells} cells"), || draw_cells(scene, cells))?);
+        }
+        let show = with_shadows(scene, &self.tree);
+        for n in SIDES {
+            let draw = || Ok::<_, Fault>(sampled(scene, &self.tree, &show, n, 1));
+            rows.push(self.row(SAMPLES, format!("{n}×{n} samples"), draw)?);
+        }
+        Ok(rows)
+    }
+
+    /// One picture on one thread.
+    fn row<E: Send>(
+        &self,
+        series: &str,
+        setting: String,
+        draw: impl FnMut() -> Result<Picture, E> + Send,
+    ) -> Result<Row, E> {
+        let (time, picture) = on_one_thread(|| timed_by(Clock::Processor, draw));
+        let picture = without(&self.undefined, picture?, &self.subject.expected);
+        Ok(self.subject.row_of(series, setting, time, &picture))
+    }
+}
+
+/// The picture with these pixels from another one.
+fn without(undefined: &[bool], mut picture: Picture, other: &Picture) -> Picture {
+    for ((pixel, &of_other), _) in
+        picture.pixels.iter_mut().zip(&other.pixels).zip(undefined).filter(|(_, undefined)| **undefined)
+    {
+        *pixel = of_other;
+    }
+    picture
+}
+
+/// The pixels in which a ray meets two faces at once.
+fn undefined(scene: &Scene, tree: &Tree) -> Vec<bool> {
+    let camera = Pinhole::new(scene);
+    let [width, height] = SIZE.map(|pixels| pixels as usize);
+    let meets_two = |x: usize, y: usize, k: u32| {
+        let at = dvec2(f64::from(k % FEELERS), f64::from(k / FEELERS)) + 0.5;
+        let ray = camera.direction(dvec2(x as f64, y as f64) + at / f64::from(FEELERS));
+        let Some((first, t)) = tree.nearest(camera.eye, ray, 0.0) else { return false };
+        // Edges that two triangles share belong to both of them; these rays meet none but by chance.
+        let before = t * (1.0 - TOGETHER);
+        let others = std::iter::successors(tree.nearest(camera.eye, ray, before), |&(_, last)| {
+            tree.nearest(camera.eye, ray, last)
+        });
+        others.take_while(|other| other.1 < t * (1.0 + TOGETHER)).any(|(other, _)| other != first)
+    };
+    (0..width * height)
+        .into_par_iter()
+        .map(|i| (0..FEELERS * FEELERS).any(|k| meets_two(i % width, i / width, k)))
+        .collect()
+}
+
+fn markdown(subjects: &[Measured], rows: &[Row]) -> String {
+    let mut text = format!(
+        "# Buildings and trees: time against error\n\n`cargo run --release -p studies -- real` made this, on one thread ({}). Processor seconds, with everything that depends on \
+         the geometry and the textures, without reading files. {HOW} Errors are of linear radiance; the bias is the light of the whole picture against that of the expected one, in per cent.\n\n\
+         Models with their textures and masks, in a sun and the light of a lamp, both with shadows; {}×{} pixels; every surface matt, flat shading; of triangles with the same corners one \
+         is kept. Samples go one into each stratum of the pixel, with shadow rays, through a tree of boxes in double precision and without an offset from surfaces: their errors are those of any \
+         ray tracer, their times are not those of the fastest. Expected pictures: 2 × {} samples a pixel; their own error is half of what the halves differ by. Where faces lie in one place and one \
+         another's way, which of them is seen is not defined: pixels in which one of {} rays meets two at once are left out.\n\n\
+         ## Beside samples\n\n\
+         | scene | triangles | pixels left out | reference's own error | method | RMSE | bias % | seconds | 64 samples: RMSE | seconds | same error by samples |\n\
+         | --- | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+        provenance(),
+        SIZE[0],
+        SIZE[1],
+        FINE * FINE,
+        FEELERS * FEELERS,
+    );
+    for scene in scenes(rows) {
+        let Some(measured) = subjects.iter().find(|s| s.subject.name == scene) else { continue };
+        let of_scene = || rows.iter().filter(|r| r.scene == scene);
+        let samples: Vec<&Row> = of_scene().filter(|r| r.series == SAMPLES).collect();
+        let most = samples[samples.len() - 1];
+        let left_out = measured.undefined.iter().filter(|undefined| **undefined).count();
+        for ours in of_scene().filter(|r| r.series != SAMPLES) {
+            let ratio = time_ratio(ours, &samples).map_or_else(
+                || format!("not in {:.1}× the time", most.time.seconds / ours.time.seconds),
+                |ratio| format!("{ratio:.2}× the time"),
+            );
+            let _ = writeln!(
+                text,
+                "| {scene} | {} | {left_out} | {:.1e} | {}, {} | {:.2e} | {} | {} | {:.2e} | {} | {ratio} |",
+                measured.triangles,
+                measured.subject.floor,
+                ours.series,
+                ours.setting,
+                ours.rmse,
+                ours.more[0],
+                ours.time,
+                most.rmse,
+                most.time
+            );
+        }
+    }
+    let _ = write!(text, "\n## All settings\n\n{}", table(&MORE, rows));
+    text
+}
