@@ -170,10 +170,9 @@ impl Measured {
     fn new(name: &str, scene: &Scene) -> Self {
         let tree = Tree::new(scene);
         let show = with_shadows(scene, &tree);
-        let halves = [2, 3].map(|seed| sampled(scene, &tree, &show, FINE, seed));
+        let [a, b] = [2, 3].map(|seed| sampled(scene, &tree, &show, FINE, seed));
         drop(show);
         let undefined = undefined(scene, &tree);
-        let [a, b] = halves;
         let b = without(&undefined, b, &a);
         Self {
             subject: Subject::between(name, [a, b]),
@@ -205,16 +204,20 @@ impl Measured {
     ) -> Result<Row, E> {
         let (time, picture) = on_one_thread(|| timed_by(Clock::Processor, draw));
         let picture = without(&self.undefined, picture?, &self.subject.expected);
-        Ok(self.subject.row_of(series, setting, time, &picture))
+        let mut row = self.subject.row_of(series, setting, time, &picture);
+        // Squares of independent errors add up.
+        row.rmse = (row.rmse.powi(2) - self.subject.floor.powi(2)).max(0.0).sqrt();
+        eprintln!("real: {}: {}: {:.2e} in {} s", self.subject.name, row.setting, row.rmse, row.time);
+        Ok(row)
     }
 }
 
 /// The picture with these pixels from another one.
 fn without(undefined: &[bool], mut picture: Picture, other: &Picture) -> Picture {
-    for ((pixel, &of_other), _) in
-        picture.pixels.iter_mut().zip(&other.pixels).zip(undefined).filter(|(_, undefined)| **undefined)
-    {
-        *pixel = of_other;
+    for ((pixel, of_other), undefined) in picture.pixels.iter_mut().zip(&other.pixels).zip(undefined) {
+        if *undefined {
+            *pixel = *of_other;
+        }
     }
     picture
 }
@@ -246,7 +249,8 @@ fn markdown(subjects: &[Measured], rows: &[Row]) -> String {
          the geometry and the textures, without reading files. {HOW} Errors are of linear radiance; the bias is the light of the whole picture against that of the expected one, in per cent.\n\n\
          Models with their textures and masks, in a sun and the light of a lamp, both with shadows; {}×{} pixels; every surface matt, flat shading; of triangles with the same corners one \
          is kept. Samples go one into each stratum of the pixel, with shadow rays, through a tree of boxes in double precision and without an offset from surfaces: their errors are those of any \
-         ray tracer, their times are not those of the fastest. Expected pictures: 2 × {} samples a pixel; their own error is half of what the halves differ by. Where faces lie in one place and one \
+         ray tracer, their times are not those of the fastest. Expected pictures: 2 × {} samples a pixel; their own error is half of what the halves differ by, \
+         and is taken out of all RMSE (the root of the difference of squares). Where faces lie in one place and one \
          another's way, which of them is seen is not defined: pixels in which one of {} rays meets two at once are left out.\n\n\
          ## Beside samples\n\n\
          | scene | triangles | pixels left out | reference's own error | method | RMSE | bias % | seconds | 64 samples: RMSE | seconds | same error by samples |\n\
