@@ -197,7 +197,7 @@ fn cheapest(items: &[Item], axis: usize, low: f64, high: f64) -> Option<f64> {
         let count: usize = part.iter().map(|slice| slice.1).sum();
         let (low, high) = part.iter().fold(NOWHERE, |(l, h), ((low, high), _)| (l.min(*low), h.max(*high)));
         let size = high - low;
-        (count > 0).then(|| count as f64 * (size.x * size.y + size.y * size.z + size.z * size.x))
+        (count > 0).then_some(count as f64 * (size.x * size.y + size.y * size.z + size.z * size.x))
     };
     let sum = |k: &usize| Some(cost(&slices[..*k])? + cost(&slices[*k..])?);
     let costs = (1..SLICES).filter_map(|k| Some((k, sum(&k)?)));
