@@ -31,14 +31,14 @@ struct View {
 
 const VIEWS: [View; 5] = [
     View {
-        name: "Sponza, Crytek",
+        name: "Crytek's Sponza",
         mesh: "scenes/sponza-crytek/sponza.obj",
         setting: "[camera]\neye = [-420, 190, -130]\ntarget = [-1400, 260, 60]\nfov = 62\n\
                   [[light]]\ntype = \"directional\"\ndirection = [0.25, -1, -0.28]\nirradiance = [3.2, 2.9, 2.4]\n\
                   [[light]]\ntype = \"point\"\nposition = [-900, 260, 40]\nintensity = [160000, 130000, 90000]\n",
     },
     View {
-        name: "Sponza, Dabrovic",
+        name: "Dabrovic's Sponza",
         mesh: "scenes/sponza-dabrovic/sponza.obj",
         setting: "[camera]\neye = [-11, 3, 1]\ntarget = [6, 4.2, -1.5]\nfov = 60\n\
                   [[light]]\ntype = \"directional\"\ndirection = [0.3, -1, -0.22]\nirradiance = [3.2, 2.9, 2.4]\n\
@@ -73,6 +73,9 @@ const SIZE: [u32; 2] = [640, 360];
 /// Samples along a side of a pixel: as a method, and in each half of what is expected.
 const SIDES: [u32; 4] = [1, 2, 4, 8];
 const FINE: u32 = 24;
+
+/// What is less than this share of the reference's own error can't be told from it.
+const TOLD: f64 = 0.3;
 
 /// The series of rows by samples.
 const SAMPLES: &str = "samples";
@@ -206,7 +209,8 @@ impl Measured {
         let picture = without(&self.undefined, picture?, &self.subject.expected);
         let mut row = self.subject.row_of(series, setting, time, &picture);
         // Squares of independent errors add up.
-        row.rmse = (row.rmse.powi(2) - self.subject.floor.powi(2)).max(0.0).sqrt();
+        let floor = self.subject.floor;
+        row.rmse = (row.rmse.powi(2) - floor.powi(2)).max((TOLD * floor).powi(2)).sqrt();
         eprintln!("real: {}: {}: {:.2e} in {} s", self.subject.name, row.setting, row.rmse, row.time);
         Ok(row)
     }
@@ -250,7 +254,7 @@ fn markdown(subjects: &[Measured], rows: &[Row]) -> String {
          Models with their textures and masks, in a sun and the light of a lamp, both with shadows; {}×{} pixels; every surface matt, flat shading; of triangles with the same corners one \
          is kept. Samples go one into each stratum of the pixel, with shadow rays, through a tree of boxes in double precision and without an offset from surfaces: their errors are those of any \
          ray tracer, their times are not those of the fastest. Expected pictures: 2 × {} samples a pixel; their own error is half of what the halves differ by, \
-         and is taken out of all RMSE (the root of the difference of squares). Where faces lie in one place and one \
+         and is taken out of all RMSE (the root of the difference of squares; what is less than {TOLD} times it counts as that). Where faces lie in one place and one \
          another's way, which of them is seen is not defined: pixels in which one of {} rays meets two at once are left out.\n\n\
          ## Beside samples\n\n\
          | scene | triangles | pixels left out | reference's own error | method | RMSE | bias % | seconds | 64 samples: RMSE | seconds | same error by samples |\n\

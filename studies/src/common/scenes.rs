@@ -249,8 +249,9 @@ fn uv_at(scene: &Scene, at: &SurfaceSample) -> Option<DVec2> {
     let [a, b, c] = corners(scene, t);
     let n = (b - a).cross(c - a);
     let share = |p: DVec3, q: DVec3| (p - at.position).cross(q - at.position).dot(n) / n.length_squared();
-    let uv = of.map(|i| scene.mesh.uvs[i as usize]);
-    Some(uv[0] * share(b, c) + uv[1] * share(c, a) + uv[2] * share(a, b))
+    let [first, second, third] = of.map(|i| scene.mesh.uvs[i as usize]);
+    // What is the same at all corners stays so to the last bit: it may be the border of a texture.
+    Some(first + (second - first) * share(c, a) + (third - first) * share(a, b))
 }
 
 /// The same scene turned, scaled and moved: `p ↦ scale · turn · p + shift`. Lights keep what arrives.
