@@ -188,12 +188,12 @@ impl Measured {
     fn rows(&self, scene: &Scene) -> Result<Vec<Row>, Fault> {
         let mut rows = vec![];
         for cells in CELLS {
-            rows.push(self.row("points", format!("{cells}×{cells} cells"), || draw_cells(scene, cells))?);
+            rows.push(self.row("points", format!("{cells}×{cells}"), || draw_cells(scene, cells))?);
         }
         let show = with_shadows(scene, &self.tree);
         for n in SIDES {
             let draw = || Ok::<_, Fault>(sampled(scene, &self.tree, &show, n, 1));
-            rows.push(self.row(SAMPLES, format!("{n}×{n} samples"), draw)?);
+            rows.push(self.row(SAMPLES, format!("{n}×{n}"), draw)?);
         }
         Ok(rows)
     }
@@ -211,7 +211,10 @@ impl Measured {
         // Squares of independent errors add up.
         let floor = self.subject.floor;
         row.rmse = (row.rmse.powi(2) - floor.powi(2)).max((TOLD * floor).powi(2)).sqrt();
-        eprintln!("real: {}: {}: {:.2e} in {} s", self.subject.name, row.setting, row.rmse, row.time);
+        eprintln!(
+            "real: {}: {series}, {}: {:.2e} in {} s",
+            self.subject.name, row.setting, row.rmse, row.time
+        );
         Ok(row)
     }
 }
@@ -253,24 +256,35 @@ fn markdown(subjects: &[Measured], rows: &[Row]) -> String {
          the geometry and the textures, without reading files. {HOW} Errors are of linear radiance; the bias is the light of the whole picture against that of the expected one, in per cent.\n\n\
          Models with their textures and masks, in a sun and the light of a lamp, both with shadows; {}×{} pixels; every surface matt, flat shading; of triangles with the same corners one \
          is kept. Samples go one into each stratum of the pixel, with shadow rays, through a tree of boxes in double precision and without an offset from surfaces: their errors are those of any \
-         ray tracer, their times are not those of the fastest. Expected pictures: 2 × {} samples a pixel; their own error is half of what the halves differ by, \
-         and is taken out of all RMSE (the root of the difference of squares; what is less than {TOLD} times it counts as that). Where faces lie in one place and one \
-         another's way, which of them is seen is not defined: pixels in which one of {} rays meets two at once are left out.\n\n\
-         ## Beside samples\n\n\
-         | scene | triangles | pixels left out | reference's own error | method | RMSE | bias % | seconds | 64 samples: RMSE | seconds | same error by samples |\n\
-         | --- | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+         ray tracer, their times are not those of the fastest. Expected pictures: 2 × {} samples a pixel; their own error is half of what the halves differ by, and is taken out of all RMSE (the \
+         root of the difference of squares; what is less than {TOLD} times it counts as that). Where faces lie in one place, which of them is seen is not defined: pixels in which one of {} rays \
+         meets two at once are left out.\n\n\
+         | scene | triangles | pixels left out | error of what is expected |\n| --- | ---: | ---: | ---: |\n",
         provenance(),
         SIZE[0],
         SIZE[1],
         FINE * FINE,
         FEELERS * FEELERS,
     );
+    for Measured { subject, triangles, undefined, .. } in subjects {
+        let left_out = undefined.iter().filter(|undefined| **undefined).count();
+        let _ = writeln!(text, "| {} | {triangles} | {left_out} | {:.1e} |", subject.name, subject.floor);
+    }
+    text += &beside_samples(rows);
+    let _ = write!(text, "\n## All settings\n\n{}", table(&MORE, rows));
+    text
+}
+
+/// Every row of ours beside the most samples, and the time that samples need for the same error.
+fn beside_samples(rows: &[Row]) -> String {
+    let mut text = "\n## Beside samples\n\n\
+         | scene | cells | RMSE | bias % | seconds | 64 samples: RMSE | seconds | same error by samples |\n\
+         | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
+        .to_owned();
     for scene in scenes(rows) {
-        let Some(measured) = subjects.iter().find(|s| s.subject.name == scene) else { continue };
         let of_scene = || rows.iter().filter(|r| r.scene == scene);
         let samples: Vec<&Row> = of_scene().filter(|r| r.series == SAMPLES).collect();
         let most = samples[samples.len() - 1];
-        let left_out = measured.undefined.iter().filter(|undefined| **undefined).count();
         for ours in of_scene().filter(|r| r.series != SAMPLES) {
             let ratio = time_ratio(ours, &samples).map_or_else(
                 || format!("not in {:.1}× the time", most.time.seconds / ours.time.seconds),
@@ -278,19 +292,10 @@ fn markdown(subjects: &[Measured], rows: &[Row]) -> String {
             );
             let _ = writeln!(
                 text,
-                "| {scene} | {} | {left_out} | {:.1e} | {}, {} | {:.2e} | {} | {} | {:.2e} | {} | {ratio} |",
-                measured.triangles,
-                measured.subject.floor,
-                ours.series,
-                ours.setting,
-                ours.rmse,
-                ours.more[0],
-                ours.time,
-                most.rmse,
-                most.time
+                "| {scene} | {} | {:.2e} | {} | {} | {:.2e} | {} | {ratio} |",
+                ours.setting, ours.rmse, ours.more[0], ours.time, most.rmse, most.time
             );
         }
     }
-    let _ = write!(text, "\n## All settings\n\n{}", table(&MORE, rows));
     text
 }
