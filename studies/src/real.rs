@@ -7,63 +7,70 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use glam::dvec2;
-use pointillist_cli::scene::{Overrides, load};
 use pointillist_render::{Material, Scene};
 use pointillist_shade::{self as shade, Interpolation};
 use rayon::prelude::*;
 
-use crate::common::against_samples::{CELLS, MORE, Subject, draw_cells};
+use crate::common::against_samples::{CELLS, MORE, SAMPLES, Subject, draw_cells, same_error};
 use crate::common::data;
 use crate::common::picture::Picture;
 use crate::common::point_sampling::Pinhole;
 use crate::common::provenance::provenance;
 use crate::common::ray_reference::{Tree, sampled, with_shadows};
-use crate::common::report::{Outcome, Row, on_one_thread, scenes, table, time_ratio, write, write_csv};
+use crate::common::report::{Outcome, Row, on_one_thread, scenes, table, write, write_csv};
+use crate::common::scene_text::read_text;
 use crate::common::timing::{Clock, HOW, timed_by};
 
 /// A scene of the data, and how it is looked at and lit.
 struct View {
     name: &'static str,
     mesh: &'static str,
-    /// The rest of a scene file: camera, a sun and a lamp.
-    setting: &'static str,
+    /// Values of a scene file: `eye`, `target` and `fov` of the camera.
+    camera: [&'static str; 3],
+    /// `direction` and `irradiance`.
+    sun: [&'static str; 2],
+    /// `position` and `intensity`.
+    lamp: [&'static str; 2],
 }
+
+/// The sun of the buildings, and of the trees.
+const IRRADIANCE: [&str; 2] = ["[3.2, 2.9, 2.4]", "[3.4, 3.2, 2.8]"];
 
 const VIEWS: [View; 5] = [
     View {
         name: "Crytek's Sponza",
         mesh: "scenes/sponza-crytek/sponza.obj",
-        setting: "[camera]\neye = [-420, 190, -130]\ntarget = [-1400, 260, 60]\nfov = 62\n\
-                  [[light]]\ntype = \"directional\"\ndirection = [0.25, -1, -0.28]\nirradiance = [3.2, 2.9, 2.4]\n\
-                  [[light]]\ntype = \"point\"\nposition = [-900, 260, 40]\nintensity = [160000, 130000, 90000]\n",
+        camera: ["[-420, 190, -130]", "[-1400, 260, 60]", "62"],
+        sun: ["[0.25, -1, -0.28]", IRRADIANCE[0]],
+        lamp: ["[-900, 260, 40]", "[160000, 130000, 90000]"],
     },
     View {
         name: "Dabrovic's Sponza",
         mesh: "scenes/sponza-dabrovic/sponza.obj",
-        setting: "[camera]\neye = [-11, 3, 1]\ntarget = [6, 4.2, -1.5]\nfov = 60\n\
-                  [[light]]\ntype = \"directional\"\ndirection = [0.3, -1, -0.22]\nirradiance = [3.2, 2.9, 2.4]\n\
-                  [[light]]\ntype = \"point\"\nposition = [-2.5, 2.5, 0.7]\nintensity = [9, 7, 5]\n",
+        camera: ["[-11, 3, 1]", "[6, 4.2, -1.5]", "60"],
+        sun: ["[0.3, -1, -0.22]", IRRADIANCE[0]],
+        lamp: ["[-2.5, 2.5, 0.7]", "[9, 7, 5]"],
     },
     View {
         name: "Šibenik",
         mesh: "scenes/sibenik/sibenik.obj",
-        setting: "[camera]\neye = [600, 120, -60]\ntarget = [-100, 90, 20]\nfov = 60\n\
-                  [[light]]\ntype = \"directional\"\ndirection = [-0.35, -1, 0.6]\nirradiance = [3.2, 2.9, 2.4]\n\
-                  [[light]]\ntype = \"point\"\nposition = [250, 160, 50]\nintensity = [60000, 50000, 40000]\n",
+        camera: ["[600, 120, -60]", "[-100, 90, 20]", "60"],
+        sun: ["[-0.35, -1, 0.6]", IRRADIANCE[0]],
+        lamp: ["[250, 160, 50]", "[60000, 50000, 40000]"],
     },
     View {
         name: "oak",
         mesh: "scenes/oaktree/oaktree.obj",
-        setting: "[camera]\neye = [1.2, 1.3, 3.1]\ntarget = [0, 1, 0]\nfov = 36\n\
-                  [[light]]\ntype = \"directional\"\ndirection = [-0.7, -1, -0.8]\nirradiance = [3.4, 3.2, 2.8]\n\
-                  [[light]]\ntype = \"point\"\nposition = [1.1, 0.6, 0.9]\nintensity = [1.5, 1.2, 0.8]\n",
+        camera: ["[1.2, 1.3, 3.1]", "[0, 1, 0]", "36"],
+        sun: ["[-0.7, -1, -0.8]", IRRADIANCE[1]],
+        lamp: ["[1.1, 0.6, 0.9]", "[1.5, 1.2, 0.8]"],
     },
     View {
         name: "pine",
         mesh: "scenes/pine/pine.obj",
-        setting: "[camera]\neye = [45, 45, 120]\ntarget = [0, 37, 0]\nfov = 36\n\
-                  [[light]]\ntype = \"directional\"\ndirection = [-0.7, -1, -0.8]\nirradiance = [3.4, 3.2, 2.8]\n\
-                  [[light]]\ntype = \"point\"\nposition = [30, 20, 30]\nintensity = [2000, 1600, 1100]\n",
+        camera: ["[45, 45, 120]", "[0, 37, 0]", "36"],
+        sun: ["[-0.7, -1, -0.8]", IRRADIANCE[1]],
+        lamp: ["[30, 20, 30]", "[2000, 1600, 1100]"],
     },
 ];
 
@@ -77,9 +84,6 @@ const FINE: u32 = 24;
 /// What is less than this share of the reference's own error can't be told from it.
 const TOLD: f64 = 0.3;
 
-/// The series of rows by samples.
-const SAMPLES: &str = "samples";
-
 /// Rays along a side of a pixel by which faces in one place are found.
 const FEELERS: u32 = 8;
 
@@ -88,42 +92,46 @@ const TOGETHER: f64 = 1e-9;
 
 type Fault = Box<dyn std::error::Error + Send + Sync>;
 
-/// Measures and writes `real.csv` and `real.md`.
+/// Measures and writes `real.csv` and `real.md`; without the data it says so and writes nothing.
 pub(crate) fn run(out_dir: &Path) -> Outcome {
-    let (mut subjects, mut rows) = (vec![], vec![]);
+    let Some(folder) = data::folder() else {
+        eprintln!("real: {}", data::SKIPPED);
+        return Ok(true);
+    };
+    if let Some(missing) = VIEWS.iter().map(|view| folder.join(view.mesh)).find(|mesh| !mesh.is_file()) {
+        eprintln!("real: skipped, there is no {}", missing.display());
+        return Ok(true);
+    }
+    let (mut measured, mut rows) = (vec![], vec![]);
     for view in &VIEWS {
-        let Some(scene) = view.scene()? else { continue };
         eprintln!("real: {}", view.name);
+        let scene = view.scene(&folder)?;
         let subject = Measured::new(view.name, &scene);
         rows.extend(subject.rows(&scene)?);
-        subjects.push(subject);
+        measured.push(subject);
     }
-    let text = if subjects.is_empty() { data::SKIPPED.to_owned() } else { markdown(&subjects, &rows) };
-    write(out_dir, "real.md", &text)?;
-    if !rows.is_empty() {
-        write_csv(out_dir, "real", &MORE, &rows)?;
-    }
+    write_csv(out_dir, "real", &MORE, &rows)?;
+    write(out_dir, "real.md", &markdown(&measured, &rows))?;
     Ok(true)
 }
 
 impl View {
-    /// The scene, matt, without triangles that are there twice; `None` where the data are not there.
-    fn scene(&self) -> Result<Option<Scene>, Fault> {
-        let Some(mesh) = data::folder().map(|folder| folder.join(self.mesh)).filter(|path| path.is_file())
-        else {
-            return Ok(None);
-        };
-        let mesh = mesh.canonicalize()?.display().to_string();
-        let path = std::env::temp_dir().join(format!("real-{}.toml", std::process::id()));
-        std::fs::write(&path, format!("{}[[object]]\nmesh = {mesh:?}\n", self.setting))?;
-        let loaded = load(&path, &Overrides::default());
-        std::fs::remove_file(&path)?;
-        let mut scene = loaded?.scene;
+    /// The scene, matt, without triangles that are there twice.
+    fn scene(&self, folder: &Path) -> Result<Scene, Fault> {
+        let mesh = folder.join(self.mesh).canonicalize()?.display().to_string();
+        let ([eye, target, fov], [direction, irradiance], [position, intensity]) =
+            (self.camera, self.sun, self.lamp);
+        let mut scene = read_text(&format!(
+            "[camera]\neye = {eye}\ntarget = {target}\nfov = {fov}\n\
+             [[light]]\ntype = \"directional\"\ndirection = {direction}\nirradiance = {irradiance}\n\
+             [[light]]\ntype = \"point\"\nposition = {position}\nintensity = {intensity}\n\
+             [[object]]\nmesh = {mesh:?}\n"
+        ))?;
         [scene.image.width, scene.image.height] = SIZE;
         scene.render.shading = Interpolation::Flat;
         scene.materials.iter_mut().for_each(make_matt);
         drop_copies(&mut scene);
-        Ok(Some(scene))
+        Ok(scene)
     }
 }
 
@@ -146,8 +154,7 @@ fn drop_copies(scene: &mut Scene) {
         seen.insert(corners)
     };
     let kept: Vec<bool> = mesh.triangles.iter().map(is_new).collect();
-    let mut of_triangle = kept.iter();
-    mesh.triangles.retain(|_| of_triangle.next() == Some(&true));
+    retain(&mut mesh.triangles, &kept);
     retain(&mut mesh.material_of, &kept);
     retain(&mut mesh.object_of, &kept);
     retain(&mut mesh.normal_of, &kept);
@@ -165,7 +172,7 @@ struct Measured {
     subject: Subject,
     triangles: usize,
     tree: Tree,
-    /// Pixels in which faces of different looks lie in one place: which of them is seen is not defined.
+    /// Pixels in which two faces lie in one place: which of them is seen is not defined.
     undefined: Vec<bool>,
 }
 
@@ -232,17 +239,13 @@ fn without(undefined: &[bool], mut picture: Picture, other: &Picture) -> Picture
 /// The pixels in which a ray meets two faces at once.
 fn undefined(scene: &Scene, tree: &Tree) -> Vec<bool> {
     let camera = Pinhole::new(scene);
-    let [width, height] = SIZE.map(|pixels| pixels as usize);
+    let [width, height] = [scene.image.width, scene.image.height].map(|pixels| pixels as usize);
     let meets_two = |x: usize, y: usize, k: u32| {
         let at = dvec2(f64::from(k % FEELERS), f64::from(k / FEELERS)) + 0.5;
         let ray = camera.direction(dvec2(x as f64, y as f64) + at / f64::from(FEELERS));
-        let Some((first, t)) = tree.nearest(camera.eye, ray, 0.0) else { return false };
         // Edges that two triangles share belong to both of them; these rays meet none but by chance.
-        let before = t * (1.0 - TOGETHER);
-        let others = std::iter::successors(tree.nearest(camera.eye, ray, before), |&(_, last)| {
-            tree.nearest(camera.eye, ray, last)
-        });
-        others.take_while(|other| other.1 < t * (1.0 + TOGETHER)).any(|(other, _)| other != first)
+        let near = |t: f64| [t * (1.0 - TOGETHER), t * (1.0 + TOGETHER)];
+        tree.nearest(camera.eye, ray, 0.0).is_some_and(|(_, t)| tree.count(camera.eye, ray, near(t)) > 1)
     };
     (0..width * height)
         .into_par_iter()
@@ -250,7 +253,7 @@ fn undefined(scene: &Scene, tree: &Tree) -> Vec<bool> {
         .collect()
 }
 
-fn markdown(subjects: &[Measured], rows: &[Row]) -> String {
+fn markdown(measured: &[Measured], rows: &[Row]) -> String {
     let mut text = format!(
         "# Buildings and trees: time against error\n\n`cargo run --release -p studies -- real` made this, on one thread ({}). Processor seconds, with everything that depends on \
          the geometry and the textures, without reading files. {HOW} Errors are of linear radiance; the bias is the light of the whole picture against that of the expected one, in per cent.\n\n\
@@ -266,7 +269,7 @@ fn markdown(subjects: &[Measured], rows: &[Row]) -> String {
         FINE * FINE,
         FEELERS * FEELERS,
     );
-    for Measured { subject, triangles, undefined, .. } in subjects {
+    for Measured { subject, triangles, undefined, .. } in measured {
         let left_out = undefined.iter().filter(|undefined| **undefined).count();
         let _ = writeln!(text, "| {} | {triangles} | {left_out} | {:.1e} |", subject.name, subject.floor);
     }
@@ -286,10 +289,7 @@ fn beside_samples(rows: &[Row]) -> String {
         let samples: Vec<&Row> = of_scene().filter(|r| r.series == SAMPLES).collect();
         let most = samples[samples.len() - 1];
         for ours in of_scene().filter(|r| r.series != SAMPLES) {
-            let ratio = time_ratio(ours, &samples).map_or_else(
-                || format!("not in {:.1}× the time", most.time.seconds / ours.time.seconds),
-                |ratio| format!("{ratio:.2}× the time"),
-            );
+            let ratio = same_error(ours, &samples);
             let _ = writeln!(
                 text,
                 "| {scene} | {} | {:.2e} | {} | {} | {:.2e} | {} | {ratio} |",
@@ -298,4 +298,29 @@ fn beside_samples(rows: &[Row]) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, dvec3};
+
+    use super::*;
+    use crate::common::scenes::Sketch;
+
+    #[test]
+    fn faces_in_one_place_are_found_and_copies_dropped() {
+        let mut sketch = Sketch::new(dvec3(0.0, 0.0, 5.0), DVec3::ZERO, 40.0, 16);
+        let white = sketch.matt(0.8, 1.0);
+        let square =
+            [dvec3(-9.0, -9.0, 0.0), dvec3(0.1, -9.0, 0.0), dvec3(0.1, 9.0, 0.0), dvec3(-9.0, 9.0, 0.0)];
+        sketch.polygon(&square, white);
+        sketch.textured_back(&square, white);
+        let mut scene = sketch.scene;
+        let shown = undefined(&scene, &Tree::new(&scene));
+        assert!(shown[..7].iter().all(|both| *both) && !shown[15]);
+        drop_copies(&mut scene);
+        assert_eq!(scene.mesh.triangles.len(), 2);
+        assert_eq!(scene.mesh.material_of.len(), 2);
+        assert!(!undefined(&scene, &Tree::new(&scene)).contains(&true));
+    }
 }

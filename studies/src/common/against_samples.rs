@@ -20,7 +20,7 @@ pub(crate) const CELLS: [u32; 3] = [1, 2, 4];
 const SIDES: [u32; 5] = [1, 2, 4, 8, 16];
 
 /// The series of [`Subject::samples`].
-const SAMPLES: &str = "samples";
+pub(crate) const SAMPLES: &str = "samples";
 
 /// A scene, and the picture that all methods are compared with.
 pub(crate) struct Subject {
@@ -97,8 +97,7 @@ pub(crate) fn summary(subjects: &[Subject], rows: &[Row]) -> String {
         let most = samples[samples.len() - 1];
         let floor = subjects.iter().find(|s| s.name == scene).map_or(f64::NAN, |s| s.floor);
         for ours in of_scene.iter().filter(|r| r.series != SAMPLES) {
-            let ratio = time_ratio(ours, &samples)
-                .map_or_else(|| not_reached(ours, samples[0], most), |r| format!("{r:.2}× the time"));
+            let ratio = same_error(ours, &samples);
             let _ = writeln!(
                 text,
                 "| {scene} | {floor:.1e} | {}, {} | {:.2e} | {} | {} | {:.2e} | {} | {ratio} |",
@@ -109,9 +108,14 @@ pub(crate) fn summary(subjects: &[Subject], rows: &[Row]) -> String {
     text
 }
 
-fn not_reached(ours: &Row, fewest: &Row, most: &Row) -> String {
-    if ours.rmse > fewest.rmse {
+/// The time that samples, from the fewest to the most, need for the same error, in words.
+pub(crate) fn same_error(ours: &Row, samples: &[&Row]) -> String {
+    if let Some(ratio) = time_ratio(ours, samples) {
+        return format!("{ratio:.2}× the time");
+    }
+    if ours.rmse > samples[0].rmse {
         return "one sample has less".to_owned();
     }
+    let most = samples[samples.len() - 1];
     format!("not in {:.1}× the time", most.time.seconds / ours.time.seconds)
 }

@@ -25,6 +25,7 @@ pub(crate) mod provenance;
 pub(crate) mod ray_reference;
 pub(crate) mod report;
 pub(crate) mod rooms;
+pub(crate) mod scene_text;
 pub(crate) mod scenes;
 pub(crate) mod similarity;
 pub(crate) mod standing;

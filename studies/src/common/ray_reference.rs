@@ -102,6 +102,16 @@ impl Tree {
         self.nearest_hit(origin, direction, beyond).map(|hit| (hit.triangle, hit.t))
     }
 
+    /// How many triangles a ray meets between two distances, in lengths of `direction`.
+    pub(crate) fn count(&self, origin: DVec3, direction: DVec3, [from, to]: [f64; 2]) -> usize {
+        let mut count = 0;
+        self.hits(Ray { origin, direction, inverse: direction.recip(), end: to }, |hit| {
+            count += usize::from(hit.t > from);
+            to
+        });
+        count
+    }
+
     fn nearest_hit(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<Hit> {
         let mut best = None;
         let ray = Ray { origin, direction, inverse: direction.recip(), end: f64::INFINITY };
@@ -345,4 +355,48 @@ fn color(scene: &Scene, tree: &Tree, camera: &Pinhole, pixel: DVec2, show: &Show
         beyond = t * (1.0 + 1e-12);
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::common::scenes::Sketch;
+    use glam::dvec3;
+
+    /// The nearest hit of all, one triangle after the other.
+    fn by_trying_all(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(u32, f64)> {
+        let ray = Ray { origin, direction, inverse: direction.recip(), end: f64::INFINITY };
+        let hits = (0..scene.mesh.triangles.len())
+            .filter_map(|i| Some((i as u32, hit(&ray, &corners(scene, i))?.0)));
+        hits.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    #[test]
+    fn the_tree_finds_what_trying_all_finds() {
+        let mut sketch = Sketch::new(dvec3(0.0, 0.0, 5.0), DVec3::ZERO, 40.0, 16);
+        let white = sketch.matt(0.8, 1.0);
+        sketch.sphere(DVec3::ZERO, 1.0, 4, white);
+        sketch.cuboid(dvec3(-9.0, -1.0, -9.0), dvec3(9.0, -0.99, 9.0), white);
+        // Nothing divides triangles whose middles are in one place.
+        for i in 1..=100 {
+            let size = 0.01 * f64::from(i);
+            let corners =
+                [dvec3(-size, 2.0, -size), dvec3(2.0 * size, 2.0, -size), dvec3(-size, 2.0, 2.0 * size)];
+            sketch.polygon(&corners, white);
+        }
+        let tree = Tree::new(&sketch.scene);
+        let mut state = 1;
+        let mut found = 0;
+        for _ in 0..2000 {
+            let mut any = || dvec3(random(&mut state), random(&mut state), random(&mut state)) * 2.0 - 1.0;
+            let (origin, direction) = (any() * 4.0, any());
+            let [by_tree, wanted] = [
+                tree.nearest(origin, direction, 0.0).map(|hit| hit.1),
+                by_trying_all(&sketch.scene, origin, direction).map(|hit| hit.1),
+            ];
+            assert_eq!(by_tree, wanted, "from {origin} along {direction}");
+            found += usize::from(wanted.is_some());
+        }
+        assert!(found > 500, "{found} rays met something");
+    }
 }

@@ -1,10 +1,8 @@
 //! Scenes in which probes are placed, and what is right and wrong in them.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use glam::{DVec3, Vec3, dvec3};
-use pointillist_cli::scene::{Overrides, load};
 use pointillist_radiosity::{Scene as Patches, SceneOptions, SolveOptions};
 use pointillist_render::{
     Ambient, AmbientLight, CaptureOptions, Lamps, Lightmap, Prepared, RenderError, Scene, Unbaked,
@@ -18,6 +16,7 @@ use rayon::prelude::*;
 use crate::common::data;
 use crate::common::ray_reference::Tree;
 use crate::common::rooms::{ROOMS, THIN_WALL, WALL, basic, thin_wall_rooms, two_rooms};
+use crate::common::scene_text::read_text;
 use crate::common::scenes::corners;
 use crate::shprobe::rays::{Look, look_by_rays};
 
@@ -173,15 +172,6 @@ pub(crate) fn from_data(mesh: &str, scale: f64, camera: &str, lights: &str) -> O
         path.display().to_string()
     );
     read_text(&text).map_err(|error| eprintln!("shprobe: {mesh}: {error}")).ok()
-}
-
-/// A scene from the text of its file.
-pub(crate) fn read_text(text: &str) -> Result<Scene, Box<dyn std::error::Error + Send + Sync>> {
-    let path = std::env::temp_dir().join(format!("shprobe-{}.toml", std::process::id()));
-    std::fs::write(&path, text)?;
-    let scene = load(Path::new(&path), &Overrides::default());
-    std::fs::remove_file(&path)?;
-    Ok(scene?.scene)
 }
 
 /// Probes with what they saw.
