@@ -38,14 +38,24 @@ impl Face {
     /// The point of the face at a grid position.
     #[must_use]
     pub fn point(&self, lens: &Lens, grid: DVec2) -> SurfacePoint {
+        self.point_by(&Barycentric::new(self.corners), lens, grid)
+    }
+
+    /// The points of the face at several grid positions.
+    pub fn points<'a>(
+        &'a self,
+        lens: &'a Lens,
+        grid: impl Iterator<Item = DVec2> + 'a,
+    ) -> impl Iterator<Item = SurfacePoint> + 'a {
+        let barycentric = Barycentric::new(self.corners);
+        grid.map(move |at| self.point_by(&barycentric, lens, at))
+    }
+
+    fn point_by(&self, barycentric: &Barycentric, lens: &Lens, grid: DVec2) -> SurfacePoint {
         let nearness = self.nearness_at(grid);
         let rational = if lens.kind == LensKind::Perspective { nearness } else { 1.0 };
-        SurfacePoint {
-            grid,
-            nearness,
-            rational,
-            barycentric: self.barycentric(lens.unproject(grid, nearness)),
-        }
+        let barycentric = barycentric.of(lens.unproject(grid, nearness));
+        SurfacePoint { grid, nearness, rational, barycentric }
     }
 
     /// An order of faces that does not depend on the order of triangles: by surface, then by place. The
@@ -62,11 +72,29 @@ impl Face {
     /// Barycentric coordinates of a point of the plane (lens frame), kept within the triangle.
     #[must_use]
     pub fn barycentric(&self, p: DVec3) -> DVec3 {
-        let [a, b, c] = self.corners;
+        Barycentric::new(self.corners).of(p)
+    }
+}
+
+/// Barycentric coordinates in a triangle.
+struct Barycentric {
+    corners: [DVec3; 3],
+    /// For each corner the vector across the edge opposite it, in the plane: the distance from that edge is along it.
+    across: [DVec3; 3],
+}
+
+impl Barycentric {
+    #[inline]
+    fn new([a, b, c]: [DVec3; 3]) -> Self {
         let n = (b - a).cross(c - a);
-        let weights =
-            DVec3::new(n.dot((b - p).cross(c - p)), n.dot((c - p).cross(a - p)), n.dot((a - p).cross(b - p)))
-                .max(DVec3::ZERO);
+        Self { corners: [a, b, c], across: [(c - b).cross(n), (a - c).cross(n), (b - a).cross(n)] }
+    }
+
+    /// Those of a point of the plane, kept within the triangle.
+    #[inline]
+    fn of(&self, p: DVec3) -> DVec3 {
+        let ([a, b, c], [from_bc, from_ca, from_ab]) = (self.corners, self.across);
+        let weights = DVec3::new(from_bc.dot(b - p), from_ca.dot(c - p), from_ab.dot(a - p)).max(DVec3::ZERO);
         let sum = weights.element_sum();
         if sum > 0.0 && sum.is_finite() { weights / sum } else { DVec3::splat(1.0 / 3.0) }
     }
@@ -167,9 +195,8 @@ impl Face {
     ) -> T {
         let zero = SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO };
         let mut points = [zero; convex::MAX_VERTICES];
-        for (to, &v) in points.iter_mut().zip(outline) {
-            *to = self.point(lens, v + corner);
-        }
+        let found = self.points(lens, outline.iter().map(|&v| v + corner));
+        points.iter_mut().zip(found).for_each(|(to, point)| *to = point);
         ask(&points[..outline.len()])
     }
 }

@@ -6,7 +6,7 @@
 //! means of their products say so (LEAN mapping, M. Olano, D. Baker, I3D 2010).
 
 use crate::scene::{Channel, Details, Map, MapPlace, Material, Scene, Texels, Texture, unit_of_byte};
-use crate::texel_sums::{Lazy, color_sums, values, when_needed};
+use crate::texel_sums::{self, Lazy, color_sums, when_needed};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec2, Vec3, Vec4, vec3};
 use pointillist_micropoint::{MicropointError, SurfacePoint, TexelSums};
@@ -176,8 +176,12 @@ fn number_sums(map: Source, t: &Texture) -> Result<TexelSums<1>, MicropointError
     let wrap = texel_wrap(map.wrap);
     let Texture { width, height, .. } = *t;
     if let Texels::Gray8(texels) = &t.texels {
-        let values = values(|byte| map.channel.of(Vec3::splat(unit_of_byte(byte)).extend(1.0)));
-        return TexelSums::from_bytes(width, height, wrap, texels.clone(), &values);
+        let values = texel_sums::values(|byte| map.channel.of(Vec3::splat(unit_of_byte(byte)).extend(1.0)));
+        let texels = texels.clone();
+        return match values == texel_sums::values(unit_of_byte) {
+            true => TexelSums::of_levels(width, height, wrap, texels),
+            false => TexelSums::from_bytes(width, height, wrap, texels, &values),
+        };
     }
     TexelSums::new(width, height, wrap, |x, y| [map.channel.of(t.texel(x, y))])
 }

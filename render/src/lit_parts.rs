@@ -80,7 +80,7 @@ impl LitParts {
 
     fn push(&mut self, of: &LitFragments<'_>, outline: &[DVec2], weight: f64) -> &[SurfacePoint] {
         let first = self.corners.len();
-        self.corners.extend(outline.iter().map(|&v| of.face.point(of.tile.lens(), v)));
+        self.corners.extend(of.face.points(of.tile.lens(), outline.iter().copied()));
         self.outlines.extend(outline);
         self.list.push((first..self.corners.len(), weight));
         &self.corners[first..]

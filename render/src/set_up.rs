@@ -134,7 +134,7 @@ impl Shader<'_> {
         let lightest = heaviest_weights(fragments, limit);
         for fragment in fragments.iter().filter(|f| f.weight >= lightest).take(limit) {
             polygon.clear();
-            polygon.extend(tile.outline(fragment).iter().map(|&v| face.point(tile.lens(), v)));
+            polygon.extend(face.points(tile.lens(), tile.outline(fragment).iter().copied()));
             each(polygon, fragment.weight as f32);
         }
     }

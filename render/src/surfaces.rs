@@ -2,7 +2,7 @@
 
 use crate::copies::{MaskedCopy, OtherSide, masked_copies, other_sides};
 use crate::detail_maps::{DetailMaps, DetailTable};
-use crate::scene::{Details, MapPlace, Material, Mesh, Scene, Storage, Texture};
+use crate::scene::{Details, MapPlace, Material, Mesh, Scene, Storage, Texels, Texture};
 use crate::texel_sums::{Lazy, color_sums, opacity_sums, when_needed};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec3, Vec4};
@@ -30,7 +30,7 @@ enum Textured {
     },
     /// Both, in different places of the surface: texels of the one have no texel of the other.
     Apart {
-        color: Lazy<TexelSums<3>>,
+        color: Box<Lazy<TexelSums<3>>>,
         opacity: Lazy<MaskSums>,
     },
 }
@@ -66,7 +66,7 @@ impl MaskedColor {
             t.texel(scale(x, width, t.width), scale(y, height, t.height))
         };
         let range = Cell::new((Vec3::INFINITY, Vec3::ZERO));
-        let premultiplied = TexelSums::new(width, height, wrap, |x, y| {
+        let premultiplied_at = |x, y| {
             let alpha = at(mask, x, y).w;
             if alpha == 0.0 {
                 return [0.0; 4];
@@ -74,7 +74,12 @@ impl MaskedColor {
             let color = at(color, x, y).truncate();
             range.set((range.get().0.min(color), range.get().1.max(color)));
             (color * alpha).extend(alpha).to_array()
-        })?;
+        };
+        let is_float = |t: &Texture| matches!(t.texels, Texels::Float(_));
+        let premultiplied = match is_float(color) || is_float(mask) {
+            true => TexelSums::new(width, height, wrap, premultiplied_at),
+            false => TexelSums::up_to(1.0, width, height, wrap, premultiplied_at),
+        }?;
         let range = range.get();
         let whole = Vec4::from_array(premultiplied.whole_mean().map(|v| v as f32));
         let mean = if whole.w > 0.0 { whole.truncate() / whole.w } else { Vec3::ZERO };
@@ -258,14 +263,17 @@ impl Surfaces {
             || self.details(triangle).is_some_and(DetailMaps::any)
     }
 
+    fn plain_color(&self, triangle: u32, polygon: &[SurfacePoint], sums: &TexelSums<3>) -> Vec3 {
+        let place = &self.places(triangle).color;
+        Vec3::from_array(self.still.uvs.mean(triangle, polygon, sums, place).map(|v| v as f32))
+    }
+
     /// The factor on a triangle's diffuse albedo: the mean colour over a polygon of it, weighted by the mask's opacity if there is one.
     pub(crate) fn color(&self, triangle: u32, polygon: &[SurfacePoint]) -> Vec3 {
         match self.textured(triangle) {
             Textured::Nothing | Textured::Opacity(_) => Vec3::ONE,
-            Textured::Color(sums) | Textured::Apart { color: sums, .. } => {
-                let place = &self.places(triangle).color;
-                Vec3::from_array(self.still.uvs.mean(triangle, polygon, sums, place).map(|v| v as f32))
-            }
+            Textured::Color(sums) => self.plain_color(triangle, polygon, sums),
+            Textured::Apart { color, .. } => self.plain_color(triangle, polygon, color),
             Textured::Masked { color, .. } => {
                 let place = &self.places(triangle).color;
                 let mean = self.still.uvs.mean(triangle, polygon, &color.premultiplied, place);
@@ -378,7 +386,7 @@ fn textured(material: &Material, textures: &[Texture]) -> Result<Textured, Micro
         (Some(color), None) => Textured::Color(when_needed([color], move |[color]| color_sums(color, wrap))?),
         (None, Some(mask)) => Textured::Opacity(opacity(mask)?),
         (Some(color), Some(mask)) if !Places::of(material).are_one() => Textured::Apart {
-            color: when_needed([color], move |[color]| color_sums(color, wrap))?,
+            color: Box::new(when_needed([color], move |[color]| color_sums(color, wrap))?),
             opacity: opacity(mask)?,
         },
         (Some(color), Some(mask)) => {

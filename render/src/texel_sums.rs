@@ -42,7 +42,10 @@ pub(crate) fn color_sums(texture: &Texture, wrap: TexelWrap) -> Result<TexelSums
     match &texture.texels {
         Texels::OpaqueSrgb8(texels) => of_bytes(texels, &LINEAR_OF_SRGB),
         Texels::OpaqueLinear8(texels) => of_bytes(texels, &values(unit_of_byte)),
-        _ => TexelSums::new(width, height, wrap, |x, y| texture.texel(x, y).truncate().to_array()),
+        Texels::Float(_) => {
+            TexelSums::new(width, height, wrap, |x, y| texture.texel(x, y).truncate().to_array())
+        }
+        _ => TexelSums::up_to(1.0, width, height, wrap, |x, y| texture.texel(x, y).truncate().to_array()),
     }
 }
 
@@ -53,9 +56,7 @@ pub(crate) fn color_sums(texture: &Texture, wrap: TexelWrap) -> Result<TexelSums
 pub(crate) fn opacity_sums(texture: &Texture, wrap: TexelWrap) -> Result<MaskSums, MicropointError> {
     let Texture { width, height, .. } = *texture;
     let sums = match &texture.texels {
-        Texels::Opacity8(texels) => {
-            TexelSums::from_bytes(width, height, wrap, texels.clone(), &values(unit_of_byte))
-        }
+        Texels::Opacity8(texels) => TexelSums::of_levels(width, height, wrap, texels.clone()),
         _ => TexelSums::new(width, height, wrap, |x, y| [texture.texel(x, y).w]),
     };
     sums.map(MaskSums::new)

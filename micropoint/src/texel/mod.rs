@@ -18,6 +18,7 @@
 //! | outlines that hold the texture several times, or lines longer than `MOST_ON_LINE` | [`MOST_TEXELS`] |
 
 mod corner;
+mod levels;
 mod line;
 mod mask;
 mod perspective;
@@ -34,6 +35,7 @@ pub use mask::MaskSums;
 use crate::error::MicropointError;
 use corner::is_usable;
 use glam::DVec2;
+use levels::Levels;
 use plane::Plane;
 use pointillist_dice::convex;
 use slopes::Slopes;
@@ -103,7 +105,8 @@ const MOST_TEXELS: f64 = (1 << 16) as f64;
 pub const MOST_TEXELS_ON_A_SIDE: u32 = 1 << 20;
 
 impl<const N: usize> TexelSums<N> {
-    /// Sums up a texture; `texel(x, y)` gives values of at least 0, row 0 on top.
+    /// Sums up a texture; `texel(x, y)` gives values of at least 0, row 0 on top. Each is asked for twice: where a bound is known,
+    /// [`TexelSums::up_to`] is faster.
     ///
     /// # Errors
     /// [`MicropointError::BadTexture`] if there are no texels; [`MicropointError::BadTexel`] for a
@@ -114,8 +117,51 @@ impl<const N: usize> TexelSums<N> {
         wrap: TexelWrap,
         texel: impl Fn(u32, u32) -> [f32; N],
     ) -> Result<Self, MicropointError> {
-        let texels = collect(width, height, texel, |v| v.is_finite() && v >= 0.0)?;
-        Ok(Self::of_texels(width as usize, height as usize, wrap, &texels))
+        check_size(width, height)?;
+        let mut most = 0.0_f32;
+        for (index, (x, y)) in places(width, height).enumerate() {
+            for v in texel(x, y) {
+                if !(v.is_finite() && v >= 0.0) {
+                    return Err(MicropointError::BadTexel { index });
+                }
+                most = most.max(v);
+            }
+        }
+        Self::up_to(most, width, height, wrap, texel)
+    }
+
+    /// The same for a texture whose values are known to be at most `most`. Sums are right to 2⁻³² of that.
+    ///
+    /// # Errors
+    /// [`MicropointError::BadTexture`] if there are no texels; [`MicropointError::BadTexel`] for a value that is NaN, negative or above `most`.
+    pub fn up_to(
+        most: f32,
+        width: u32,
+        height: u32,
+        wrap: TexelWrap,
+        texel: impl Fn(u32, u32) -> [f32; N],
+    ) -> Result<Self, MicropointError> {
+        check_size(width, height)?;
+        let mut range = [(f32::INFINITY, 0.0); N];
+        let mut bad = None;
+        let sound = |(index, (x, y))| {
+            let texel = texel(x, y);
+            if !texel.iter().all(|v| (0.0..=most).contains(v)) {
+                bad.get_or_insert(index);
+                return [0.0; N];
+            }
+            widen(&mut range, &texel);
+            texel
+        };
+        let texels = places(width, height).enumerate().map(sound);
+        let (rows, unit) = Rows::unsigned(width as usize, height as usize, texels, f64::from(most));
+        match bad {
+            Some(index) => Err(MicropointError::BadTexel { index }),
+            None => {
+                let range = range.map(|(least, most)| (f64::from(least), f64::from(most)));
+                Ok(Self::of_rows(width as usize, height as usize, wrap, range, rows, unit))
+            }
+        }
     }
 
     /// The same for a texture whose values may be negative. Sums are right to 2⁻³¹ of the largest of them.
@@ -128,12 +174,20 @@ impl<const N: usize> TexelSums<N> {
         wrap: TexelWrap,
         texel: impl Fn(u32, u32) -> [f32; N],
     ) -> Result<Self, MicropointError> {
-        let texels = collect(width, height, texel, f32::is_finite)?;
-        Ok(Self::of_signed_texels(width as usize, height as usize, wrap, &texels))
+        check_size(width, height)?;
+        let texels: Vec<_> = places(width, height).map(|(x, y)| texel(x, y)).collect();
+        if let Some(index) = texels.iter().position(|texel| !texel.iter().all(|v| v.is_finite())) {
+            return Err(MicropointError::BadTexel { index });
+        }
+        let mut range = [(f32::INFINITY, f32::NEG_INFINITY); N];
+        texels.iter().for_each(|texel| widen(&mut range, texel));
+        let range = range.map(|(least, most)| (f64::from(least), f64::from(most)));
+        let (rows, unit) = Rows::signed(width as usize, &texels);
+        Ok(Self::of_rows(width as usize, height as usize, wrap, range, rows, unit))
     }
 
     /// The same as [`TexelSums::new`] of 8-bit texels, row by row from the top, with a table of what each byte stands for, and the same
-    /// means bit by bit. Takes one byte for a channel of a texel beside `texels`, which are shared (4 bytes otherwise).
+    /// means bit by bit. Takes half a byte for a channel of a texel beside `texels`, which are shared (4 bytes otherwise).
     ///
     /// # Errors
     /// [`MicropointError::BadTexture`] if there are no texels or not `width · height`; [`MicropointError::BadTexel`] for the
@@ -145,10 +199,7 @@ impl<const N: usize> TexelSums<N> {
         texels: Arc<Vec<[u8; N]>>,
         values: &[f32; 256],
     ) -> Result<Self, MicropointError> {
-        check_size(width, height)?;
-        if texels.len() as u64 != u64::from(width) * u64::from(height) {
-            return Err(MicropointError::BadTexture { width, height, texels: texels.len() });
-        }
+        check_count(width, height, texels.len())?;
         let sound = |v: f32| v.is_finite() && v >= 0.0;
         let mut occurs = [[false; 256]; N];
         for (index, texel) in texels.iter().enumerate() {
@@ -164,17 +215,6 @@ impl<const N: usize> TexelSums<N> {
         });
         let (rows, unit) = Rows::bytes(width as usize, texels, values, largest(&range));
         Ok(Self::of_rows(width as usize, height as usize, wrap, range, rows, unit))
-    }
-
-    fn of_texels(width: usize, height: usize, wrap: TexelWrap, texels: &[[f32; N]]) -> Self {
-        let range = range_of(texels, 0.0);
-        let (rows, unit) = Rows::unsigned(width, texels, largest(&range));
-        Self::of_rows(width, height, wrap, range, rows, unit)
-    }
-
-    fn of_signed_texels(width: usize, height: usize, wrap: TexelWrap, texels: &[[f32; N]]) -> Self {
-        let (rows, unit) = Rows::signed(width, texels);
-        Self::of_rows(width, height, wrap, range_of(texels, f32::NEG_INFINITY), rows, unit)
     }
 
     fn of_rows(
@@ -375,9 +415,30 @@ impl<const N: usize> TexelSums<N> {
     }
 }
 
+impl TexelSums<1> {
+    /// The sums of 8-bit texels, row by row from the top, of which 255 stands for 1. Exact, in half a byte for each texel beside `texels`, which are
+    /// shared, and faster than those of [`TexelSums::from_bytes`].
+    ///
+    /// # Errors
+    /// [`MicropointError::BadTexture`] if there are no texels or not `width · height`.
+    pub fn of_levels(
+        width: u32,
+        height: u32,
+        wrap: TexelWrap,
+        texels: Arc<Vec<[u8; 1]>>,
+    ) -> Result<Self, MicropointError> {
+        check_count(width, height, texels.len())?;
+        let levels = Levels::new(texels, width as usize);
+        let unit = 1.0 / 255.0;
+        let (least, most) = levels.range();
+        let range = [(f64::from(least) * unit, f64::from(most) * unit)];
+        Ok(Self::of_rows(width as usize, height as usize, wrap, range, Rows::Levels(levels), unit))
+    }
+}
+
 impl TexelSums<2> {
     /// The slopes along u and v of an 8-bit height map, row by row from the top, per unit of u and of v (v upward): differences of
-    /// the two neighbours. A byte of 255 is the height 1. Exact, of the heights alone and one byte for each.
+    /// the two neighbours. A byte of 255 is the height 1. Exact, of the heights alone and half a byte for each.
     ///
     /// # Errors
     /// [`MicropointError::BadTexture`] if there are no texels or not `width · height`.
@@ -387,10 +448,7 @@ impl TexelSums<2> {
         wrap: TexelWrap,
         heights: Arc<Vec<[u8; 1]>>,
     ) -> Result<Self, MicropointError> {
-        check_size(width, height)?;
-        if heights.len() as u64 != u64::from(width) * u64::from(height) {
-            return Err(MicropointError::BadTexture { width, height, texels: heights.len() });
-        }
+        check_count(width, height, heights.len())?;
         let (width, height) = (width as usize, height as usize);
         let slopes = Slopes::new(heights, width, height, wrap);
         let unit = 1.0 / 255.0;
@@ -406,33 +464,24 @@ fn check_size(width: u32, height: u32) -> Result<(), MicropointError> {
     Ok(())
 }
 
-/// All texels, if all their values are sound.
-fn collect<const N: usize>(
-    width: u32,
-    height: u32,
-    texel: impl Fn(u32, u32) -> [f32; N],
-    is_sound: impl Fn(f32) -> bool,
-) -> Result<Vec<[f32; N]>, MicropointError> {
+fn check_count(width: u32, height: u32, texels: usize) -> Result<(), MicropointError> {
     check_size(width, height)?;
-    let mut texels = Vec::with_capacity(width as usize * height as usize);
-    for y in 0..height {
-        texels.extend((0..width).map(|x| texel(x, y)));
+    if texels as u64 != u64::from(width) * u64::from(height) {
+        return Err(MicropointError::BadTexture { width, height, texels });
     }
-    match texels.iter().position(|texel| !texel.iter().all(|&v| is_sound(v))) {
-        Some(index) => Err(MicropointError::BadTexel { index }),
-        None => Ok(texels),
-    }
+    Ok(())
 }
 
-/// Smallest and largest value of each channel; the largest is at least `least_most`.
-fn range_of<const N: usize>(texels: &[[f32; N]], least_most: f32) -> [(f64, f64); N] {
-    let mut range = [(f32::INFINITY, least_most); N];
-    for texel in texels {
-        for ((least, most), &v) in range.iter_mut().zip(texel) {
-            (*least, *most) = (least.min(v), most.max(v));
-        }
+/// Columns and rows of all texels, row by row.
+fn places(width: u32, height: u32) -> impl Iterator<Item = (u32, u32)> {
+    (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
+}
+
+/// Widens the smallest and the largest value of each channel to those of a texel.
+fn widen<const N: usize>(range: &mut [(f32, f32); N], texel: &[f32; N]) {
+    for ((least, most), &v) in range.iter_mut().zip(texel) {
+        (*least, *most) = (least.min(v), most.max(v));
     }
-    range.map(|(least, most)| (f64::from(least), f64::from(most)))
 }
 
 fn largest<const N: usize>(range: &[(f64, f64); N]) -> f64 {

@@ -4,40 +4,25 @@
 //! differences of the sums of heights over the rows above and below. Nothing but these is stored, and all of it is exact.
 
 use super::corner::TexelWrap;
+use super::levels::Levels;
 use super::rows::RowSums;
 use std::sync::Arc;
-
-/// Columns from one stored sum of heights to the next, as for other 8-bit texels.
-const BLOCK: usize = 4;
 
 /// A height map of 8-bit heights.
 #[derive(Clone, Debug)]
 pub(super) struct Slopes {
-    heights: Arc<Vec<[u8; 1]>>,
+    heights: Levels,
     width: usize,
     height: usize,
     wrap: TexelWrap,
-    /// Sums of the heights of a row before every fourth column.
-    sums: Vec<u32>,
     /// What a difference of one step counts along u and along v.
     scale: [f64; 2],
 }
 
 impl Slopes {
     pub(super) fn new(heights: Arc<Vec<[u8; 1]>>, width: usize, height: usize, wrap: TexelWrap) -> Self {
-        let mut sums = Vec::with_capacity(height * (width / BLOCK + 1));
-        for row in heights.chunks_exact(width) {
-            let mut sum = 0;
-            for block in row.chunks(BLOCK) {
-                sums.push(sum);
-                sum += block.iter().map(|&[height]| u32::from(height)).sum::<u32>();
-            }
-            if width.is_multiple_of(BLOCK) {
-                sums.push(sum);
-            }
-        }
         let scale = [0.5 * width as f64, 0.5 * height as f64];
-        Self { heights, width, height, wrap, sums, scale }
+        Self { heights: Levels::new(heights, width), width, height, wrap, scale }
     }
 
     /// Smallest and largest slope along u and v.
@@ -51,16 +36,11 @@ impl Slopes {
         range
     }
 
-    #[inline]
-    fn row(&self, row: usize) -> &[[u8; 1]] {
-        &self.heights[row * self.width..][..self.width]
-    }
-
     /// The height in a column from −1 to the width; the texture repeats, or its border does (a mirrored texture has it twice).
     #[inline]
-    fn at(&self, row: &[[u8; 1]], column: isize) -> i32 {
+    fn at(&self, row: &[u8], column: isize) -> i32 {
         // Column −1 is beyond every length, too.
-        let [height] = row.get(column as usize).copied().unwrap_or_else(|| {
+        let height = row.get(column as usize).copied().unwrap_or_else(|| {
             let from_left = (column < 0) != (self.wrap == TexelWrap::Repeat);
             row[if from_left { 0 } else { row.len() - 1 }]
         });
@@ -99,8 +79,8 @@ impl Slopes {
     #[inline]
     fn texel<const N: usize>(&self, row: usize, column: usize) -> [f64; N] {
         let (above, below) = self.neighbours(row);
-        let v = i32::from(self.row(above)[column][0]) - i32::from(self.row(below)[column][0]);
-        let (row, column) = (self.row(row), column as isize);
+        let v = i32::from(self.heights.row(above)[column]) - i32::from(self.heights.row(below)[column]);
+        let (row, column) = (self.heights.row(row), column as isize);
         self.in_channels(self.at(row, column + 1) - self.at(row, column - 1), v)
     }
 }
@@ -108,14 +88,9 @@ impl Slopes {
 impl<const N: usize> RowSums<N> for Slopes {
     #[inline]
     fn before(&self, row: usize, column: usize) -> [f64; N] {
-        let stride = self.width / BLOCK + 1;
         let (above, below) = self.neighbours(row);
-        let block = |row: usize| self.sums[row * stride + column / BLOCK] as i32;
-        let first = column - column % BLOCK;
-        let pairs = self.row(above)[first..column].iter().zip(&self.row(below)[first..column]);
-        let rest: i32 = pairs.map(|([a], [b])| i32::from(*a) - i32::from(*b)).sum();
-        let v = block(above) - block(below) + rest;
-        let (row, column) = (self.row(row), column as isize);
+        let v = self.heights.sum(above, column) as i32 - self.heights.sum(below, column) as i32;
+        let (row, column) = (self.heights.row(row), column as isize);
         let u = self.at(row, column) + self.at(row, column - 1) - self.at(row, 0) - self.at(row, -1);
         self.in_channels(u, v)
     }

@@ -1,5 +1,6 @@
 //! The ways in which sums along rows are stored, and how they are computed.
 
+use super::levels::Levels;
 use super::rows::{Bytes, RowSums, Whole};
 use super::slopes::Slopes;
 use std::sync::Arc;
@@ -13,6 +14,8 @@ pub(super) enum Rows<const N: usize> {
     Signed(Whole<i32, N>),
     /// Of 8-bit texels.
     Bytes(Bytes<N>),
+    /// Of 8-bit texels that count in even steps, for one channel.
+    Levels(Levels),
     /// Of the slopes of 8-bit heights, for two channels.
     Slopes(Slopes),
 }
@@ -24,6 +27,7 @@ macro_rules! with_rows {
             $crate::texel::storage::Rows::Unsigned($name) => $call,
             $crate::texel::storage::Rows::Signed($name) => $call,
             $crate::texel::storage::Rows::Bytes($name) => $call,
+            $crate::texel::storage::Rows::Levels($name) => $call,
             $crate::texel::storage::Rows::Slopes($name) => $call,
         }
     };
@@ -64,15 +68,20 @@ fn signed_whole<const N: usize>(
 }
 
 impl<const N: usize> Rows<N> {
-    /// Sums of texels that are finite and not negative, and the unit they are in.
-    pub(super) fn unsigned(width: usize, texels: &[[f32; N]], most: f64) -> (Self, f64) {
+    /// Sums of texels from 0 to `most`, row by row, and the unit they are in.
+    pub(super) fn unsigned(
+        width: usize,
+        height: usize,
+        mut texels: impl Iterator<Item = [f32; N]>,
+        most: f64,
+    ) -> (Self, f64) {
         let unit = unit_of(width, most);
-        let mut sums = Vec::with_capacity(texels.len() + texels.len() / width);
-        for row in texels.chunks_exact(width) {
+        let mut sums = Vec::with_capacity((width + 1) * height);
+        for _ in 0..height {
             let mut sum = [0; N];
             sums.push(sum);
-            for texel in row {
-                sum.iter_mut().zip(texel).for_each(|(s, &v)| *s += in_units(v, unit));
+            for texel in texels.by_ref().take(width) {
+                sum.iter_mut().zip(texel).for_each(|(s, v)| *s += in_units(v, unit));
                 sums.push(sum);
             }
         }

@@ -221,3 +221,38 @@ fn perspective_weighs_texels_by_their_area_on_screen() {
     };
     assert!((sums.mean(&quad)[0] - far).abs() < 1e-9);
 }
+
+#[test]
+fn levels_have_the_means_of_the_same_texels() {
+    let (width, height) = (37, 24);
+    let bytes: Vec<[u8; 1]> = (0..width * height).map(|i| [(i * i % 256) as u8]).collect();
+    for wrap in [TexelWrap::Repeat, TexelWrap::Clamp, TexelWrap::Mirror] {
+        let texel = |x: u32, y: u32| [f32::from(bytes[(y * width + x) as usize][0]) / 255.0];
+        let whole = TexelSums::new(width, height, wrap, texel).unwrap();
+        let levels = TexelSums::of_levels(width, height, wrap, Arc::new(bytes.clone())).unwrap();
+        for size in [0.2, 1.3, 7.1, 33.3, 210.7] {
+            let ring = [dvec2(-3.3, 2.1), dvec2(1.0, 0.3) * size, dvec2(0.4, 1.0) * size];
+            let [expected, got] = [&whole, &levels].map(|sums| sums.mean(&corners(&ring))[0]);
+            assert!((expected - got).abs() < 1e-7, "{wrap:?} {size}: {expected} {got}");
+        }
+        assert!((whole.whole_mean()[0] - levels.whole_mean()[0]).abs() < 1e-7);
+    }
+    let wrong = TexelSums::of_levels(width, height + 1, TexelWrap::Repeat, Arc::new(bytes));
+    assert!(matches!(wrong, Err(MicropointError::BadTexture { texels: 888, .. })));
+}
+
+#[test]
+fn a_known_bound_changes_no_mean_and_is_checked() {
+    let texel = |x: u32, y: u32| [((x * 31 + y * y) % 17) as f32 / 20.0, 0.7];
+    let sums = TexelSums::new(40, 23, TexelWrap::Repeat, texel).unwrap();
+    let bounded = TexelSums::up_to(1.0, 40, 23, TexelWrap::Repeat, texel).unwrap();
+    let ring = corners(&[dvec2(-3.3, 2.1), dvec2(31.0, 0.3), dvec2(4.0, 19.0)]);
+    for (a, b) in sums.mean(&ring).into_iter().zip(bounded.mean(&ring)) {
+        assert!((a - b).abs() < 1e-8, "{a} {b}");
+    }
+    for value in [0.71, -0.1, f32::NAN, f32::INFINITY] {
+        let texel = |x: u32, y: u32| [if (x, y) == (3, 1) { value } else { 0.7 }];
+        let found = TexelSums::up_to(0.7, 5, 4, TexelWrap::Repeat, texel);
+        assert!(matches!(found, Err(MicropointError::BadTexel { index: 8 })), "{value}");
+    }
+}
