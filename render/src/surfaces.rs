@@ -2,8 +2,8 @@
 
 use crate::copies::{MaskedCopy, OtherSide, masked_copies, other_sides};
 use crate::detail_maps::{DetailMaps, DetailTable};
-use crate::scene::{Details, MapPlace, Material, Mesh, Scene, Storage, Texels, Texture};
-use crate::texel_sums::{Lazy, color_sums, opacity_sums, when_needed};
+use crate::scene::{Details, MapPlace, Material, Mesh, Scene, Storage, Texture};
+use crate::texel_sums::{Lazy, color_sums, opacity_sums, sums_of, when_needed};
 use crate::uvs::{Uvs, texel_wrap};
 use glam::{Vec3, Vec4};
 use pointillist_micropoint::{
@@ -66,7 +66,7 @@ impl MaskedColor {
             t.texel(scale(x, width, t.width), scale(y, height, t.height))
         };
         let range = Cell::new((Vec3::INFINITY, Vec3::ZERO));
-        let premultiplied_at = |x, y| {
+        let premultiplied = sums_of([color, mask], [width, height], wrap, |x, y| {
             let alpha = at(mask, x, y).w;
             if alpha == 0.0 {
                 return [0.0; 4];
@@ -74,12 +74,7 @@ impl MaskedColor {
             let color = at(color, x, y).truncate();
             range.set((range.get().0.min(color), range.get().1.max(color)));
             (color * alpha).extend(alpha).to_array()
-        };
-        let is_float = |t: &Texture| matches!(t.texels, Texels::Float(_));
-        let premultiplied = match is_float(color) || is_float(mask) {
-            true => TexelSums::new(width, height, wrap, premultiplied_at),
-            false => TexelSums::up_to(1.0, width, height, wrap, premultiplied_at),
-        }?;
+        })?;
         let range = range.get();
         let whole = Vec4::from_array(premultiplied.whole_mean().map(|v| v as f32));
         let mean = if whole.w > 0.0 { whole.truncate() / whole.w } else { Vec3::ZERO };

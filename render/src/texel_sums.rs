@@ -18,10 +18,8 @@ pub(crate) fn when_needed<T: Send + 'static, const K: usize>(
     textures: [&Texture; K],
     make: impl FnOnce([&Texture; K]) -> Result<T, MicropointError> + Send + 'static,
 ) -> Result<Lazy<T>, MicropointError> {
-    let cannot_fail = |texture: &Texture| {
-        let is_float = matches!(texture.texels, Texels::Float(_));
-        !is_float && texture.width.max(texture.height) <= MOST_TEXELS_ON_A_SIDE
-    };
+    let cannot_fail =
+        |texture: &Texture| !is_float(texture) && texture.width.max(texture.height) <= MOST_TEXELS_ON_A_SIDE;
     if textures.iter().all(|texture| cannot_fail(texture)) {
         let textures = textures.map(Texture::clone);
         let make = move || make(textures.each_ref()).expect("bytes stand for numbers from 0 to 1");
@@ -29,6 +27,26 @@ pub(crate) fn when_needed<T: Send + 'static, const K: usize>(
     }
     let made = make(textures)?;
     Ok(Lazy::new(Box::new(|| made)))
+}
+
+fn is_float(texture: &Texture) -> bool {
+    matches!(texture.texels, Texels::Float(_))
+}
+
+/// The sums of texels of this size that are made of those of some textures, and are not above 1 where all of these are bytes.
+///
+/// # Errors
+/// As [`TexelSums::new`].
+pub(crate) fn sums_of<const N: usize, const K: usize>(
+    textures: [&Texture; K],
+    [width, height]: [u32; 2],
+    wrap: TexelWrap,
+    texel: impl Fn(u32, u32) -> [f32; N],
+) -> Result<TexelSums<N>, MicropointError> {
+    match textures.into_iter().any(is_float) {
+        true => TexelSums::new(width, height, wrap, texel),
+        false => TexelSums::up_to(1.0, width, height, wrap, texel),
+    }
 }
 
 /// The sums of a texture's colours.
@@ -42,10 +60,7 @@ pub(crate) fn color_sums(texture: &Texture, wrap: TexelWrap) -> Result<TexelSums
     match &texture.texels {
         Texels::OpaqueSrgb8(texels) => of_bytes(texels, &LINEAR_OF_SRGB),
         Texels::OpaqueLinear8(texels) => of_bytes(texels, &values(unit_of_byte)),
-        Texels::Float(_) => {
-            TexelSums::new(width, height, wrap, |x, y| texture.texel(x, y).truncate().to_array())
-        }
-        _ => TexelSums::up_to(1.0, width, height, wrap, |x, y| texture.texel(x, y).truncate().to_array()),
+        _ => sums_of([texture], [width, height], wrap, |x, y| texture.texel(x, y).truncate().to_array()),
     }
 }
 
@@ -57,7 +72,7 @@ pub(crate) fn opacity_sums(texture: &Texture, wrap: TexelWrap) -> Result<MaskSum
     let Texture { width, height, .. } = *texture;
     let sums = match &texture.texels {
         Texels::Opacity8(texels) => TexelSums::of_levels(width, height, wrap, texels.clone()),
-        _ => TexelSums::new(width, height, wrap, |x, y| [texture.texel(x, y).w]),
+        _ => sums_of([texture], [width, height], wrap, |x, y| [texture.texel(x, y).w]),
     };
     sums.map(MaskSums::new)
 }

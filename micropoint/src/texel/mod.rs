@@ -417,7 +417,7 @@ impl<const N: usize> TexelSums<N> {
 
 impl TexelSums<1> {
     /// The sums of 8-bit texels, row by row from the top, of which 255 stands for 1. Exact, in half a byte for each texel beside `texels`, which are
-    /// shared, and faster than those of [`TexelSums::from_bytes`].
+    /// shared.
     ///
     /// # Errors
     /// [`MicropointError::BadTexture`] if there are no texels or not `width · height`.
