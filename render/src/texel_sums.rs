@@ -45,7 +45,7 @@ pub(crate) fn sums_of<const N: usize, const K: usize>(
 ) -> Result<TexelSums<N>, MicropointError> {
     match textures.into_iter().any(is_float) {
         true => TexelSums::new(width, height, wrap, texel),
-        false => TexelSums::up_to(1.0, width, height, wrap, texel),
+        false => TexelSums::in_16_bits(1.0, width, height, wrap, texel),
     }
 }
 

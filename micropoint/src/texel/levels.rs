@@ -85,6 +85,11 @@ impl<const N: usize> RowSums<N> for Levels {
     }
 
     #[inline]
+    fn texel(&self, row: usize, column: usize) -> [f64; N] {
+        [f64::from(self.row(row)[column]); N]
+    }
+
+    #[inline]
     fn around(&self, row: usize, column: usize) -> ([f64; N], [f64; N]) {
         let (sum, block) = self.sum_and_block(row, column);
         ([f64::from(sum); N], [f64::from(block as u8); N])

@@ -93,7 +93,7 @@ struct UniformBlocks {
 
 impl UniformBlocks {
     fn new(rows: &impl RowSums<1>, width: usize, height: usize) -> Self {
-        let texel = |x: usize, y: usize| rows.around(y, x).1[0];
+        let texel = |x: usize, y: usize| rows.texel(y, x)[0];
         let texels = (0..height).flat_map(|y| (0..width).map(move |x| texel(x, y)));
         let range = texels.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), t| (l.min(t), m.max(t)));
         let (columns, lines) = (width.div_ceil(BLOCK), height.div_ceil(BLOCK));

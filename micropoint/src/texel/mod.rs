@@ -105,8 +105,7 @@ const MOST_TEXELS: f64 = (1 << 16) as f64;
 pub const MOST_TEXELS_ON_A_SIDE: u32 = 1 << 20;
 
 impl<const N: usize> TexelSums<N> {
-    /// Sums up a texture; `texel(x, y)` gives values of at least 0, row 0 on top. Each is asked for twice: where a bound is known,
-    /// [`TexelSums::up_to`] is faster.
+    /// Sums up a texture; `texel(x, y)` gives values of at least 0, row 0 on top, and is asked for each twice.
     ///
     /// # Errors
     /// [`MicropointError::BadTexture`] if there are no texels; [`MicropointError::BadTexel`] for a
@@ -118,23 +117,20 @@ impl<const N: usize> TexelSums<N> {
         texel: impl Fn(u32, u32) -> [f32; N],
     ) -> Result<Self, MicropointError> {
         check_size(width, height)?;
-        let mut most = 0.0_f32;
-        for (index, (x, y)) in places(width, height).enumerate() {
-            for v in texel(x, y) {
-                if !(v.is_finite() && v >= 0.0) {
-                    return Err(MicropointError::BadTexel { index });
-                }
-                most = most.max(v);
-            }
-        }
-        Self::up_to(most, width, height, wrap, texel)
+        let largest = |texel: [f32; N]| texel.into_iter().fold(0.0, f32::max);
+        let most = places(width, height).map(|(x, y)| largest(texel(x, y))).fold(0.0, f32::max);
+        let most = most.min(f32::MAX);
+        Self::bounded(most, [width, height], wrap, texel, |[width, height], texels| {
+            Rows::unsigned(width, height, texels, f64::from(most))
+        })
     }
 
-    /// The same for a texture whose values are known to be at most `most`. Sums are right to 2⁻³² of that.
+    /// The same for a texture whose values are at most `most`, in 16 bits: sums and texels are right to a 65535th of that (wider than 65,537 texels:
+    /// to `width` · 2⁻³²). Takes 2.5 bytes for a channel of a texel (4 otherwise), and each texel is asked for once.
     ///
     /// # Errors
     /// [`MicropointError::BadTexture`] if there are no texels; [`MicropointError::BadTexel`] for a value that is NaN, negative or above `most`.
-    pub fn up_to(
+    pub fn in_16_bits(
         most: f32,
         width: u32,
         height: u32,
@@ -142,6 +138,19 @@ impl<const N: usize> TexelSums<N> {
         texel: impl Fn(u32, u32) -> [f32; N],
     ) -> Result<Self, MicropointError> {
         check_size(width, height)?;
+        Self::bounded(most, [width, height], wrap, texel, |[width, height], texels| {
+            Rows::steps(width, height, texels, f64::from(most))
+        })
+    }
+
+    /// What `sum_up` makes of texels from 0 to `most`, row by row.
+    fn bounded(
+        most: f32,
+        [width, height]: [u32; 2],
+        wrap: TexelWrap,
+        texel: impl Fn(u32, u32) -> [f32; N],
+        sum_up: impl FnOnce([usize; 2], &mut dyn Iterator<Item = [f32; N]>) -> (Rows<N>, f64),
+    ) -> Result<Self, MicropointError> {
         let mut range = [(f32::INFINITY, 0.0); N];
         let mut bad = None;
         let sound = |(index, (x, y))| {
@@ -153,8 +162,8 @@ impl<const N: usize> TexelSums<N> {
             widen(&mut range, &texel);
             texel
         };
-        let texels = places(width, height).enumerate().map(sound);
-        let (rows, unit) = Rows::unsigned(width as usize, height as usize, texels, f64::from(most));
+        let (rows, unit) =
+            sum_up([width as usize, height as usize], &mut places(width, height).enumerate().map(sound));
         match bad {
             Some(index) => Err(MicropointError::BadTexel { index }),
             None => {
@@ -187,7 +196,7 @@ impl<const N: usize> TexelSums<N> {
     }
 
     /// The same as [`TexelSums::new`] of 8-bit texels, row by row from the top, with a table of what each byte stands for, and the same
-    /// means bit by bit. Takes half a byte for a channel of a texel beside `texels`, which are shared (4 bytes otherwise).
+    /// means: bit by bit over few texels, to 16 bits where texels are taken together. Takes half a byte for a channel of a texel beside `texels`, which are shared (4 bytes otherwise).
     ///
     /// # Errors
     /// [`MicropointError::BadTexture`] if there are no texels or not `width · height`; [`MicropointError::BadTexel`] for the
@@ -237,7 +246,7 @@ impl<const N: usize> TexelSums<N> {
             return None;
         }
         let make = || {
-            let (rows, unit) = self.rows.means_of_four(width, height, self.unit);
+            let (rows, unit) = self.rows.means_of_four(width, height, self.unit, largest(&self.range));
             Box::new(Self::of_rows(width / 2, height / 2, self.wrap, self.range, rows, unit))
         };
         Some(self.coarser.get_or_init(make))
@@ -406,7 +415,8 @@ impl<const N: usize> TexelSums<N> {
         let (rows, unit) = match level.checked_sub(1) {
             None => (&self.rows, self.unit),
             Some(band) => {
-                let make = || self.rows.bands(self.width, self.height, 4_usize.pow(level as u32), self.unit);
+                let (rows, most) = (4_usize.pow(level as u32), largest(&self.range));
+                let make = || self.rows.bands(self.width, self.height, rows, self.unit, most);
                 let (rows, unit) = self.bands[band].get_or_init(make);
                 (rows, *unit)
             }

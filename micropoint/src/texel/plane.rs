@@ -81,24 +81,27 @@ impl<R> Plane<'_, R> {
     {
         let (lo, hi) = (xa.min(xb), xa.max(xb));
         let (first, last) = (lo as usize, hi as usize);
-        let mut add = |column: usize, x: f64, weight: f64| {
-            let (before, texel) = self.sums.around(row, column);
-            let t = x - column as f64;
+        let (mut before, mut texel) = self.sums.around(row, first);
+        let mut add = |before: &[f64; N], texel: &[f64; N], t: f64, weight: f64| {
             for c in 0..N {
                 sum[c] += weight * (before[c] + t * texel[c]);
             }
         };
         if first == last {
-            add(first, 0.5 * (lo + hi), height);
+            add(&before, &texel, 0.5 * (lo + hi) - first as f64, height);
             return;
         }
         let per_length = height / (hi - lo);
         let mut x = lo;
-        for column in first..=last {
-            let end = ((column + 1) as f64).min(hi);
-            add(column, 0.5 * (x + end), per_length * (end - x));
+        for column in first..last {
+            let end = (column + 1) as f64;
+            add(&before, &texel, 0.5 * (x + end) - column as f64, per_length * (end - x));
             x = end;
+            // Exact: both are whole numbers, or halves.
+            before.iter_mut().zip(texel).for_each(|(b, t)| *b += t);
+            texel = self.sums.texel(row, column + 1);
         }
+        add(&before, &texel, 0.5 * (x + hi) - last as f64, per_length * (hi - x));
     }
 
     /// The texel at integer coordinates.

@@ -29,7 +29,8 @@ impl Slopes {
     pub(super) fn range(&self) -> [(f64, f64); 2] {
         let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 2];
         for (row, column) in (0..self.height).flat_map(|row| (0..self.width).map(move |x| (row, x))) {
-            for ((least, most), v) in range.iter_mut().zip(self.texel::<2>(row, column)) {
+            let texel: [f64; 2] = self.texel(row, column);
+            for ((least, most), v) in range.iter_mut().zip(texel) {
                 (*least, *most) = (least.min(v), most.max(v));
             }
         }
@@ -75,14 +76,6 @@ impl Slopes {
         let scaled = |c: usize| self.scale[c] * f64::from(if c == 0 { u } else { v });
         std::array::from_fn(|c| scaled(c.min(1)))
     }
-
-    #[inline]
-    fn texel<const N: usize>(&self, row: usize, column: usize) -> [f64; N] {
-        let (above, below) = self.neighbours(row);
-        let v = i32::from(self.heights.row(above)[column]) - i32::from(self.heights.row(below)[column]);
-        let (row, column) = (self.heights.row(row), column as isize);
-        self.in_channels(self.at(row, column + 1) - self.at(row, column - 1), v)
-    }
 }
 
 impl<const N: usize> RowSums<N> for Slopes {
@@ -96,7 +89,10 @@ impl<const N: usize> RowSums<N> for Slopes {
     }
 
     #[inline]
-    fn around(&self, row: usize, column: usize) -> ([f64; N], [f64; N]) {
-        (self.before(row, column), self.texel(row, column))
+    fn texel(&self, row: usize, column: usize) -> [f64; N] {
+        let (above, below) = self.neighbours(row);
+        let v = i32::from(self.heights.row(above)[column]) - i32::from(self.heights.row(below)[column]);
+        let (row, column) = (self.heights.row(row), column as isize);
+        self.in_channels(self.at(row, column + 1) - self.at(row, column - 1), v)
     }
 }

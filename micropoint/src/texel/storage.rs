@@ -1,7 +1,7 @@
 //! The ways in which sums along rows are stored, and how they are computed.
 
 use super::levels::Levels;
-use super::rows::{Bytes, RowSums, Whole};
+use super::rows::{Bytes, RowSums, Same, Steps, Whole};
 use super::slopes::Slopes;
 use std::sync::Arc;
 
@@ -14,6 +14,8 @@ pub(super) enum Rows<const N: usize> {
     Signed(Whole<i32, N>),
     /// Of 8-bit texels.
     Bytes(Bytes<N>),
+    /// Of texels in 16 bits.
+    Steps(Steps<N>),
     /// Of 8-bit texels that count in even steps, for one channel.
     Levels(Levels),
     /// Of the slopes of 8-bit heights, for two channels.
@@ -27,6 +29,7 @@ macro_rules! with_rows {
             $crate::texel::storage::Rows::Unsigned($name) => $call,
             $crate::texel::storage::Rows::Signed($name) => $call,
             $crate::texel::storage::Rows::Bytes($name) => $call,
+            $crate::texel::storage::Rows::Steps($name) => $call,
             $crate::texel::storage::Rows::Levels($name) => $call,
             $crate::texel::storage::Rows::Slopes($name) => $call,
         }
@@ -112,54 +115,108 @@ impl<const N: usize> Rows<N> {
         (Self::Bytes(Bytes::new(width, texels, units)), unit)
     }
 
-    /// Bands of rows, each the mean of `rows` of them (fewer in the last), and the unit they are in if these are in `unit`.
-    pub(super) fn bands(&self, width: usize, height: usize, rows: usize, unit: f64) -> (Self, f64) {
-        let stride = width + 1;
-        let bands = height.div_ceil(rows);
-        let add_up = |band: usize, sums: &mut [[f64; N]]| {
+    /// Sums in 16 bits a texel of texels from 0 to `most`, row by row, and the unit they are in.
+    pub(super) fn steps(
+        width: usize,
+        height: usize,
+        mut texels: impl Iterator<Item = [f32; N]>,
+        most: f64,
+    ) -> (Self, f64) {
+        let next_row = |_, sums: &mut [[f64; N]]| {
+            sums[0] = [0.0; N];
+            for (x, texel) in texels.by_ref().take(width).enumerate() {
+                sums[x + 1] = std::array::from_fn(|c| sums[x][c] + f64::from(texel[c]));
+            }
+        };
+        steps_of_sums(width, height, most, next_row)
+    }
+
+    /// Bands of rows, each the mean of `rows` of them (fewer in the last), and the unit they are in if these are in `unit` and up to `most`.
+    pub(super) fn bands(
+        &self,
+        width: usize,
+        height: usize,
+        rows: usize,
+        unit: f64,
+        most: f64,
+    ) -> (Self, f64) {
+        self.taken_together(width, height.div_ceil(rows), unit, most, |band, sums| {
             let taken = band * rows..((band + 1) * rows).min(height);
+            let share = 1.0 / taken.len() as f64;
             sums.fill([0.0; N]);
-            for y in taken.clone() {
+            for y in taken {
                 with_rows!(self, all => for (x, sum) in sums.iter_mut().enumerate() {
                     let before: [f64; N] = all.before(y, x);
-                    sum.iter_mut().zip(before).for_each(|(s, v)| *s += v);
+                    sum.iter_mut().zip(before).for_each(|(s, v)| *s += share * v);
                 });
             }
-            taken.len()
-        };
-        if let Self::Unsigned(_) | Self::Bytes(_) = self {
-            let mut band_sums = vec![[0.0; N]; stride];
-            let mut sums = Vec::with_capacity(bands * stride);
-            for band in 0..bands {
-                let count = add_up(band, &mut band_sums) as u64;
-                sums.extend(band_sums.iter().map(|sum| sum.map(|s| (s as u64 / count) as u32)));
-            }
-            return (Self::Unsigned(Whole { stride, sums }), unit);
-        }
-        signed_whole(bands, stride, |band, sums| {
-            let count = add_up(band, sums) as f64;
-            sums.iter_mut().flatten().for_each(|s| *s *= unit / count);
         })
     }
 
-    /// The sums of a texture with half as many texels on a side, each the mean of four, and the unit they are in if these are in `unit`.
-    pub(super) fn means_of_four(&self, width: usize, height: usize, unit: f64) -> (Self, f64) {
-        let (stride, half_height) = (width / 2 + 1, height / 2);
-        if let Self::Unsigned(_) | Self::Bytes(_) = self {
-            let mut sums = Vec::with_capacity(stride * half_height);
-            with_rows!(self, all => for y in 0..half_height {
-                sums.extend((0..stride).map(|x| {
-                    let pair: [[f64; N]; 2] = [all.before(2 * y, 2 * x), all.before(2 * y + 1, 2 * x)];
-                    std::array::from_fn(|c| (0.25 * (pair[0][c] + pair[1][c]) + 0.5) as u32)
-                }));
-            });
-            return (Self::Unsigned(Whole { stride, sums }), unit);
-        }
-        signed_whole(half_height, stride, |y, sums| {
+    /// The sums of a texture with half as many texels on a side, each the mean of four, and the unit they are in if these are in `unit` and up to
+    /// `most`.
+    pub(super) fn means_of_four(&self, width: usize, height: usize, unit: f64, most: f64) -> (Self, f64) {
+        self.taken_together(width / 2, height / 2, unit, most, |y, sums| {
             with_rows!(self, all => for (x, sum) in sums.iter_mut().enumerate() {
                 let pair: [[f64; N]; 2] = [all.before(2 * y, 2 * x), all.before(2 * y + 1, 2 * x)];
-                *sum = std::array::from_fn(|c| 0.25 * unit * (pair[0][c] + pair[1][c]));
+                *sum = std::array::from_fn(|c| 0.25 * (pair[0][c] + pair[1][c]));
             });
         })
     }
+
+    /// Rows of which `row_sums` gives the sums in `unit`, stored as suits these, and the unit they are in then. 8-bit texels need
+    /// no more than 16 bits where they are taken together.
+    fn taken_together(
+        &self,
+        width: usize,
+        height: usize,
+        unit: f64,
+        most: f64,
+        row_sums: impl Fn(usize, &mut [[f64; N]]),
+    ) -> (Self, f64) {
+        let scaled = |y: usize, sums: &mut [[f64; N]]| {
+            row_sums(y, sums);
+            sums.iter_mut().flatten().for_each(|s| *s *= unit);
+        };
+        match self {
+            Self::Unsigned(_) => {
+                let mut row = vec![[0.0; N]; width + 1];
+                let mut sums = Vec::with_capacity((width + 1) * height);
+                for y in 0..height {
+                    row_sums(y, &mut row);
+                    sums.extend(row.iter().map(|sum| sum.map(|s| (s + 0.5) as u32)));
+                }
+                (Self::Unsigned(Whole { stride: width + 1, sums }), unit)
+            }
+            Self::Bytes(_) | Self::Levels(_) | Self::Steps(_) => steps_of_sums(width, height, most, scaled),
+            Self::Signed(_) | Self::Slopes(_) => signed_whole(height, width + 1, scaled),
+        }
+    }
+}
+
+/// Texels from 0 to `most` in 16 bits, from the sums of rows, and the unit they are in. A sum is right to half a unit, however many texels are
+/// before it, and a texel is the difference of two.
+fn steps_of_sums<const N: usize>(
+    width: usize,
+    height: usize,
+    most: f64,
+    mut row_sums: impl FnMut(usize, &mut [[f64; N]]),
+) -> (Rows<N>, f64) {
+    // The sum of the widest row is below 2³².
+    let steps = (u32::MAX as usize / width).min(u16::MAX as usize) as u32;
+    let unit = if most > 0.0 { most / f64::from(steps) } else { 1.0 };
+    let mut row = vec![[0.0; N]; width + 1];
+    let mut texels = Vec::with_capacity(width * height);
+    for y in 0..height {
+        row_sums(y, &mut row);
+        let in_units = |sum: &[f64; N]| sum.map(|s| (s / unit + 0.5) as u32);
+        let mut before = in_units(&row[0]);
+        texels.extend(row[1..].iter().map(|sum| {
+            let sum = in_units(sum);
+            let texel = std::array::from_fn(|c| sum[c].saturating_sub(before[c]).min(steps) as u16);
+            before = sum;
+            texel
+        }));
+    }
+    (Rows::Steps(Steps::new(width, Arc::new(texels), Same)), unit)
 }
