@@ -196,7 +196,8 @@ impl<const N: usize> TexelSums<N> {
     }
 
     /// The same as [`TexelSums::new`] of 8-bit texels, row by row from the top, with a table of what each byte stands for, and the same
-    /// means: bit by bit over few texels, to 16 bits where texels are taken together. Takes half a byte for a channel of a texel beside `texels`, which are shared (4 bytes otherwise).
+    /// means: bit by bit over few texels, to 16 bits where texels are taken together. Takes half a byte for a channel of a texel beside
+    /// `texels`, which are shared (4 bytes otherwise).
     ///
     /// # Errors
     /// [`MicropointError::BadTexture`] if there are no texels or not `width · height`; [`MicropointError::BadTexel`] for the
