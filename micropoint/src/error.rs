@@ -69,9 +69,9 @@ pub enum MicropointError {
     /// Cells per pixel side must be 1, 2 or 4.
     #[error("{0} cells per pixel side; 1, 2 and 4 are possible")]
     BadCellsPerPixel(u32),
-    /// Cells per pixel side under masks must be 1, 2 or 4.
-    #[error("{0} cells per pixel side under masks; 1, 2 and 4 are possible")]
-    BadCellsUnderMasks(u32),
+    /// Squares on a side of a cell under masks must be 1, 2 or 4.
+    #[error("{0} squares on a side of a cell under masks; 1, 2 and 4 are possible")]
+    BadSquaresUnderMasks(u32),
     /// A range of depths must begin at 0 or later and end beyond its beginning.
     #[error("depths from {near} to {far}: 0 ≤ near < far is possible")]
     BadDepths {

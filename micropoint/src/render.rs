@@ -19,9 +19,9 @@ pub struct MicropointOptions {
     /// Cells per pixel side: 1, 2 or 4. Default: 1; with exact occlusion coverage does not need more,
     /// only shading that varies within a pixel does.
     pub cells_per_pixel: u32,
-    /// Cells per pixel side where a mask is partly open: 1, 2 or 4; without effect if it is no more than `cells_per_pixel`. Default: 4. What
-    /// is seen through a mask, how it is lit and what it hides vary together, and are taken to be independent within a cell.
-    pub cells_under_masks: u32,
+    /// Squares on a side of a cell in which a mask is partly open: 1, 2 or 4. Default: 4. What is seen through a mask, how it is lit and what it hides
+    /// vary together, and are taken to be independent within a square.
+    pub squares_under_masks: u32,
     /// How parts in one cell hide one another. Default: correlated.
     pub occlusion: Occlusion,
     /// Skip the back faces of closed opaque components. Default: true. Never changes a correlated
@@ -36,7 +36,7 @@ impl MicropointOptions {
     /// The defaults, as a constant.
     pub const DEFAULT: Self = Self {
         cells_per_pixel: 1,
-        cells_under_masks: 4,
+        squares_under_masks: 4,
         occlusion: Occlusion::Correlated,
         cull_solids: true,
         depths: DepthRange::ALL,
@@ -49,10 +49,10 @@ impl MicropointOptions {
         self
     }
 
-    /// Sets the number of cells per pixel side where a mask is partly open.
+    /// Sets the number of squares on a side of a cell in which a mask is partly open.
     #[must_use]
-    pub const fn with_cells_under_masks(mut self, cells: u32) -> Self {
-        self.cells_under_masks = cells;
+    pub const fn with_squares_under_masks(mut self, squares: u32) -> Self {
+        self.squares_under_masks = squares;
         self
     }
 
@@ -99,7 +99,7 @@ impl<'a> Renderer<'a> {
     /// Prepares a view.
     ///
     /// # Errors
-    /// [`MicropointError::BadCellsPerPixel`], [`MicropointError::BadCellsUnderMasks`], [`MicropointError::BadDepths`].
+    /// [`MicropointError::BadCellsPerPixel`], [`MicropointError::BadSquaresUnderMasks`], [`MicropointError::BadDepths`].
     pub fn new(
         geometry: &'a Geometry,
         opacity: &'a dyn TexturedOpacity,
@@ -110,8 +110,8 @@ impl<'a> Renderer<'a> {
         if !matches!(cells, 1 | 2 | 4) {
             return Err(MicropointError::BadCellsPerPixel(cells));
         }
-        if !matches!(options.cells_under_masks, 1 | 2 | 4) {
-            return Err(MicropointError::BadCellsUnderMasks(options.cells_under_masks));
+        if !matches!(options.squares_under_masks, 1 | 2 | 4) {
+            return Err(MicropointError::BadSquaresUnderMasks(options.squares_under_masks));
         }
         if !options.depths.is_valid() {
             let DepthRange { near, far } = options.depths;
@@ -220,7 +220,7 @@ impl<'a> Renderer<'a> {
         let mut resolve = std::mem::take(&mut tile.resolve);
         let (geometry, lens, opacity) = (self.geometry, &self.lens, self.opacity);
         let squares_per_side = match self.options.occlusion {
-            Occlusion::Correlated => (self.options.cells_under_masks / cells).max(1) as i32,
+            Occlusion::Correlated => self.options.squares_under_masks as i32,
             Occlusion::Paper => 1,
         };
         let depths = self.options.depths;

@@ -95,7 +95,7 @@ fn a_pixel_is_divided_where_a_mask_is_partly_open_only() {
     let view = View::look_at(DVec3::Z * 9.0, DVec3::ZERO, DVec3::Y, camera, 3, 1).unwrap();
     for (cells, expected) in [(1, 1), (2, 2), (4, 8)] {
         // The mask is closed left of the middle of the first pixel, and of the others nothing is seen.
-        let options = MicropointOptions::DEFAULT.with_cells_under_masks(cells);
+        let options = MicropointOptions::DEFAULT.with_squares_under_masks(cells);
         let renderer = Renderer::new(&geometry, &LeftHalf, view, options).unwrap();
         let picture = picture_of(&renderer, [PixelRect { x0: 0, y0: 0, x1: 3, y1: 1 }]);
         assert!(picture[1].is_empty() && picture[2].is_empty());
@@ -107,6 +107,6 @@ fn a_pixel_is_divided_where_a_mask_is_partly_open_only() {
         );
     }
     let refused =
-        Renderer::new(&geometry, &LeftHalf, view, MicropointOptions::DEFAULT.with_cells_under_masks(3));
-    assert_eq!(refused.err(), Some(MicropointError::BadCellsUnderMasks(3)));
+        Renderer::new(&geometry, &LeftHalf, view, MicropointOptions::DEFAULT.with_squares_under_masks(3));
+    assert_eq!(refused.err(), Some(MicropointError::BadSquaresUnderMasks(3)));
 }

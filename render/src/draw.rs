@@ -11,7 +11,7 @@ use crate::monitor::{Monitor, go_on};
 use crate::painter::{Painter, PainterMemory};
 use crate::partial::PartialFrame;
 use crate::prepared::Prepared;
-use crate::shader::{Glow, Shader, Style};
+use crate::shader::{Economy, Glow, Shader, Style};
 use glam::Vec3;
 use pointillist_micropoint::{DepthRange, Renderer, TileCounts};
 use pointillist_parallel::Pool;
@@ -164,7 +164,7 @@ impl Prepared<'_> {
         }
         let mut micropoints = self.scene.render.micropoints().with_depths(style.depths);
         if style.economy.is_some() {
-            micropoints = micropoints.with_cells_under_masks(1);
+            micropoints = micropoints.with_squares_under_masks(Economy::SQUARES_UNDER_MASKS);
         }
         let sights = self.sights.iter();
         let renderers = sights
@@ -173,9 +173,8 @@ impl Prepared<'_> {
         let renderer = &renderers[0];
         monitor.start_lap();
         let lights = if style.lights {
-            let sampled = style.economy.is_some_and(|economy| economy.samples_areas);
             let shown = |light| picture.layers().contains(&LayerKind::Lit(light));
-            scene_lights(self, renderer.lens(), sampled, &shown)?
+            scene_lights(self, renderer.lens(), style.economy, &shown)?
         } else {
             SceneLights::default()
         };

@@ -5,6 +5,7 @@ use crate::emitters::{EmittingPolygon, Side};
 use crate::error::RenderError;
 use crate::prepared::Prepared;
 use crate::scene::LightSource;
+use crate::shader::Economy;
 use crate::surfaces::Surfaces;
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Geometry, Lens};
@@ -80,16 +81,17 @@ impl SceneLights<'_> {
 /// What casts the shadows of some channels of light, and when.
 type Cast<'a> = (Vec3, &'a Geometry, Occasion);
 
-/// All lights that reach anything or of which `shown` says that a layer shows where they do, for receivers that `lens` sees. Lights with an area and lines are taken as a whole unless they ask for samples, or `sampled` does. Where
+/// All lights that reach anything or of which `shown` says that a layer shows where they do, for receivers that `lens` sees. Lights with an area and lines are taken as a whole unless they ask for samples, or `economy` does. Where
 /// something clear lets colours pass differently, a light comes once for each, and once for tiles where none does.
 pub(crate) fn scene_lights<'a>(
     prepared: &'a Prepared<'_>,
     lens: &Lens,
-    sampled: bool,
+    economy: Option<Economy>,
     shown: &dyn Fn(usize) -> bool,
 ) -> Result<SceneLights<'a>, RenderError> {
     let (scene, surfaces) = (prepared.scene, &*prepared.surfaces);
     let all = prepared.geometry.bounds();
+    let sampled = economy.is_some_and(|economy| economy.samples_areas);
     let mut lights = SceneLights::default();
     for (light, source) in scene.lights.iter().enumerate() {
         if source.ambient != Vec3::ZERO {
@@ -115,7 +117,7 @@ pub(crate) fn scene_lights<'a>(
             }
             for sample in 0..source.light.samples() {
                 // What is wrong with a light is told also where it is idle.
-                let mut found = light_sample(prepared, (light, source), sample, cast)?;
+                let mut found = light_sample(prepared, (light, source), (sample, economy), cast)?;
                 if !is_idle {
                     found.shadow = found.shadow.map(|shadow| shadow.seen_from(lens));
                     lights.samples.push(found);
@@ -138,13 +140,17 @@ pub(crate) fn scene_lights<'a>(
 fn light_sample<'a>(
     prepared: &'a Prepared<'_>,
     (light, source): (usize, &LightSource),
-    sample: u32,
+    (sample, economy): (u32, Option<Economy>),
     (channels, geometry, occasion): Cast<'a>,
 ) -> Result<LightSample<'a>, RenderError> {
     let shadow = if source.shadow {
         let options = ShadowOptions::default()
             .with_occlusion(prepared.scene.render.occlusion())
             .with_resolution(source.resolution);
+        let options = match economy {
+            Some(_) => options.with_squares_under_masks(Economy::SQUARES_UNDER_MASKS),
+            None => options,
+        };
         let found = ShadowLight::new(geometry, &*prepared.surfaces, emitter(&source.light, sample), options);
         let named = |e| RenderError::Shadow { name: source.name.clone(), source: e };
         Some(found.map_err(named)?)

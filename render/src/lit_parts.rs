@@ -131,7 +131,9 @@ impl Shader<'_> {
             let of = LitFragments { tile, face, fragments, lit, first };
             first += fragments.len();
             a.fraction = of.fraction();
-            let is_partly_lit = a.fraction > 0.0 && a.fraction < 1.0;
+            // What is evenly lit is seen as without shadow.
+            let is_even = fragments.len() == 1 && shadow.lit_regions(of.first as u32).next().is_none();
+            let is_partly_lit = a.fraction > 0.0 && a.fraction < 1.0 && !is_even;
             let varies = is_partly_lit && self.surfaces.varies(face.id);
             if varies || (is_partly_lit && a.is_close) {
                 a.fraction = lit_parts.collect(&of, shadow, self.surfaces).min(1.0);

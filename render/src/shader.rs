@@ -52,6 +52,11 @@ pub(crate) struct Economy {
     pub(crate) samples_areas: bool,
 }
 
+impl Economy {
+    /// Squares on a side of a cell under masks.
+    pub(crate) const SQUARES_UNDER_MASKS: u32 = 1;
+}
+
 /// What all tiles share.
 pub(crate) struct Shader<'a> {
     pub(crate) scene: &'a Scene,

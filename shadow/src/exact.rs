@@ -2,6 +2,7 @@
 
 use crate::casters::Caster;
 use crate::lit_regions::LitRegions;
+use crate::pieces;
 use crate::query::{Measure, Query};
 use crate::target::Target;
 use glam::DVec2;
@@ -20,6 +21,8 @@ pub(crate) struct Memory {
     blockers: Vec<Blocker>,
     /// Opacities over the whole target that are known already, by caster.
     known: Vec<(u32, f64)>,
+    /// Those of the blockers that are masks, partly open for all that is known.
+    masks: usize,
     /// Where in the list of its group the caster is that hid the last target.
     last_hider: Option<usize>,
     /// Targets that had to be cut.
@@ -33,12 +36,12 @@ impl Memory {
     }
 }
 
-/// The lit fraction of a target, 0..=1; of one that is cut, the lit regions go to `regions`.
+/// The lit fraction of a target, 0..=1; of one that is not evenly lit, the lit regions go to `regions`.
 pub(crate) fn lit_fraction(
     query: &Query<'_>,
     target: &Target,
     outline: &[DVec2],
-    measure: &Measure<'_>,
+    (measure, squares): (&Measure<'_>, u32),
     work: &mut Memory,
     mut regions: Option<&mut LitRegions>,
 ) -> f64 {
@@ -55,22 +58,40 @@ pub(crate) fn lit_fraction(
     let caster = |b: &Blocker| &query.casters[b.number as usize];
     work.blockers.sort_unstable_by(|a, b| compare(caster(a), caster(b)));
     work.partial += 1;
-    let polygon = ConvexPolygon::from_vertices(outline);
     let occluders = TargetOccluders { query, outline, known: &work.known };
-    work.regions.hide(polygon, NEGLIGIBLE * target.area, &work.blockers, &occluders);
-    if work.regions.is_hidden() {
+    let Memory { regions: left, blockers, masks, .. } = work;
+    let (mut lit, mut even) = (0.0, None);
+    // How much passes one mask does not depend on where its holes are, only what it falls on.
+    let uneven = *masks > 1 || (*masks == 1 && regions.is_some());
+    let squares = if uneven { squares } else { 1 };
+    pieces::divide(outline, squares, measure, |piece| {
+        left.hide(*piece, NEGLIGIBLE * target.area, blockers, &occluders);
+        if left.is_hidden() {
+            return;
+        }
+        if let [only] = left.list()
+            && only.polygon.vertices() == outline
+            && !target.shared
+        {
+            even = Some(only.transmittance);
+            return;
+        }
+        for region in left.list() {
+            let outline = region.polygon.vertices();
+            let weight = region.transmittance * measure.area(outline);
+            lit += weight;
+            if let Some(regions) = regions.as_deref_mut() {
+                regions.push(target.receiver, outline, weight, measure);
+            }
+        }
+    });
+    if let Some(transmittance) = even {
+        return transmittance.min(1.0);
+    }
+    if lit <= 0.0 {
         return 0.0;
     }
     let whole = measure.area(outline);
-    let mut lit = 0.0;
-    for region in work.regions.list() {
-        let outline = region.polygon.vertices();
-        let weight = region.transmittance * measure.area(outline);
-        lit += weight;
-        if let Some(regions) = regions.as_deref_mut() {
-            regions.push(target.receiver, outline, weight, measure);
-        }
-    }
     if whole > 0.0 { (lit / whole).min(1.0) } else { 0.0 }
 }
 
@@ -85,6 +106,7 @@ fn find_blockers(
 ) -> bool {
     work.blockers.clear();
     work.known.clear();
+    work.masks = 0;
     let (low, high) = target.bounds;
     // The caster that hid the last target often hides the next one.
     let first = work.last_hider;
@@ -115,11 +137,13 @@ fn find_blockers(
             }
             work.known.push((c, opacity));
         }
-        match front {
-            Front::Nowhere => {}
-            Front::Everywhere => work.blockers.push(Blocker { number: c, front: None }),
-            Front::Within(half) => work.blockers.push(Blocker { number: c, front: Some(half) }),
-        }
+        let half = match front {
+            Front::Nowhere => continue,
+            Front::Everywhere => None,
+            Front::Within(half) => Some(half),
+        };
+        work.blockers.push(Blocker { number: c, front: half });
+        work.masks += usize::from(caster.opacity.is_none());
     }
     true
 }

@@ -39,6 +39,7 @@ mod light;
 mod line;
 mod lit_regions;
 mod options;
+mod pieces;
 mod query;
 mod receiver;
 mod scratch;

@@ -366,7 +366,10 @@ impl<'a> ShadowLight<'a> {
         regions: Option<&mut LitRegions>,
     ) -> f64 {
         match self.light_cells() {
-            None => exact::lit_fraction(query, target, outline, measure, &mut rules.exact, regions),
+            None => {
+                let squares = self.options.squares_under_masks;
+                exact::lit_fraction(query, target, outline, (measure, squares), &mut rules.exact, regions)
+            }
             Some(cells) => layers::lit_fraction(query, outline, measure.face, cells, &mut rules.layers),
         }
     }

@@ -124,8 +124,8 @@ impl ShadowScratch {
     }
 
     /// Where the light of the last call of [`ShadowLight::lit`](crate::ShadowLight::lit) reached a receiver that was added by
-    /// [`Receivers::push_with_regions`](crate::Receivers::push_with_regions). Nothing for one that is wholly lit or wholly dark, on a face
-    /// that the viewer sees edge-on (its plane passes the eye at 1e-9 of its distance or less), and under
+    /// [`Receivers::push_with_regions`](crate::Receivers::push_with_regions). Nothing for one that is evenly lit, such as wholly lit or
+    /// wholly dark or as a mask before all of it lets pass, on a face that the viewer sees edge-on (its plane passes the eye at 1e-9 of its distance or less), and under
     /// [`Occlusion::Paper`](pointillist_micropoint::Occlusion::Paper), which knows fractions only.
     pub fn lit_regions(&self, receiver: u32) -> impl Iterator<Item = LitRegion<'_>> {
         self.lit_regions.of(receiver)
