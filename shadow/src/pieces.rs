@@ -43,16 +43,18 @@ pub(crate) fn divide(
 /// Squares in a target from which it is divided.
 const LEAST: f64 = 2.0;
 
-/// How many columns and rows of about equal sides.
+/// How many columns and rows of about equal sides its bounds are divided into.
 fn counts(outline: &[DVec2], extent: DVec2, squares: u32, measure: &Measure<'_>) -> [i32; 2] {
     let mut seen = ConvexPolygon::EMPTY;
     outline.iter().for_each(|&v| seen.push(measure.in_picture(v)));
     let pieces = f64::from(squares * squares) * seen.area().abs();
-    let ratio = extent.x / extent.y;
-    let count = |n: f64| n.sqrt().round().clamp(1.0, f64::from(squares)) as i32;
-    // Squares of a cell that is divided already stay whole, and what has no size that is known.
-    if !(pieces >= LEAST && pieces.is_finite() && ratio.is_finite() && ratio > 0.0) {
+    // Squares of a cell that is divided already stay whole.
+    if squares == 1 || pieces < LEAST {
         return [1; 2];
     }
-    [count(pieces * ratio), count(pieces / ratio)]
+    let within_bounds = pieces * extent.x * extent.y / convex::area(outline);
+    let ratio = extent.x / extent.y;
+    // A number that is none, as of an outline without area, becomes 1.
+    let count = |n: f64| n.sqrt().round().max(1.0).min(f64::from(squares)) as i32;
+    [count(within_bounds * ratio), count(within_bounds / ratio)]
 }
