@@ -93,15 +93,16 @@ fn a_pixel_is_divided_where_a_mask_is_partly_open_only() {
     let geometry = soup.geometry().unwrap();
     let camera = Projection::Orthographic { height: 1.0 };
     let view = View::look_at(DVec3::Z * 9.0, DVec3::ZERO, DVec3::Y, camera, 3, 1).unwrap();
-    for (cells, expected) in [(1, 1), (2, 2), (4, 8)] {
-        // The mask is closed left of the middle of the first pixel, and of the others nothing is seen.
-        let options = MicropointOptions::DEFAULT.with_squares_under_masks(cells);
+    for (cells, squares, expected) in [(1, 1, 1), (1, 2, 2), (1, 4, 8), (2, 1, 2), (2, 2, 4), (2, 4, 16)] {
+        // The mask is closed left of the middle of the first cell, and of the others nothing is seen.
+        let options =
+            MicropointOptions::DEFAULT.with_cells_per_pixel(cells).with_squares_under_masks(squares);
         let renderer = Renderer::new(&geometry, &LeftHalf, view, options).unwrap();
         let picture = picture_of(&renderer, [PixelRect { x0: 0, y0: 0, x1: 3, y1: 1 }]);
         assert!(picture[1].is_empty() && picture[2].is_empty());
         let weight: f64 = picture[0].iter().map(|seen| seen.weight).sum();
         assert!(
-            (weight - 0.5).abs() < 1e-6 && picture[0].len() == expected,
+            (weight - 0.5 / f64::from(cells)).abs() < 1e-6 && picture[0].len() == expected,
             "{weight}, {} pieces",
             picture[0].len()
         );
