@@ -145,6 +145,9 @@ impl TexturedOpacity for PlainOpacity {
 /// that is not quite empty would still be a part to compare with all others of its cell.
 const OPACITY_ROUNDING: f32 = 1e-6;
 
+/// Corners that most outlines of parts have at most.
+const FEW_CORNERS: usize = 5;
+
 impl Face {
     /// Mean opacity, 0..=1, of the face over a polygon on it: the surface's own times its mask's. `outline` is relative to `corner`.
     #[must_use]
@@ -193,8 +196,23 @@ impl Face {
         outline: &[DVec2],
         ask: impl FnOnce(&[SurfacePoint]) -> T,
     ) -> T {
+        // Memory for all corners that an outline may have costs as much as the few that most have.
+        match outline.len() <= FEW_CORNERS {
+            true => self.over_at_most::<FEW_CORNERS, T>(lens, corner, outline, ask),
+            false => self.over_at_most::<{ convex::MAX_VERTICES }, T>(lens, corner, outline, ask),
+        }
+    }
+
+    #[inline]
+    fn over_at_most<const N: usize, T>(
+        &self,
+        lens: &Lens,
+        corner: DVec2,
+        outline: &[DVec2],
+        ask: impl FnOnce(&[SurfacePoint]) -> T,
+    ) -> T {
         let zero = SurfacePoint { grid: DVec2::ZERO, nearness: 0.0, rational: 1.0, barycentric: DVec3::ZERO };
-        let mut points = [zero; convex::MAX_VERTICES];
+        let mut points = [zero; N];
         let found = self.points(lens, outline.iter().map(|&v| v + corner));
         points.iter_mut().zip(found).for_each(|(to, point)| *to = point);
         ask(&points[..outline.len()])

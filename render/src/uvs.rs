@@ -57,7 +57,7 @@ impl Uvs {
         map: &TexelSums<N>,
         place: &MapPlace,
     ) -> [f64; N] {
-        map.mean(self.corners(triangle, polygon, map, place).as_slice())
+        self.over(triangle, polygon, map, place, |corners| map.mean(corners))
     }
 
     /// Mean of a mask over a polygon of a triangle.
@@ -68,7 +68,7 @@ impl Uvs {
         mask: &MaskSums,
         place: &MapPlace,
     ) -> f64 {
-        mask.mean(self.corners(triangle, polygon, mask.sums(), place).as_slice())
+        self.over(triangle, polygon, mask.sums(), place, |corners| mask.mean(corners))
     }
 
     /// The same roughly ([`MaskSums::rough_mean`]).
@@ -79,7 +79,7 @@ impl Uvs {
         mask: &MaskSums,
         place: &MapPlace,
     ) -> f64 {
-        mask.rough_mean(self.corners(triangle, polygon, mask.sums(), place).as_slice())
+        self.over(triangle, polygon, mask.sums(), place, |corners| mask.rough_mean(corners))
     }
 
     /// The mean of a mask if it is uniform ([`MaskSums::uniform_mean`]).
@@ -90,47 +90,59 @@ impl Uvs {
         mask: &MaskSums,
         place: &MapPlace,
     ) -> Option<f64> {
-        mask.uniform_mean(self.corners(triangle, polygon, mask.sums(), place).as_slice())
+        self.over(triangle, polygon, mask.sums(), place, |corners| mask.uniform_mean(corners))
     }
 
-    fn corners<const N: usize>(
+    /// What is found of a polygon's corners in a map.
+    fn over<const N: usize, T>(
         &self,
         triangle: u32,
         polygon: &[SurfacePoint],
-        sums: &TexelSums<N>,
+        map: &TexelSums<N>,
         place: &MapPlace,
-    ) -> Corners {
+        ask: impl FnOnce(&[TexelCorner]) -> T,
+    ) -> T {
+        debug_assert!(polygon.len() <= MOST_CORNERS, "{} corners", polygon.len());
         let uv = &self.of(triangle, place);
-        let size = DVec2::new(f64::from(sums.width()), f64::from(sums.height()));
-        let mut corners = Corners::default();
-        debug_assert!(polygon.len() <= corners.list.len(), "{} corners", polygon.len());
-        for p in polygon.iter().take(corners.list.len()) {
+        let size = DVec2::new(f64::from(map.width()), f64::from(map.height()));
+        let corner = |p: &SurfacePoint| {
             let at = weighted(uv, p.barycentric);
             let texel = DVec2::new(at.x, 1.0 - at.y) * size;
-            corners.list[corners.len] = TexelCorner { grid: p.grid, rational: p.rational, texel };
-            corners.len += 1;
+            TexelCorner { grid: p.grid, rational: p.rational, texel }
+        };
+        let corners = polygon.iter().map(corner);
+        // Memory for all corners that a polygon may have costs as much as the few that most have.
+        match polygon.len() <= FEW_CORNERS {
+            true => ask(collected::<FEW_CORNERS>(corners).as_slice()),
+            false => ask(collected::<MOST_CORNERS>(corners).as_slice()),
         }
-        corners
     }
 }
 
 /// Most corners of what is seen of a micropoint: as many as `pointillist-dice`'s convex polygons hold.
 const MOST_CORNERS: usize = 16;
 
+/// Corners that most of it has at most.
+const FEW_CORNERS: usize = 5;
+
 /// Corners of a polygon in a texture, on the stack.
-struct Corners {
-    list: [TexelCorner; MOST_CORNERS],
+struct Corners<const M: usize> {
+    list: [TexelCorner; M],
     len: usize,
 }
 
-impl Default for Corners {
-    fn default() -> Self {
-        let zero = TexelCorner { grid: DVec2::ZERO, rational: 1.0, texel: DVec2::ZERO };
-        Self { list: [zero; MOST_CORNERS], len: 0 }
+#[inline]
+fn collected<const M: usize>(corners: impl Iterator<Item = TexelCorner>) -> Corners<M> {
+    let zero = TexelCorner { grid: DVec2::ZERO, rational: 1.0, texel: DVec2::ZERO };
+    let mut found = Corners { list: [zero; M], len: 0 };
+    for (to, corner) in found.list.iter_mut().zip(corners) {
+        *to = corner;
+        found.len += 1;
     }
+    found
 }
 
-impl Corners {
+impl<const M: usize> Corners<M> {
     fn as_slice(&self) -> &[TexelCorner] {
         &self.list[..self.len]
     }
