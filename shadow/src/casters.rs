@@ -1,6 +1,7 @@
 //! Triangles that may stand in the light, and the groups of targets that each may darken.
 
 use crate::grid::{Group, LightGrid};
+use crate::target::Target;
 use glam::DVec2;
 use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
 use pointillist_micropoint::Face;
@@ -28,6 +29,20 @@ pub(crate) struct Nearby {
     pub(crate) id: u32,
     /// Index into [`Casters::list`].
     pub(crate) index: u32,
+}
+
+impl Nearby {
+    /// Whether a caster that is not the target's own face may stand before the target, by its bounds. One condition: which of them fails first varies.
+    #[inline]
+    pub(crate) fn may_darken(&self, target: &Target, face: &Face) -> bool {
+        let ((low, high), (target_low, target_high)) = (self.bounds, target.bounds);
+        (low.x < target_high.x)
+            & (low.y < target_high.y)
+            & (high.x > target_low.x)
+            & (high.y > target_low.y)
+            & (self.nearest >= target.nearness.least)
+            & (self.id != face.id)
+    }
 }
 
 /// An element of the list of casters of a group.

@@ -20,7 +20,7 @@ pub struct ShadowCounts {
     pub casters_culled: u64,
     /// Receivers whose group or face has no caster near: lit without a test.
     pub lit_by_group: u64,
-    /// Receivers behind one caster that covers their whole group or face: dark without a test.
+    /// Receivers whose group or face is wholly covered by a caster, or by casters that share edges: dark without a test.
     pub dark_by_group: u64,
     /// Receivers that had to be cut.
     pub partial: u64,

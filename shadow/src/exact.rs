@@ -1,6 +1,7 @@
 //! The correlated rule: the area of a receiver that is left when all casters in front of it are subtracted.
 
 use crate::casters::Caster;
+use crate::covered::Covering;
 use crate::lit_regions::LitRegions;
 use crate::pieces;
 use crate::query::{Measure, Query};
@@ -19,6 +20,9 @@ const NEGLIGIBLE: f64 = 1e-9;
 pub(crate) struct Memory {
     regions: Regions,
     blockers: Vec<Blocker>,
+    /// Those of them that are opaque and in front of all of the target.
+    whole: Vec<u32>,
+    covering: Covering,
     /// Opacities over the whole target that are known already, by caster.
     known: Vec<(u32, f64)>,
     /// Those of the blockers that are masks, partly open for all that is known.
@@ -53,6 +57,12 @@ pub(crate) fn lit_fraction(
             regions.push(target.receiver, outline, measure.area(outline), measure);
         }
         return 1.0;
+    }
+    let is_whole = |b: &&Blocker| b.front.is_none() && query.casters[b.number as usize].opacity == Some(1.0);
+    work.whole.clear();
+    work.whole.extend(work.blockers.iter().filter(is_whole).map(|b| b.number));
+    if work.covering.hides(&work.whole, |caster| query.shape(caster), outline) {
+        return 0.0;
     }
     // The result must not depend on the order in which casters were found.
     let caster = |b: &Blocker| &query.casters[b.number as usize];
@@ -107,13 +117,11 @@ fn find_blockers(
     work.blockers.clear();
     work.known.clear();
     work.masks = 0;
-    let (low, high) = target.bounds;
     // The caster that hid the last target often hides the next one.
     let first = work.last_hider;
     for at in first.into_iter().chain((0..query.nearby.len()).filter(|&at| Some(at) != first)) {
         let near = &query.nearby[at];
-        let overlaps = near.bounds.0.cmplt(high).all() && near.bounds.1.cmpgt(low).all();
-        if !overlaps || near.nearest < target.nearness.least || near.id == face.id {
+        if !near.may_darken(target, face) {
             continue;
         }
         let (c, caster) = (near.index, &query.casters[near.index as usize]);

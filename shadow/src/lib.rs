@@ -29,6 +29,7 @@ mod casters;
 mod cells;
 mod copies;
 mod counts;
+mod covered;
 mod error;
 mod exact;
 mod grid;

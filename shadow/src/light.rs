@@ -11,7 +11,7 @@ use crate::receiver::{Receivers, Viewer};
 use crate::scratch::{LitFaces, RuleMemory, ShadowScratch, Side, Sum};
 use crate::screen::{Emitter, Screens, sees};
 use crate::target::{Target, Targets, WHOLE_FACE};
-use crate::whole_faces::{self, casters_before};
+use crate::whole_faces;
 use crate::{copies, exact, layers};
 use glam::{DVec2, DVec3};
 use pointillist_dice::{clip_ring, share_before_crossing};
@@ -259,7 +259,7 @@ impl<'a> ShadowLight<'a> {
             targets,
             by_face,
             single,
-            before_face,
+            whole_face,
             lit_faces,
             rules,
             counts,
@@ -284,12 +284,9 @@ impl<'a> ShadowLight<'a> {
                 }
                 let settled = settled.or_else(|| {
                     let face = work.face(self, target.face);
-                    match casters_before(&query, target, (face, outline), before_face) {
-                        true => Some(0.0),
-                        false => before_face.is_empty().then_some(1.0),
-                    }
+                    whole_face.look(&query, target, (face, outline))
                 });
-                let query = Query { nearby: before_face, ..query };
+                let query = Query { nearby: &whole_face.casters, ..query };
                 work.rules.exact.start_group();
                 for receiver in by_face.receivers(target.face) {
                     counts.settle(settled, 1);

@@ -1,6 +1,7 @@
 //! What both occlusion rules use: the casters of a target's group with their opacity, and the measure of areas.
 
 use crate::casters::{Caster, Nearby};
+use crate::covered::Shape;
 use glam::{DVec2, DVec3};
 use pointillist_dice::HalfPlane;
 use pointillist_micropoint::{Face, Geometry, Lens, LensKind, TexturedOpacity};
@@ -18,7 +19,13 @@ pub(crate) struct Query<'a> {
     pub(crate) nearby: &'a [Nearby],
 }
 
-impl Query<'_> {
+impl<'a> Query<'a> {
+    /// The outline of a caster, and the half-planes of its edges.
+    pub(crate) fn shape(&self, caster: u32) -> Shape<'a> {
+        let caster = &self.casters[caster as usize];
+        (caster.polygon.vertices(), &self.sides[caster.sides.clone()])
+    }
+
     /// Opacity of a caster over a polygon of the light grid.
     pub(crate) fn opacity(&self, caster: &Caster, polygon: &[DVec2]) -> f64 {
         caster.opacity.unwrap_or_else(|| {

@@ -6,7 +6,7 @@ use crate::counts::ShadowCounts;
 use crate::grid::LightGrid;
 use crate::lit_regions::{LitRegion, LitRegions};
 use crate::target::Targets;
-use crate::whole_faces::ByFace;
+use crate::whole_faces::{ByFace, WholeFace};
 use crate::{exact, layers};
 use glam::DVec3;
 use pointillist_micropoint::{Face, VisitMemory};
@@ -100,9 +100,9 @@ pub struct ShadowScratch {
     pub(crate) sides: Vec<Side>,
     pub(crate) targets: Targets,
     pub(crate) by_face: ByFace,
-    /// The receiver at hand of a face, and the casters that may darken some of the face.
+    /// The face at hand, and the receiver at hand of it.
+    pub(crate) whole_face: WholeFace,
     pub(crate) single: Targets,
-    pub(crate) before_face: Vec<Nearby>,
     /// Corners of the receiver at hand, in the frame of a lens.
     pub(crate) local: Vec<DVec3>,
     pub(crate) lit_faces: LitFaces,

@@ -4,6 +4,7 @@
 //! it, matter to none of its receivers; what is left is all that these are asked of.
 
 use crate::casters::Nearby;
+use crate::covered::Covering;
 use crate::query::Query;
 use crate::target::Target;
 use glam::{DVec2, DVec3};
@@ -56,35 +57,59 @@ pub(crate) fn is_small(viewer: &Lens, corners: [DVec3; 3]) -> bool {
     (a.max(b).max(c) - a.min(b).min(c)).max_element() <= LARGEST
 }
 
-/// The casters that may darken some receiver of a face go to `found`. Returns true if one alone hides all of them.
-pub(crate) fn casters_before(
-    query: &Query<'_>,
-    target: &Target,
-    (face, outline): (&Face, &[DVec2]),
-    found: &mut Vec<Nearby>,
-) -> bool {
-    found.clear();
-    let (low, high) = target.bounds;
-    for near in query.nearby {
-        let overlaps = near.bounds.0.cmplt(high).all() && near.bounds.1.cmpgt(low).all();
-        if !overlaps || near.nearest < target.nearness.least || near.id == face.id {
-            continue;
+/// What stands before a face that is looked at whole. Memory is reused from face to face.
+#[derive(Debug, Default)]
+pub(crate) struct WholeFace {
+    /// The casters that may darken some of its receivers.
+    pub(crate) casters: Vec<Nearby>,
+    /// Those of them that are opaque and in front of all of it, by their indices.
+    opaque: Vec<u32>,
+    covering: Covering,
+}
+
+impl WholeFace {
+    /// Looks at a face. Returns the lit fraction of its receivers if it is the same for all; else they are to be asked one by one about
+    /// [`WholeFace::casters`].
+    pub(crate) fn look(
+        &mut self,
+        query: &Query<'_>,
+        target: &Target,
+        (face, outline): (&Face, &[DVec2]),
+    ) -> Option<f64> {
+        let Self { casters, opaque, covering } = self;
+        casters.clear();
+        opaque.clear();
+        for near in query.nearby {
+            if !near.may_darken(target, face) {
+                continue;
+            }
+            let caster = &query.casters[near.index as usize];
+            let shape = caster.polygon.vertices();
+            let sides = &query.sides[caster.sides.clone()];
+            if sides.iter().any(|half| separates(half, outline))
+                || convex::has_separating_edge(outline, shape)
+            {
+                continue;
+            }
+            let upper = Layer { face: &caster.face, outline: shape, nearness: caster.face.nearness };
+            let lower = Layer { face, outline, nearness: target.nearness };
+            match in_front(query.lens, DVec2::ZERO, upper, lower, false) {
+                Front::Nowhere => continue,
+                Front::Everywhere if caster.opacity == Some(1.0) => {
+                    if covers(query, sides, outline) {
+                        return Some(0.0);
+                    }
+                    opaque.push(near.index);
+                }
+                Front::Everywhere | Front::Within(_) => {}
+            }
+            casters.push(*near);
         }
-        let caster = &query.casters[near.index as usize];
-        let shape = caster.polygon.vertices();
-        let sides = &query.sides[caster.sides.clone()];
-        if sides.iter().any(|half| separates(half, outline)) || convex::has_separating_edge(outline, shape) {
-            continue;
+        if casters.is_empty() {
+            return Some(1.0);
         }
-        let upper = Layer { face: &caster.face, outline: shape, nearness: caster.face.nearness };
-        let lower = Layer { face, outline, nearness: target.nearness };
-        match in_front(query.lens, DVec2::ZERO, upper, lower, false) {
-            Front::Nowhere => continue,
-            Front::Everywhere if caster.opacity == Some(1.0) && covers(query, sides, outline) => return true,
-            Front::Everywhere | Front::Within(_) => found.push(*near),
-        }
+        covering.hides(opaque, |caster| query.shape(caster), outline).then_some(0.0)
     }
-    false
 }
 
 /// Whether an outline lies beyond the edge of a caster whose inner half-plane this is.

@@ -1,0 +1,207 @@
+//! Targets behind several casters that hide them together, found without cutting.
+//!
+//! Triangles of a mesh that share an edge, on either side of it, leave no gap there. So if every edge of some opaque casters that crosses a target is an edge
+//! of another of them on its other side, then the border of their union does not cross the target; and since each of them overlaps the target, they hide all of
+//! it. Corners that triangles share are projected to the same place, bit for bit.
+//!
+//! 1. The edges that cross the target are collected.
+//! 2. Casters with an edge that no other has on its other side are left out; their other edges then lack a partner, and so on.
+//! 3. If any caster is left, the target is hidden. What is left does not depend on the order of casters.
+
+use glam::DVec2;
+use pointillist_dice::{HalfPlane, convex};
+
+/// More casters than this are not looked at: comparing their edges with each other would take longer than it saves.
+const MOST: usize = 64;
+
+/// A caster's outline and the half-planes of its edges.
+pub(crate) type Shape<'c> = (&'c [DVec2], &'c [HalfPlane]);
+
+/// Memory for one target.
+#[derive(Debug, Default)]
+pub(crate) struct Covering {
+    /// The half-planes of the target's edges.
+    sides: Vec<HalfPlane>,
+    edges: Vec<Edge>,
+    /// For each edge a sum that it shares with its reverse: most others have another.
+    sums: Vec<f64>,
+    /// Whether more than two casters share some edge.
+    forks: bool,
+    /// For each caster, whether it was left out.
+    left_out: Vec<bool>,
+}
+
+/// An edge that crosses the target.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    owner: usize,
+    from: DVec2,
+    to: DVec2,
+    /// An edge of another caster on the other side.
+    partner: Option<usize>,
+}
+
+impl Edge {
+    /// Whether it may cross the interior of a convex outline with these sides.
+    fn crosses(&self, outline: &[DVec2], sides: &[HalfPlane]) -> bool {
+        let along = self.to - self.from;
+        let (mut left, mut right) = (false, false);
+        for &p in outline {
+            let side = along.perp_dot(p - self.from);
+            left |= side > 0.0;
+            right |= side < 0.0;
+        }
+        let is_beyond = |half: &HalfPlane| half.value(self.from) <= 0.0 && half.value(self.to) <= 0.0;
+        left && right && !sides.iter().any(is_beyond)
+    }
+
+    fn is_reverse_of(&self, other: &Self) -> bool {
+        self.from == other.to && self.to == other.from
+    }
+}
+
+impl Covering {
+    /// Whether some of these casters, by their numbers, hide a target with this outline. All must be opaque, in front of all of the target, and overlap it.
+    pub(crate) fn hides<'c>(
+        &mut self,
+        casters: &[u32],
+        shape: impl Fn(u32) -> Shape<'c>,
+        outline: &[DVec2],
+    ) -> bool {
+        if !(2..=MOST).contains(&casters.len()) || !covers_samples(casters, &shape, outline) {
+            return false;
+        }
+        self.collect_edges(casters.iter().map(|&caster| shape(caster).0), outline);
+        self.find_partners();
+        while self.leave_out_incomplete() {}
+        self.left_out.contains(&false)
+    }
+
+    fn collect_edges<'c>(&mut self, casters: impl Iterator<Item = &'c [DVec2]>, outline: &[DVec2]) {
+        self.left_out.clear();
+        self.sides.clear();
+        self.sides.extend(convex::half_planes(outline));
+        self.edges.clear();
+        self.sums.clear();
+        for (owner, ring) in casters.enumerate() {
+            self.left_out.push(false);
+            let mut from = ring[ring.len() - 1];
+            for &to in ring {
+                let edge = Edge { owner, from, to, partner: None };
+                if edge.crosses(outline, &self.sides) {
+                    self.edges.push(edge);
+                    self.sums.push(from.x + to.x);
+                }
+                from = to;
+            }
+        }
+    }
+
+    /// Gives every edge that has one a partner.
+    fn find_partners(&mut self) {
+        self.forks = false;
+        for i in 0..self.edges.len() {
+            if self.edges[i].partner.is_none() {
+                let partner = self.partner(i, |_| true);
+                self.edges[i].partner = partner;
+                if let Some(j) = partner {
+                    self.forks |= *self.edges[j].partner.get_or_insert(i) != i;
+                }
+            }
+        }
+    }
+
+    /// The first edge on the other side of an edge whose owner is wanted.
+    fn partner(&self, edge: usize, wanted: impl Fn(usize) -> bool) -> Option<usize> {
+        let Self { edges, sums, .. } = self;
+        let (edge, sum) = (&edges[edge], sums[edge]);
+        let is_partner = |j: usize| edges[j].is_reverse_of(edge) && wanted(edges[j].owner);
+        sums.iter().enumerate().find_map(|(j, &other)| (other == sum && is_partner(j)).then_some(j))
+    }
+
+    /// Leaves out casters that have an edge without a partner. Returns whether there were any.
+    fn leave_out_incomplete(&mut self) -> bool {
+        let mut changed = false;
+        for i in 0..self.edges.len() {
+            let Edge { owner, partner, .. } = self.edges[i];
+            let stays = |owner: usize| !self.left_out[owner];
+            // Where triangles fork, another one may take the place of a partner that was left out.
+            let another = || self.forks && self.partner(i, stays).is_some();
+            let complete = || partner.is_some_and(|j| stays(self.edges[j].owner) || another());
+            if stays(owner) && !complete() {
+                self.left_out[owner] = true;
+                changed = true;
+            }
+        }
+        changed
+    }
+}
+
+/// Whether casters cover some points of a target. Most targets that are lit in part are told by them.
+fn covers_samples<'c>(casters: &[u32], shape: &impl Fn(u32) -> Shape<'c>, outline: &[DVec2]) -> bool {
+    let sum = outline.iter().fold(DVec2::ZERO, |sum, &v| sum + v);
+    let middle = sum / outline.len() as f64;
+    let covers = |caster: u32, p: DVec2| shape(caster).1.iter().all(|half| half.value(p) >= 0.0);
+    outline.iter().all(|&v| casters.iter().any(|&caster| covers(caster, 0.5 * (middle + v))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec2;
+
+    const TARGET: [DVec2; 3] = [dvec2(-1.0, -1.0), dvec2(1.0, -1.0), dvec2(0.0, 1.0)];
+
+    /// Whether triangles hide the target, in every order.
+    fn hidden_by(triangles: &[[DVec2; 3]]) -> bool {
+        let sides: Vec<Vec<HalfPlane>> = triangles.iter().map(|t| convex::half_planes(t).collect()).collect();
+        let shape = |i: u32| (&triangles[i as usize][..], &sides[i as usize][..]);
+        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
+        let mut covering = Covering::default();
+        let first = covering.hides(&order, shape, &TARGET);
+        for _ in 0..triangles.len() {
+            order.rotate_left(1);
+            assert_eq!(covering.hides(&order, shape, &TARGET), first, "{order:?}");
+        }
+        first
+    }
+
+    #[test]
+    fn neighbours_hide_what_lies_across_their_edge_and_a_slit_does_not() {
+        let [a, b] = [dvec2(0.1, -9.0), dvec2(0.2, 9.0)];
+        let (left, right) = (dvec2(-9.0, 0.0), dvec2(9.0, 0.0));
+        assert!(hidden_by(&[[a, b, left], [b, a, right]]));
+        assert!(!hidden_by(&[[a, b, left], [b, a + 1e-12, right]]));
+    }
+
+    #[test]
+    fn a_fold_hides_one_side_only() {
+        let [a, b] = [dvec2(0.1, -9.0), dvec2(0.2, 9.0)];
+        assert!(!hidden_by(&[[a, b, dvec2(-9.0, 0.0)], [a, b, dvec2(-8.0, 1.0)]]));
+        // Even where the points that are looked at first are covered.
+        let [a, b] = [dvec2(0.9, -9.0), dvec2(0.9, 9.0)];
+        assert!(!hidden_by(&[[a, b, dvec2(-9.0, 0.0)], [a, b, dvec2(-8.0, 1.0)]]));
+    }
+
+    #[test]
+    fn a_fan_hides_what_lies_around_its_centre_unless_a_sector_is_missing() {
+        let centre = dvec2(0.1, -0.2);
+        let ray = |k: u32| centre + 9.0 * DVec2::from_angle(f64::from(k % 7));
+        let fan: Vec<_> = (0..7).map(|k| [centre, ray(k), if k < 6 { ray(k + 1) } else { ray(0) }]).collect();
+        assert!(hidden_by(&fan[..]));
+        assert!((0..7).all(|k| {
+            let others: Vec<_> = (0..7).filter(|&i| i != k).map(|i| fan[i]).collect();
+            !hidden_by(&others)
+        }));
+    }
+
+    #[test]
+    fn where_three_triangles_share_an_edge_any_partner_will_do() {
+        let [a, b] = [dvec2(0.1, -9.0), dvec2(0.2, 9.0)];
+        let (left, right) = (dvec2(-9.0, 0.0), dvec2(9.0, 0.0));
+        // The first on the right is cut short, so that the target reaches beyond it.
+        let short = dvec2(0.6, 0.0);
+        assert!(hidden_by(&[[a, b, left], [b, a, short], [b, a, right]]));
+        assert!(!hidden_by(&[[a, b, left], [b, a, short]]));
+    }
+}
