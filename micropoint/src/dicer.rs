@@ -89,6 +89,15 @@ fn ordered(number: f64) -> i64 {
 /// Outline of a whole cell.
 const CELL: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
 
+/// Whether an edge lies on the border of the cell, or has no length.
+fn on_border(from: DVec2, to: DVec2) -> bool {
+    let on_line = |a: f64, b: f64| (a == b) & ((a == 0.0) | (a == 1.0));
+    on_line(from.x, to.x) | on_line(from.y, to.y) | (from == to)
+}
+
+/// Edges without their reverse so far, up to which [`Dicer::edges_close`] goes on.
+const MOST_OPEN_EDGES: usize = 32;
+
 /// State of one cell of the tile.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
@@ -195,6 +204,8 @@ pub(crate) struct Dicer {
     memory: VisitMemory,
     order: Vec<u32>,
     keys: Vec<(i64, u32)>,
+    /// Edges that have not met their reverse.
+    edges: Vec<(DVec2, DVec2)>,
     neighbours: Neighbours,
     pub(crate) counts: TileCounts,
 }
@@ -475,6 +486,13 @@ impl Dicer {
             self.cells[cell].next_try = summed + 1.0;
             return;
         }
+        if summed < 1.5 && self.cells[cell].closed == f64::NEG_INFINITY && self.edges_close(cell) {
+            let least = |nearness: f64, p: u32| nearness.min(self.parts[p as usize].nearness.least);
+            let nearness = self.parts_of(cell).fold(f64::INFINITY, least);
+            self.set_tiling(cell, count, nearness);
+            self.cells[cell].next_try = summed + 0.5;
+            return;
+        }
         let order = self.sorted_parts(cell);
         let disjoint = if thin { self.disjoint(&order) } else { None };
         if disjoint.is_none() && order.len() > MOST {
@@ -509,13 +527,51 @@ impl Dicer {
         // Whatever broke the prefix off must come to lie behind it, so that only new parts can add to it.
         self.cells[cell].next_try = if tiling > 0 { summed + 0.5 } else { summed + 1.0 - area - COVERED };
         if tiling > 0 && order[tiling..].iter().all(hidden) {
-            self.cells[cell].tiling = tiling as u32;
-            self.cells[cell].tiling_count = self.cells[cell].count;
-            if nearness > self.cells[cell].closed {
-                self.close(cell, nearness);
-            }
+            self.set_tiling(cell, tiling as u32, nearness);
         }
         self.order = order;
+    }
+
+    /// Notes that the nearest parts of a cell tile it, and that the others lie behind this nearness.
+    fn set_tiling(&mut self, cell: usize, parts: u32, nearness: f64) {
+        self.cells[cell].tiling = parts;
+        self.cells[cell].tiling_count = self.cells[cell].count;
+        if nearness > self.cells[cell].closed {
+            self.close(cell, nearness);
+        }
+    }
+
+    /// Whether the parts of a cell are opaque, and each of their edges that is not on the border of the cell is another's edge, the other way round.
+    ///
+    /// Then as many parts lie over one point of the cell as over any other: one, if their areas add up to less than twice that of the cell. Faces that share an edge are cut at
+    /// the same points, bit for bit, so that this holds for pieces of a mesh.
+    fn edges_close(&mut self, cell: usize) -> bool {
+        let mut edges = std::mem::take(&mut self.edges);
+        edges.clear();
+        let (mut opaque, mut area) = (true, 0.0);
+        for p in self.parts_of(cell) {
+            let part = &self.parts[p as usize];
+            opaque &= part.opacity >= 1.0;
+            area += part.area;
+            let outline = self.outline(part);
+            let mut from = outline[outline.len() - 1];
+            for &to in outline {
+                if !on_border(from, to) {
+                    match edges.iter().position(|&other| other == (to, from)) {
+                        Some(reverse) => drop(edges.swap_remove(reverse)),
+                        None => edges.push((from, to)),
+                    }
+                }
+                from = to;
+            }
+            // More than this do not belong to a few neighbours in a mesh.
+            if edges.len() > MOST_OPEN_EDGES {
+                break;
+            }
+        }
+        let closed = opaque && area < 1.5 && edges.is_empty();
+        self.edges = edges;
+        closed
     }
 
     /// How many parts, from the first on, are disjoint; `None` where it takes comparing each with each to tell.
@@ -577,8 +633,10 @@ impl Dicer {
         keys.extend(self.parts_of(cell).map(|p| (ordered(-self.part(p).nearness.most), p)));
         if keys.len() > 1 {
             keys.sort_unstable_by_key(|key| key.0);
-            for equal in keys.chunk_by_mut(|a, b| a.0 == b.0).filter(|equal| equal.len() > 1) {
-                equal.sort_unstable_by(|a, b| self.compare(a.1, b.1));
+            if keys.windows(2).any(|pair| pair[0].0 == pair[1].0) {
+                for equal in keys.chunk_by_mut(|a, b| a.0 == b.0) {
+                    equal.sort_unstable_by(|a, b| self.compare(a.1, b.1));
+                }
             }
         }
         order.extend(keys.iter().map(|key| key.1));
