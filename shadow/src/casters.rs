@@ -3,7 +3,7 @@
 use crate::grid::{Group, LightGrid};
 use crate::target::Target;
 use glam::DVec2;
-use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
+use pointillist_dice::{HalfPlane, convex};
 use pointillist_micropoint::Face;
 use std::ops::Range;
 
@@ -12,7 +12,10 @@ use std::ops::Range;
 pub(crate) struct Caster {
     pub(crate) face: Face,
     pub(crate) bounds: (DVec2, DVec2),
-    pub(crate) polygon: ConvexPolygon,
+    /// Those of [`Casters::vertices`] that are its corners, in positive order.
+    pub(crate) outline: Range<usize>,
+    /// The sum of its corners.
+    pub(crate) corner_sum: DVec2,
     /// Those of [`Casters::sides`] that are the half-planes of its edges.
     pub(crate) sides: Range<usize>,
     /// `None`: textured.
@@ -57,6 +60,7 @@ struct Link {
 pub(crate) struct Casters {
     pub(crate) list: Vec<Caster>,
     pub(crate) sides: Vec<HalfPlane>,
+    pub(crate) vertices: Vec<DVec2>,
     links: Vec<Link>,
 }
 
@@ -65,6 +69,7 @@ impl Casters {
     pub(crate) fn clear(&mut self) {
         self.list.clear();
         self.sides.clear();
+        self.vertices.clear();
         self.links.clear();
     }
 
@@ -94,9 +99,11 @@ impl Casters {
         });
         let used = self.links.len() > first;
         if used {
-            let polygon = ConvexPolygon::from_vertices(outline);
-            let sides = first_side..self.sides.len();
-            self.list.push(Caster { face: *face, bounds, polygon, sides, opacity });
+            let first_vertex = self.vertices.len();
+            self.vertices.extend_from_slice(outline);
+            let corner_sum = outline.iter().fold(DVec2::ZERO, |sum, &v| sum + v);
+            let (outline, sides) = (first_vertex..self.vertices.len(), first_side..self.sides.len());
+            self.list.push(Caster { face: *face, bounds, outline, corner_sum, sides, opacity });
         } else {
             self.sides.truncate(first_side);
         }

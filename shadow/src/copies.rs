@@ -7,14 +7,33 @@
 use crate::casters::Caster;
 use glam::DVec3;
 
+/// So many that few keys share one by chance.
+const SLOTS_PER_KEY: usize = 8;
+
+/// Memory of [`merge`].
+#[derive(Debug, Default)]
+pub(crate) struct Keys {
+    list: Vec<(u64, u32)>,
+    /// For each slot, how many keys fall into it: none, one, or more.
+    slots: Vec<u8>,
+}
+
 /// Merges casters that have the same corners and the same opacity into the first of them; the others get opacity 0. `keys` is memory.
 ///
 /// Only equal opacities are merged: a product of different ones would depend on their order by rounding.
-pub(crate) fn merge(casters: &mut [Caster], keys: &mut Vec<(u64, u32)>) {
+pub(crate) fn merge(casters: &mut [Caster], keys: &mut Keys) {
+    let Keys { list: keys, slots } = keys;
     keys.clear();
     let constant =
         casters.iter().enumerate().filter_map(|(i, c)| Some((key(&c.face.corners, c.opacity?), i as u32)));
     keys.extend(constant);
+    // Hardly any are copies: what has a slot of its own need not be sorted.
+    let count = (SLOTS_PER_KEY * keys.len()).next_power_of_two();
+    slots.clear();
+    slots.resize(count, 0);
+    let slot = |key: u64| key as usize & (count - 1);
+    keys.iter().for_each(|k| slots[slot(k.0)] = 2.min(slots[slot(k.0)] + 1));
+    keys.retain(|k| slots[slot(k.0)] > 1);
     keys.sort_unstable();
     let mut start = 0;
     while start < keys.len() {

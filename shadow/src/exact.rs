@@ -125,12 +125,12 @@ fn find_blockers(
             continue;
         }
         let (c, caster) = (near.index, &query.casters[near.index as usize]);
-        let overlap = overlap(&query.sides[caster.sides.clone()], outline);
-        if overlap == Overlap::Apart || convex::has_separating_edge(outline, caster.polygon.vertices()) {
+        let (shape, sides) = query.shape(c);
+        let overlap = overlap(sides, outline);
+        if overlap == Overlap::Apart || convex::has_separating_edge(outline, shape) {
             continue;
         }
-        let upper =
-            Layer { face: &caster.face, outline: caster.polygon.vertices(), nearness: caster.face.nearness };
+        let upper = Layer { face: &caster.face, outline: shape, nearness: caster.face.nearness };
         let lower = Layer { face, outline, nearness: target.nearness };
         let front = in_front(query.lens, DVec2::ZERO, upper, lower, false);
         if front == Front::Everywhere && overlap == Overlap::Over {
@@ -193,7 +193,7 @@ struct TargetOccluders<'a> {
 
 impl Occluders for TargetOccluders<'_> {
     fn outline(&self, number: u32) -> &[DVec2] {
-        self.query.casters[number as usize].polygon.vertices()
+        self.query.shape(number).0
     }
 
     fn is_opaque(&self, number: u32) -> bool {
@@ -221,9 +221,8 @@ pub(crate) fn compare(a: &Caster, b: &Caster) -> Ordering {
         corners.iter().fold(Ordering::Equal, |order, (x, y)| order.then_with(|| x.total_cmp(y)))
     };
     // The two halves of a rectangle agree in all that so far.
-    let corners = |c: &Caster| c.polygon.vertices().iter().fold(DVec2::ZERO, |sum, &v| sum + v);
     let by_corners = || {
-        let (ca, cb) = (corners(a), corners(b));
+        let (ca, cb) = (a.corner_sum, b.corner_sum);
         ca.x.total_cmp(&cb.x).then(ca.y.total_cmp(&cb.y))
     };
     let by_number = || (a.face.surface, a.face.id).cmp(&(b.face.surface, b.face.id));

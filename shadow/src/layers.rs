@@ -85,7 +85,7 @@ fn transmittance(
             continue;
         }
         let caster = &query.casters[near.index as usize];
-        let inside = clipped_to(&caster.polygon, &square);
+        let inside = clipped_to(&ConvexPolygon::from_vertices(query.shape(near.index).0), &square);
         let area = inside.area();
         if inside.is_empty() || area <= 0.0 {
             continue;

@@ -348,9 +348,9 @@ impl<'a> ShadowLight<'a> {
     }
 
     fn query<'q>(&'q self, screen: usize, casters: &'q Casters, nearby: &'q [Nearby]) -> Query<'q> {
-        let Casters { list, sides, .. } = casters;
+        let Casters { list, sides, vertices, .. } = casters;
         let lens = &self.screens.lenses[screen];
-        Query { lens, geometry: self.geometry, opacity: self.opacity, casters: list, sides, nearby }
+        Query { lens, geometry: self.geometry, opacity: self.opacity, casters: list, sides, vertices, nearby }
     }
 
     fn lit_fraction(

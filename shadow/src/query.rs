@@ -15,6 +15,8 @@ pub(crate) struct Query<'a> {
     pub(crate) casters: &'a [Caster],
     /// The half-planes of their edges.
     pub(crate) sides: &'a [HalfPlane],
+    /// Their corners.
+    pub(crate) vertices: &'a [DVec2],
     /// Those of them that may darken the target's group.
     pub(crate) nearby: &'a [Nearby],
 }
@@ -23,7 +25,7 @@ impl<'a> Query<'a> {
     /// The outline of a caster, and the half-planes of its edges.
     pub(crate) fn shape(&self, caster: u32) -> Shape<'a> {
         let caster = &self.casters[caster as usize];
-        (caster.polygon.vertices(), &self.sides[caster.sides.clone()])
+        (&self.vertices[caster.outline.clone()], &self.sides[caster.sides.clone()])
     }
 
     /// Opacity of a caster over a polygon of the light grid.

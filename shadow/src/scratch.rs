@@ -2,6 +2,7 @@
 
 use crate::casters::{Casters, Nearby};
 use crate::cells::LightCells;
+use crate::copies::Keys;
 use crate::counts::ShadowCounts;
 use crate::grid::LightGrid;
 use crate::lit_regions::{LitRegion, LitRegions};
@@ -109,7 +110,7 @@ pub struct ShadowScratch {
     pub(crate) sums: Vec<Sum>,
     pub(crate) grid: LightGrid,
     pub(crate) casters: Casters,
-    pub(crate) copy_keys: Vec<(u64, u32)>,
+    pub(crate) copy_keys: Keys,
     pub(crate) visit: VisitMemory,
     pub(crate) nearby: Vec<Nearby>,
     pub(crate) rules: RuleMemory,

@@ -84,8 +84,7 @@ impl WholeFace {
                 continue;
             }
             let caster = &query.casters[near.index as usize];
-            let shape = caster.polygon.vertices();
-            let sides = &query.sides[caster.sides.clone()];
+            let (shape, sides) = query.shape(near.index);
             if sides.iter().any(|half| separates(half, outline))
                 || convex::has_separating_edge(outline, shape)
             {
