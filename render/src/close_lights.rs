@@ -28,13 +28,18 @@ impl Shader<'_> {
         let Source::Position(from) = self.scene.lights[light.light].light.source(light.sample) else {
             return false;
         };
-        let depth = match tile.lens().kind {
-            LensKind::Perspective => p.place.position.distance(self.eye),
-            LensKind::Orthographic => 1.0,
+        // The length of a pixel on the surface is (distance from the eye) / (cosine of the slope · scale), and the cosine times that distance is `height`.
+        let normal = p.place.face_normal.as_dvec3();
+        let (distance2, height) = match tile.lens().kind {
+            LensKind::Perspective => {
+                let from_eye = p.place.position - self.eye;
+                (from_eye.length_squared(), normal.dot(from_eye).abs())
+            }
+            LensKind::Orthographic => (1.0, normal.dot(self.forward).abs()),
         };
-        let slope = f64::from(p.place.face_normal.dot(p.place.to_eye).abs());
         let close = CLOSE.min(CLOSE_TO_LOBE * lobe_width(p));
-        self.economy.is_none() && depth > close * slope * tile.lens().scale * p.place.position.distance(from)
+        self.economy.is_none()
+            && distance2 > close * height * tile.lens().scale * p.place.position.distance(from)
     }
 
     /// The mean of [`Shader::arriving`] over convex polygons of the picture, each with its weight.

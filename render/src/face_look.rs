@@ -15,6 +15,8 @@ pub(crate) struct FaceLook {
     pub(crate) material: Material,
     /// Whether normals or colours are interpolated between the corners.
     pub(crate) varies_by_corner: bool,
+    /// Whether anything asks where the eye is.
+    pub(crate) depends_on_view: bool,
     /// How far it stands for a part of a smooth surface, 0 to 1: see [`smoothness`].
     smoothness: f32,
     /// Whether it looks the same from everywhere in any light: it glows, or is black.
@@ -87,10 +89,15 @@ impl Shader<'_> {
         let normal = if face.front { normal } else { -normal }.as_vec3();
         let corners = if is_flat { None } else { self.corner_normals(face) };
         let has_details = self.surfaces.details(face.id).is_some();
+        let varies_by_corner = self.scene.mesh.has_colors() || corners.is_some();
         FaceLook {
             normal,
             material,
-            varies_by_corner: self.scene.mesh.has_colors() || corners.is_some(),
+            varies_by_corner,
+            depends_on_view: material.depends_on_view()
+                || varies_by_corner
+                || has_details
+                || described.details.measured.is_some(),
             smoothness: corners.map_or(0.0, |corners| smoothness(normal, corners)),
             is_constant: !has_details
                 && material.diffuse == Vec3::ZERO

@@ -3,7 +3,7 @@
 use crate::detail::Mapped;
 use crate::face_look::FaceLook;
 use crate::shader::{Place, Point, ShadedSurface, Shader};
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use pointillist_delaunay::Hint;
 use pointillist_micropoint::{Face, Fragment, LensKind, Micropoint, SurfacePoint, Tile};
 use pointillist_shade::{Interpolation, Material, interpolate_color, interpolate_normal};
@@ -52,6 +52,7 @@ impl Shader<'_> {
             (tile.position(grid, face.nearness_at(grid)), MIDDLE)
         };
         let to_eye = match tile.lens().kind {
+            _ if !look.depends_on_view => DVec3::ZERO,
             LensKind::Perspective => -relative.normalize_or_zero(),
             LensKind::Orthographic => -self.forward,
         };

@@ -85,6 +85,7 @@ pub(crate) struct Place {
     pub(crate) position: DVec3,
     /// Only known where something is interpolated between corners.
     pub(crate) barycentric: Vec3,
+    /// Zero where nothing depends on it: see [`FaceLook::depends_on_view`](crate::face_look::FaceLook::depends_on_view).
     pub(crate) to_eye: Vec3,
     /// Unit face normal, on the eye's side.
     pub(crate) face_normal: Vec3,
