@@ -44,6 +44,23 @@ fn ground() -> Soup {
     soup
 }
 
+/// A cloth of 8 × 8 squares above the ground, two triangles each, with corners at these heights and without the triangles where `torn` says so.
+fn cloth(heights: &[f64], torn: &[bool], opacity: f32) -> Soup {
+    let mut soup = ground();
+    let surface = soup.surface(opacity);
+    let corner = |i: usize, j: usize| {
+        dvec3(0.25 * i as f64 - 1.0, 1.0 + heights[(9 * j + i) % heights.len()], 0.25 * j as f64 - 1.0)
+    };
+    for (k, torn) in torn.iter().enumerate() {
+        let (i, j) = (k / 2 % 8, k / 16 % 8);
+        let [a, b, c, d] = [corner(i, j), corner(i, j + 1), corner(i + 1, j + 1), corner(i + 1, j)];
+        if !torn {
+            soup.polygon(&if k % 2 == 0 { [a, b, c] } else { [a, c, d] }, surface);
+        }
+    }
+    soup
+}
+
 fn point() -> BoxedStrategy<DVec3> {
     (-1.0..1.0, -1.0..1.0, -1.0..1.0).prop_map(|(x, y, z)| dvec3(x, y, z)).boxed()
 }
@@ -137,6 +154,24 @@ proptest! {
     #[test]
     fn lit_regions_are_what_is_lit(s in soup(), v in view(), e in emitter()) {
         holds!(invariants::lit_regions_make_up_the_fraction(&s, v, e, 1e-7));
+    }
+
+    #[test]
+    fn what_is_dark_behind_a_cloth_is_dark_when_it_is_cut(
+        heights in prop::collection::vec(0.0..0.6f64, 81),
+        torn in prop::collection::vec(prop::bool::weighted(0.04), 128),
+        (x, z) in (-0.7..0.7f64, -0.7..0.7f64),
+        pixels in 3..9u32,
+    ) {
+        // What lets a trace of light pass is always cut.
+        let traces = 1.0 - f32::EPSILON;
+        let lit = |opacity: f32| {
+            let s = cloth(&heights, &torn, opacity);
+            light_on(&lit_picture(&s, down(2.0, pixels), sun(dvec3(x, -1.0, z)), exact()).unwrap(), 0)
+        };
+        for (i, (opaque, cut)) in lit(1.0).iter().zip(&lit(traces)).enumerate() {
+            prop_assert!((opaque - cut).abs() < 1e-6, "pixel {i}: {opaque} {cut}");
+        }
     }
 
     #[test]
