@@ -14,6 +14,9 @@ pub enum ShadowError {
     /// A fixed light grid must have 1 to 2²⁰ cells per side.
     #[error("a light grid of {0} cells per side; 1 to 1048576 are possible")]
     BadResolution(u32),
+    /// Squares on a side of a cell under masks must be 1, 2 or 4.
+    #[error("{0} squares on a side of a cell under masks; 1, 2 and 4 are possible")]
+    BadSquaresUnderMasks(u32),
     /// The outline of a polygonal light has too few or too many vertices.
     #[error("the light's outline has {found} vertices; 3 to {most} are possible")]
     OutlineLength {

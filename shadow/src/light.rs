@@ -36,8 +36,8 @@ impl<'a> ShadowLight<'a> {
     /// Sets up the screens of a light.
     ///
     /// # Errors
-    /// [`ShadowError`] if the light has no usable position or direction, or the resolution is 0 or
-    /// above 2²⁰.
+    /// [`ShadowError`] if the light has no usable position or direction, the resolution is 0 or
+    /// above 2²⁰, or the squares under masks are not 1, 2 or 4.
     pub fn new(
         geometry: &'a Geometry,
         opacity: &'a dyn TexturedOpacity,
@@ -48,6 +48,9 @@ impl<'a> ShadowLight<'a> {
             && !(1..=1 << 20).contains(&n)
         {
             return Err(ShadowError::BadResolution(n));
+        }
+        if !matches!(options.squares_under_masks, 1 | 2 | 4) {
+            return Err(ShadowError::BadSquaresUnderMasks(options.squares_under_masks));
         }
         let screens = Screens::new(emitter, geometry)?;
         Ok(Self { geometry, opacity, emitter, screens, options })

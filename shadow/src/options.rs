@@ -22,7 +22,7 @@ pub struct ShadowOptions {
     /// the correlated rule the grid merely sorts casters.
     pub resolution: Resolution,
     /// What a receiver gets through several masks is computed in as many pieces as it is larger than a square of which so many are on a side of
-    /// one of the viewer's cells. Default: 4. Masks are taken to be independent within a piece.
+    /// one of the viewer's cells: 1, 2 or 4. Default: 4. Masks are taken to be independent within a piece.
     pub squares_under_masks: u32,
 }
 
@@ -51,7 +51,7 @@ impl ShadowOptions {
         self
     }
 
-    /// Sets the size of pieces behind several masks, at least 1 on a side of a cell.
+    /// Sets how many pieces behind several masks are on a side of a cell.
     #[must_use]
     pub const fn with_squares_under_masks(mut self, squares: u32) -> Self {
         self.squares_under_masks = squares;

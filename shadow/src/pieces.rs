@@ -16,8 +16,9 @@ pub(crate) fn divide(
     mut visit: impl FnMut(&ConvexPolygon),
 ) {
     let (low, high) = convex::bounds(outline);
-    let [columns, rows] = counts(outline, high - low, squares, measure);
-    if columns * rows == 1 || outline.len() > MAX_CUT_VERTICES {
+    let may_be_divided = squares > 1 && outline.len() <= MAX_CUT_VERTICES;
+    let [columns, rows] = if may_be_divided { counts(outline, high - low, squares, measure) } else { [1; 2] };
+    if columns * rows == 1 {
         visit(&ConvexPolygon::from_vertices(outline));
         return;
     }
@@ -49,7 +50,7 @@ fn counts(outline: &[DVec2], extent: DVec2, squares: u32, measure: &Measure<'_>)
     outline.iter().for_each(|&v| seen.push(measure.in_picture(v)));
     let pieces = f64::from(squares * squares) * seen.area().abs();
     // Squares of a cell that is divided already stay whole.
-    if squares == 1 || pieces < LEAST {
+    if pieces < LEAST {
         return [1; 2];
     }
     let within_bounds = pieces * extent.x * extent.y / convex::area(outline);

@@ -2,10 +2,12 @@
 
 use glam::{DVec2, DVec3, dvec3};
 use pointillist_micropoint::{
-    Geometry, MicropointOptions, Projection, Renderer, SurfaceOpacity, SurfacePoint, TexturedOpacity, Tile,
-    View,
+    Geometry, MicropointOptions, PlainOpacity, Projection, Renderer, SurfaceOpacity, SurfacePoint,
+    TexturedOpacity, Tile, View,
 };
-use pointillist_shadow::{Emitter, Receivers, ShadowLight, ShadowOptions, ShadowScratch, Viewer};
+use pointillist_shadow::{
+    Emitter, Receivers, ShadowError, ShadowLight, ShadowOptions, ShadowScratch, Viewer,
+};
 
 /// Cards above the ground, each opaque on one side of x = 0 and empty on the other.
 struct Cards {
@@ -103,6 +105,17 @@ fn what_passes_two_masks_depends_on_where_their_holes_are() {
     let one = ShadowOptions::default().with_squares_under_masks(1);
     let (same, other) = ((0.75_f64.powi(2) + 0.25_f64.powi(2)) / 2.0, 0.75 * 0.25);
     assert!((alike.lit(one).0 - same).abs() < 1e-6 && (apart.lit(one).0 - other).abs() < 1e-6);
+}
+
+#[test]
+fn other_numbers_of_squares_are_refused() {
+    let geometry = Geometry::new(&[], &[], &[], &[]).unwrap();
+    for squares in [0, 3, 8] {
+        let options = ShadowOptions::default().with_squares_under_masks(squares);
+        let down = Emitter::Directional { direction: DVec3::NEG_Z };
+        let refused = ShadowLight::new(&geometry, &PlainOpacity, down, options).err();
+        assert_eq!(refused, Some(ShadowError::BadSquaresUnderMasks(squares)));
+    }
 }
 
 #[test]
