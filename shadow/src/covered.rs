@@ -1,12 +1,11 @@
 //! Targets behind several casters that hide them together, found without cutting.
 //!
 //! Triangles of a mesh that share an edge, on either side of it, leave no gap there. So if every edge of some opaque casters that crosses a target is an edge
-//! of another of them on its other side, then the border of their union does not cross the target; and since each of them overlaps the target, they hide all of
-//! it. Corners that triangles share are projected to the same place, bit for bit.
+//! of another of them on its other side, then the border of their union does not cross the target; and if they hide its middle, they hide all of it. Corners that triangles share are projected to the same place, bit for bit.
 //!
 //! 1. The edges that cross the target are collected.
 //! 2. Casters with an edge that no other has on its other side are left out; their other edges then lack a partner, and so on.
-//! 3. If any caster is left, the target is hidden. What is left does not depend on the order of casters.
+//! 3. If a caster is left that covers the middle of the target, this is hidden. What is left does not depend on the order of casters.
 
 use glam::DVec2;
 use pointillist_dice::{HalfPlane, convex};
@@ -74,7 +73,10 @@ impl Covering {
         self.collect_edges(casters.iter().map(|&caster| shape(caster).0), outline);
         self.find_partners();
         while self.leave_out_incomplete() {}
-        self.left_out.contains(&false)
+        // One that only touches the target within rounding has no edge that crosses it.
+        let middle = middle(outline);
+        let covers_middle = |(&caster, left_out): (&u32, &bool)| !left_out && covers(shape(caster), middle);
+        casters.iter().zip(&self.left_out).any(covers_middle)
     }
 
     fn collect_edges<'c>(&mut self, casters: impl Iterator<Item = &'c [DVec2]>, outline: &[DVec2]) {
@@ -139,10 +141,16 @@ impl Covering {
 
 /// Whether casters cover some points of a target. Most targets that are lit in part are told by them.
 fn covers_samples<'c>(casters: &[u32], shape: &impl Fn(u32) -> Shape<'c>, outline: &[DVec2]) -> bool {
-    let sum = outline.iter().fold(DVec2::ZERO, |sum, &v| sum + v);
-    let middle = sum / outline.len() as f64;
-    let covers = |caster: u32, p: DVec2| shape(caster).1.iter().all(|half| half.value(p) >= 0.0);
-    outline.iter().all(|&v| casters.iter().any(|&caster| covers(caster, 0.5 * (middle + v))))
+    let middle = middle(outline);
+    outline.iter().all(|&v| casters.iter().any(|&caster| covers(shape(caster), 0.5 * (middle + v))))
+}
+
+fn covers((_, sides): Shape<'_>, p: DVec2) -> bool {
+    sides.iter().all(|half| half.value(p) >= 0.0)
+}
+
+fn middle(outline: &[DVec2]) -> DVec2 {
+    outline.iter().fold(DVec2::ZERO, |sum, &v| sum + v) / outline.len() as f64
 }
 
 #[cfg(test)]
