@@ -427,8 +427,8 @@ impl<const N: usize> TexelSums<N> {
 }
 
 impl TexelSums<1> {
-    /// The sums of 8-bit texels, row by row from the top, of which 255 stands for 1. Exact, in half a byte for each texel beside `texels`, which are
-    /// shared.
+    /// The sums of 8-bit texels, row by row from the top, of which 255 stands for 1. Exact over few texels, in 16 bits where
+    /// texels are taken together; half a byte for each texel beside `texels`, which are shared.
     ///
     /// # Errors
     /// [`MicropointError::BadTexture`] if there are no texels or not `width · height`.
