@@ -6,7 +6,7 @@ use crate::scene::Scene;
 use pointillist_view::{PixelRect, View};
 
 /// Pixels on a side of a tile: about a thousand cells, whose state stays in the second-level cache.
-const TILE_SIDE: u32 = 16;
+const TILE_SIDE: u32 = 32;
 
 /// So many triangles a pixel halve the side of tiles, and so many more halve it again. A tile holds all that is visible in it at once: with
 /// triangles so small, smaller tiles draw at the same pace in less memory, and leave fewer threads idle at the end.
