@@ -5,17 +5,33 @@ use crate::frame::{Frame, Layer, LayerKind};
 use crate::scene::Scene;
 use pointillist_view::{PixelRect, View};
 
-/// Pixels on a side of a tile: about a thousand cells, whose state stays in the second-level cache.
-const TILE_SIDE: u32 = 32;
+/// Pixels on a side of the largest tiles: the state of their thousand cells stays in the second-level cache, and what lies between them and
+/// the lights is found once for all of them.
+const LARGEST_SIDE: u32 = 32;
 
-/// So many triangles a pixel halve the side of tiles, and so many more halve it again. A tile holds all that is visible in it at once: with
+/// Pixels on a side of tiles of pictures for which these would be too large.
+const COMMON_SIDE: u32 = 16;
+
+/// Pictures with fewer pixels are common: threads would share too few of the largest tiles.
+const SMALL_PICTURE: u64 = 64 * (LARGEST_SIDE as u64).pow(2);
+
+/// With more triangles a pixel than this, tiles are common.
+const DENSE: u64 = 8;
+
+/// So many triangles a pixel halve the side of common tiles, and so many more halve it again. A tile holds all that is visible in it at once: with
 /// triangles so small, smaller tiles draw at the same pace in less memory, and leave fewer threads idle at the end.
 const CROWDED: [u64; 2] = [32, 256];
 
-/// Pixels on a side of a tile of a picture with so many triangles.
-fn tile_side(triangles: u64, pixels: u64) -> u32 {
-    let is_above = |&&limit: &&u64| triangles / limit > pixels;
-    TILE_SIDE >> CROWDED.iter().filter(is_above).count()
+/// Pixels on a side of a tile of a picture with so many pixels.
+fn tile_side(scene: &Scene, pixels: u64) -> u32 {
+    let triangles = scene.mesh.triangle_count() as u64;
+    let is_above = |limit: u64| triangles / limit > pixels;
+    // Behind masks much more is visible in a tile than its pixels and triangles tell.
+    let has_masks = scene.materials.iter().any(|m| m.opacity_map.is_some());
+    if pixels >= SMALL_PICTURE && !has_masks && !is_above(DENSE) {
+        return LARGEST_SIDE;
+    }
+    COMMON_SIDE >> CROWDED.iter().filter(|&&limit| is_above(limit)).count()
 }
 
 /// What a tile's pixels hold: sums over their micropoints.
@@ -61,7 +77,7 @@ impl PartialFrame {
             depth: vec![f32::INFINITY; pixels],
             layers: options.layers.iter().map(layer).collect(),
         };
-        let tile_side = tile_side(scene.mesh.triangle_count() as u64, view.picture().pixels());
+        let tile_side = tile_side(scene, view.picture().pixels());
         let drawn = vec![false; window.tiles(tile_side).count()];
         Self { frame, view, layers: options.layers.clone(), tile_side, drawn }
     }

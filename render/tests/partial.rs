@@ -168,3 +168,20 @@ fn smaller_tiles_for_many_triangles_have_the_same_pixels() {
     }
     assert_eq!(tiles, [5 * 4, 5 * 3, 10 * 7, 9 * 4, 19 * 14, 17 * 6]);
 }
+
+/// Tiles of large pictures are larger, unless there are masks: here one that nothing shows.
+#[test]
+fn larger_tiles_have_the_same_pixels() {
+    let mut plain = scene();
+    [plain.image.width, plain.image.height] = [320, 210];
+    let mut masked = scene();
+    [masked.image.width, masked.image.height] = [320, 210];
+    let mask = masked.add_texture(Texture::new("mask", [2, 1], Texels::from_opacities(vec![255, 0])));
+    let white = shade::Material::lambert(Vec3::ONE);
+    masked.add_material(Material::new("leaf", white).with_opacity_map(mask));
+    let [plain, masked] = [&plain, &masked].map(|scene| Prepared::new(scene, &()).unwrap());
+    let tiles = [&plain, &masked].map(|p| p.begin(&DrawOptions::DEFAULT).unwrap().tile_count());
+    assert_eq!(tiles, [10 * 7, 20 * 14]);
+    let layers = DrawOptions::DEFAULT.with_layers(vec![LayerKind::Normal, LayerKind::Lit(0), LayerKind::Id]);
+    assert_eq!(plain.draw(&layers, &()).unwrap(), masked.draw(&layers, &()).unwrap());
+}
