@@ -7,6 +7,7 @@
 //! 2. Casters with an edge that no other has on its other side are left out; their other edges then lack a partner, and so on.
 //! 3. If a caster is left that covers the middle of the target, this is hidden. What is left does not depend on the order of casters.
 
+use crate::overlap::Edges;
 use glam::DVec2;
 use pointillist_dice::{HalfPlane, convex};
 
@@ -16,19 +17,31 @@ const MOST: usize = 64;
 /// A caster's outline and the half-planes of its edges.
 pub(crate) type Shape<'c> = (&'c [DVec2], &'c [HalfPlane]);
 
+/// An opaque caster in front of all of the target.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cover {
+    /// Its number.
+    pub(crate) caster: u32,
+    /// Its edges whose lines may cross the target.
+    pub(crate) across: Edges,
+}
+
 /// Memory for one target.
 #[derive(Debug, Default)]
 pub(crate) struct Covering {
     /// The half-planes of the target's edges.
     sides: Vec<HalfPlane>,
     edges: Vec<Edge>,
-    /// For each edge a sum that it shares with its reverse: most others have another.
-    sums: Vec<f64>,
+    /// The last edge with each remainder of [`Edge::key`].
+    last: Vec<Option<u16>>,
     /// Whether more than two casters share some edge.
     forks: bool,
     /// For each caster, whether it was left out.
     left_out: Vec<bool>,
 }
+
+/// Edges are looked up by one of so many keys.
+const KEYS: usize = 64;
 
 /// An edge that crosses the target.
 #[derive(Clone, Copy, Debug)]
@@ -36,22 +49,18 @@ struct Edge {
     owner: usize,
     from: DVec2,
     to: DVec2,
+    /// The edge before it with the same key.
+    before: Option<u16>,
     /// An edge of another caster on the other side.
-    partner: Option<usize>,
+    partner: Option<u16>,
 }
 
 impl Edge {
-    /// Whether it may cross the interior of a convex outline with these sides.
-    fn crosses(&self, outline: &[DVec2], sides: &[HalfPlane]) -> bool {
-        let along = self.to - self.from;
-        let (mut left, mut right) = (false, false);
-        for &p in outline {
-            let side = along.perp_dot(p - self.from);
-            left |= side > 0.0;
-            right |= side < 0.0;
-        }
-        let is_beyond = |half: &HalfPlane| half.value(self.from) <= 0.0 && half.value(self.to) <= 0.0;
-        left && right && !sides.iter().any(is_beyond)
+    /// The same for an edge and its reverse.
+    fn key(&self) -> usize {
+        // Sums that differ mostly differ in their last bits, which the product carries to its first ones.
+        const ODD: u64 = 0x9e37_79b9_7f4a_7c15;
+        ((self.from.x + self.to.x).to_bits().wrapping_mul(ODD) >> (64 - KEYS.trailing_zeros())) as usize
     }
 
     fn is_reverse_of(&self, other: &Self) -> bool {
@@ -60,43 +69,58 @@ impl Edge {
 }
 
 impl Covering {
-    /// Whether some of these casters, by their numbers, hide a target with this outline. All must be opaque, in front of all of the target, and overlap it.
+    /// Whether some of these casters hide a target with this outline.
     pub(crate) fn hides<'c>(
         &mut self,
-        casters: &[u32],
+        casters: &[Cover],
         shape: impl Fn(u32) -> Shape<'c>,
         outline: &[DVec2],
     ) -> bool {
         if !(2..=MOST).contains(&casters.len()) || !covers_samples(casters, &shape, outline) {
             return false;
         }
-        self.collect_edges(casters.iter().map(|&caster| shape(caster).0), outline);
+        self.collect_edges(casters, &shape, outline);
         self.find_partners();
         while self.leave_out_incomplete() {}
         // One that only touches the target within rounding has no edge that crosses it.
         let middle = middle(outline);
-        let covers_middle = |(&caster, left_out): (&u32, &bool)| !left_out && covers(shape(caster), middle);
+        let covers_middle = |(c, left_out): (&Cover, &bool)| !left_out && covers(shape(c.caster), middle);
         casters.iter().zip(&self.left_out).any(covers_middle)
     }
 
-    fn collect_edges<'c>(&mut self, casters: impl Iterator<Item = &'c [DVec2]>, outline: &[DVec2]) {
+    fn collect_edges<'c>(&mut self, casters: &[Cover], shape: &impl Fn(u32) -> Shape<'c>, outline: &[DVec2]) {
         self.left_out.clear();
+        self.left_out.resize(casters.len(), false);
         self.sides.clear();
         self.sides.extend(convex::half_planes(outline));
         self.edges.clear();
-        self.sums.clear();
-        for (owner, ring) in casters.enumerate() {
-            self.left_out.push(false);
-            let mut from = ring[ring.len() - 1];
+        self.last.clear();
+        self.last.resize(KEYS, None);
+        for (owner, &Cover { caster, across }) in casters.iter().enumerate() {
+            let ring = shape(caster).0;
+            let (mut from, mut number) = (ring[ring.len() - 1], 0);
             for &to in ring {
-                let edge = Edge { owner, from, to, partner: None };
-                if edge.crosses(outline, &self.sides) {
-                    self.edges.push(edge);
-                    self.sums.push(from.x + to.x);
+                // Corners that coincide have no half-plane between them.
+                if from != to {
+                    if across.has(number) && !self.is_beyond_a_side(from, to) {
+                        self.push(Edge { owner, from, to, before: None, partner: None });
+                    }
+                    number += 1;
                 }
                 from = to;
             }
         }
+    }
+
+    /// Whether an edge, whose line crosses the target, lies outside of it.
+    fn is_beyond_a_side(&self, from: DVec2, to: DVec2) -> bool {
+        self.sides.iter().any(|half| half.value(from).max(half.value(to)) <= 0.0)
+    }
+
+    fn push(&mut self, mut edge: Edge) {
+        let number = Some(self.edges.len() as u16);
+        edge.before = std::mem::replace(&mut self.last[edge.key()], number);
+        self.edges.push(edge);
     }
 
     /// Gives every edge that has one a partner.
@@ -107,18 +131,24 @@ impl Covering {
                 let partner = self.partner(i, |_| true);
                 self.edges[i].partner = partner;
                 if let Some(j) = partner {
-                    self.forks |= *self.edges[j].partner.get_or_insert(i) != i;
+                    self.forks |= *self.edges[usize::from(j)].partner.get_or_insert(i as u16) != i as u16;
                 }
             }
         }
     }
 
-    /// The first edge on the other side of an edge whose owner is wanted.
-    fn partner(&self, edge: usize, wanted: impl Fn(usize) -> bool) -> Option<usize> {
-        let Self { edges, sums, .. } = self;
-        let (edge, sum) = (&edges[edge], sums[edge]);
-        let is_partner = |j: usize| edges[j].is_reverse_of(edge) && wanted(edges[j].owner);
-        sums.iter().enumerate().find_map(|(j, &other)| (other == sum && is_partner(j)).then_some(j))
+    /// An edge on the other side of an edge whose owner is wanted.
+    fn partner(&self, edge: usize, wanted: impl Fn(usize) -> bool) -> Option<u16> {
+        let edge = &self.edges[edge];
+        let mut next = self.last[edge.key()];
+        while let Some(number) = next {
+            let other = &self.edges[usize::from(number)];
+            if other.is_reverse_of(edge) && wanted(other.owner) {
+                break;
+            }
+            next = other.before;
+        }
+        next
     }
 
     /// Leaves out casters that have an edge without a partner. Returns whether there were any.
@@ -129,7 +159,7 @@ impl Covering {
             let stays = |owner: usize| !self.left_out[owner];
             // Where triangles fork, another one may take the place of a partner that was left out.
             let another = || self.forks && self.partner(i, stays).is_some();
-            let complete = || partner.is_some_and(|j| stays(self.edges[j].owner) || another());
+            let complete = || partner.is_some_and(|j| stays(self.edges[usize::from(j)].owner) || another());
             if stays(owner) && !complete() {
                 self.left_out[owner] = true;
                 changed = true;
@@ -140,9 +170,9 @@ impl Covering {
 }
 
 /// Whether casters cover some points of a target. Most targets that are lit in part are told by them.
-fn covers_samples<'c>(casters: &[u32], shape: &impl Fn(u32) -> Shape<'c>, outline: &[DVec2]) -> bool {
+fn covers_samples<'c>(casters: &[Cover], shape: &impl Fn(u32) -> Shape<'c>, outline: &[DVec2]) -> bool {
     let middle = middle(outline);
-    outline.iter().all(|&v| casters.iter().any(|&caster| covers(shape(caster), 0.5 * (middle + v))))
+    outline.iter().all(|&v| casters.iter().any(|c| covers(shape(c.caster), 0.5 * (middle + v))))
 }
 
 fn covers((_, sides): Shape<'_>, p: DVec2) -> bool {
@@ -156,6 +186,7 @@ fn middle(outline: &[DVec2]) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::overlap::Overlap;
     use glam::dvec2;
 
     const TARGET: [DVec2; 3] = [dvec2(-1.0, -1.0), dvec2(1.0, -1.0), dvec2(0.0, 1.0)];
@@ -164,7 +195,12 @@ mod tests {
     fn hidden_by(triangles: &[[DVec2; 3]]) -> bool {
         let sides: Vec<Vec<HalfPlane>> = triangles.iter().map(|t| convex::half_planes(t).collect()).collect();
         let shape = |i: u32| (&triangles[i as usize][..], &sides[i as usize][..]);
-        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
+        let across = |sides: &[HalfPlane]| match Overlap::of(sides, &TARGET) {
+            Overlap::Across(edges) => edges,
+            Overlap::Apart | Overlap::Over => Edges::default(),
+        };
+        let cover = |(i, sides): (usize, &Vec<HalfPlane>)| Cover { caster: i as u32, across: across(sides) };
+        let mut order: Vec<Cover> = sides.iter().enumerate().map(cover).collect();
         let mut covering = Covering::default();
         let first = covering.hides(&order, shape, &TARGET);
         for _ in 0..triangles.len() {

@@ -1,14 +1,15 @@
 //! The correlated rule: the area of a receiver that is left when all casters in front of it are subtracted.
 
 use crate::casters::Caster;
-use crate::covered::Covering;
+use crate::covered::{Cover, Covering};
 use crate::lit_regions::LitRegions;
+use crate::overlap::{Edges, Overlap};
 use crate::pieces;
 use crate::query::{Measure, Query};
 use crate::target::Target;
 use glam::DVec2;
 use pointillist_dice::hide::{Blocker, Occluders, Regions};
-use pointillist_dice::{ConvexPolygon, HalfPlane, convex};
+use pointillist_dice::{ConvexPolygon, convex};
 use pointillist_micropoint::{Face, Front, Layer, in_front};
 use std::cmp::Ordering;
 
@@ -21,7 +22,7 @@ pub(crate) struct Memory {
     regions: Regions,
     blockers: Vec<Blocker>,
     /// Those of them that are opaque and in front of all of the target.
-    whole: Vec<u32>,
+    whole: Vec<Cover>,
     covering: Covering,
     /// Opacities over the whole target that are known already, by caster.
     known: Vec<(u32, f64)>,
@@ -58,9 +59,6 @@ pub(crate) fn lit_fraction(
         }
         return 1.0;
     }
-    let is_whole = |b: &&Blocker| b.front.is_none() && query.casters[b.number as usize].opacity == Some(1.0);
-    work.whole.clear();
-    work.whole.extend(work.blockers.iter().filter(is_whole).map(|b| b.number));
     if work.covering.hides(&work.whole, |caster| query.shape(caster), outline) {
         return 0.0;
     }
@@ -115,6 +113,7 @@ fn find_blockers(
     work: &mut Memory,
 ) -> bool {
     work.blockers.clear();
+    work.whole.clear();
     work.known.clear();
     work.masks = 0;
     // The caster that hid the last target often hides the next one.
@@ -126,7 +125,7 @@ fn find_blockers(
         }
         let (c, caster) = (near.index, &query.casters[near.index as usize]);
         let (shape, sides) = query.shape(c);
-        let overlap = overlap(sides, outline);
+        let overlap = Overlap::of(sides, outline);
         if overlap == Overlap::Apart || convex::has_separating_edge(outline, shape) {
             continue;
         }
@@ -151,37 +150,13 @@ fn find_blockers(
             Front::Within(half) => Some(half),
         };
         work.blockers.push(Blocker { number: c, front: half });
+        if half.is_none() && caster.opacity == Some(1.0) {
+            let across = if let Overlap::Across(edges) = overlap { edges } else { Edges::default() };
+            work.whole.push(Cover { caster: c, across });
+        }
         work.masks += usize::from(caster.opacity.is_none());
     }
     true
-}
-
-/// How a caster's outline lies to a target.
-#[derive(PartialEq)]
-enum Overlap {
-    /// One of its edges separates them.
-    Apart,
-    /// It contains the target.
-    Over,
-    Other,
-}
-
-/// Takes the caster by the half-planes of its edges.
-fn overlap(caster: &[HalfPlane], target: &[DVec2]) -> Overlap {
-    let mut over = true;
-    for half in caster {
-        let (mut inside, mut outside) = (false, false);
-        for &p in target {
-            let value = half.value(p);
-            inside |= value > 0.0;
-            outside |= value < 0.0;
-        }
-        if !inside {
-            return Overlap::Apart;
-        }
-        over &= !outside;
-    }
-    if over { Overlap::Over } else { Overlap::Other }
 }
 
 /// The casters before one target.

@@ -40,6 +40,7 @@ mod light;
 mod line;
 mod lit_regions;
 mod options;
+mod overlap;
 mod pieces;
 mod query;
 mod receiver;

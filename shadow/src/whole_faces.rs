@@ -4,7 +4,8 @@
 //! it, matter to none of its receivers; what is left is all that these are asked of.
 
 use crate::casters::Nearby;
-use crate::covered::Covering;
+use crate::covered::{Cover, Covering};
+use crate::overlap::{Edges, Overlap};
 use crate::query::Query;
 use crate::target::Target;
 use glam::{DVec2, DVec3};
@@ -62,8 +63,8 @@ pub(crate) fn is_small(viewer: &Lens, corners: [DVec3; 3]) -> bool {
 pub(crate) struct WholeFace {
     /// The casters that may darken some of its receivers.
     pub(crate) casters: Vec<Nearby>,
-    /// Those of them that are opaque and in front of all of it, by their indices.
-    opaque: Vec<u32>,
+    /// Those of them that are opaque and in front of all of it.
+    opaque: Vec<Cover>,
     covering: Covering,
 }
 
@@ -85,9 +86,8 @@ impl WholeFace {
             }
             let caster = &query.casters[near.index as usize];
             let (shape, sides) = query.shape(near.index);
-            if sides.iter().any(|half| separates(half, outline))
-                || convex::has_separating_edge(outline, shape)
-            {
+            let overlap = Overlap::of(sides, outline);
+            if overlap == Overlap::Apart || convex::has_separating_edge(outline, shape) {
                 continue;
             }
             let upper = Layer { face: &caster.face, outline: shape, nearness: caster.face.nearness };
@@ -95,10 +95,12 @@ impl WholeFace {
             match in_front(query.lens, DVec2::ZERO, upper, lower, false) {
                 Front::Nowhere => continue,
                 Front::Everywhere if caster.opacity == Some(1.0) => {
-                    if covers(query, sides, outline) {
-                        return Some(0.0);
-                    }
-                    opaque.push(near.index);
+                    let across = match overlap {
+                        Overlap::Across(edges) => edges,
+                        _ if covers(query, sides, outline) => return Some(0.0),
+                        _ => Edges::default(),
+                    };
+                    opaque.push(Cover { caster: near.index, across });
                 }
                 Front::Everywhere | Front::Within(_) => {}
             }
@@ -109,11 +111,6 @@ impl WholeFace {
         }
         covering.hides(opaque, |caster| query.shape(caster), outline).then_some(0.0)
     }
-}
-
-/// Whether an outline lies beyond the edge of a caster whose inner half-plane this is.
-fn separates(half: &HalfPlane, outline: &[DVec2]) -> bool {
-    outline.iter().all(|&p| half.value(p) <= 0.0)
 }
 
 /// Whether a caster reaches beyond an outline all around, by [`MARGIN`].
