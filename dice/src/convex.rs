@@ -268,6 +268,13 @@ pub fn bounds(points: &[DVec2]) -> (DVec2, DVec2) {
 /// area that can be seen.
 const SEPARATION_SLACK: f64 = 2e-12;
 
+/// Values of [`HalfPlane::left_of`] an edge up to this count as on or beyond it, where [`has_separating_edge`] asks.
+#[must_use]
+#[inline]
+pub fn separation_slack(edge: DVec2) -> f64 {
+    SEPARATION_SLACK * (edge.x.abs() + edge.y.abs())
+}
+
 /// Edges this much shorter than their polygon have a direction that may be mostly rounding: coordinates are
 /// good to about 1e-16, so what lies a polygon's size away is displaced by 1e-12 at the least.
 const SHORT_EDGE: f64 = 1e-4;
@@ -304,11 +311,10 @@ pub fn has_separating_edge(a: &[DVec2], b: &[DVec2]) -> bool {
     let mut p = last;
     for &q in a {
         let d = q - p;
-        let length = d.x.abs() + d.y.abs();
-        let slack = SEPARATION_SLACK * length;
+        let slack = separation_slack(d);
         // The first point alone refuses most edges.
         if d.perp_dot(first - p) <= slack
-            && length > 0.0
+            && d != DVec2::ZERO
             && others.iter().all(|&v| d.perp_dot(v - p) <= slack)
             // The line through two vertices that nearly coincide may run through `a` itself.
             && a.iter().all(|&v| d.perp_dot(v - p) >= -slack)

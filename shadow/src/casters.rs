@@ -46,6 +46,19 @@ impl Nearby {
             & (self.nearest >= target.nearness.least)
             & (self.id != face.id)
     }
+
+    /// Finds those that may stand before a target by their bounds, by their places in the list.
+    pub(crate) fn find(list: &[Self], target: &Target, face: &Face, found: &mut Vec<u32>) {
+        // Without branches: which of them do is hard to predict.
+        found.clear();
+        found.resize(list.len(), 0);
+        let mut count = 0;
+        for (at, near) in list.iter().enumerate() {
+            found[count] = at as u32;
+            count += usize::from(near.may_darken(target, face));
+        }
+        found.truncate(count);
+    }
 }
 
 /// An element of the list of casters of a group.

@@ -186,7 +186,7 @@ fn middle(outline: &[DVec2]) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::overlap::Overlap;
+    use crate::overlap::{Corners, Overlap};
     use glam::dvec2;
 
     const TARGET: [DVec2; 3] = [dvec2(-1.0, -1.0), dvec2(1.0, -1.0), dvec2(0.0, 1.0)];
@@ -195,7 +195,9 @@ mod tests {
     fn hidden_by(triangles: &[[DVec2; 3]]) -> bool {
         let sides: Vec<Vec<HalfPlane>> = triangles.iter().map(|t| convex::half_planes(t).collect()).collect();
         let shape = |i: u32| (&triangles[i as usize][..], &sides[i as usize][..]);
-        let across = |sides: &[HalfPlane]| match Overlap::of(sides, &TARGET) {
+        let mut corners = Corners::default();
+        corners.set(&TARGET);
+        let across = |sides: &[HalfPlane]| match Overlap::of(sides, &corners) {
             Overlap::Across(edges) => edges,
             Overlap::Apart | Overlap::Over => Edges::default(),
         };

@@ -3,13 +3,13 @@
 use crate::casters::Caster;
 use crate::covered::{Cover, Covering};
 use crate::lit_regions::LitRegions;
-use crate::overlap::{Edges, Overlap};
+use crate::overlap::{Corners, Edges, Overlap};
 use crate::pieces;
 use crate::query::{Measure, Query};
 use crate::target::Target;
 use glam::DVec2;
+use pointillist_dice::ConvexPolygon;
 use pointillist_dice::hide::{Blocker, Occluders, Regions};
-use pointillist_dice::{ConvexPolygon, convex};
 use pointillist_micropoint::{Face, Front, Layer, in_front};
 use std::cmp::Ordering;
 
@@ -24,6 +24,8 @@ pub(crate) struct Memory {
     /// Those of them that are opaque and in front of all of the target.
     whole: Vec<Cover>,
     covering: Covering,
+    /// The target's corners.
+    corners: Corners,
     /// Opacities over the whole target that are known already, by caster.
     known: Vec<(u32, f64)>,
     /// Those of the blockers that are masks, partly open for all that is known.
@@ -116,6 +118,7 @@ fn find_blockers(
     work.whole.clear();
     work.known.clear();
     work.masks = 0;
+    work.corners.set(outline);
     // The caster that hid the last target often hides the next one.
     let first = work.last_hider;
     for at in first.into_iter().chain((0..query.nearby.len()).filter(|&at| Some(at) != first)) {
@@ -125,8 +128,8 @@ fn find_blockers(
         }
         let (c, caster) = (near.index, &query.casters[near.index as usize]);
         let (shape, sides) = query.shape(c);
-        let overlap = Overlap::of(sides, outline);
-        if overlap == Overlap::Apart || convex::has_separating_edge(outline, shape) {
+        let overlap = Overlap::of(sides, &work.corners);
+        if overlap == Overlap::Apart || work.corners.have_edge_before(shape) {
             continue;
         }
         let upper = Layer { face: &caster.face, outline: shape, nearness: caster.face.nearness };

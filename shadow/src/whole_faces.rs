@@ -5,11 +5,11 @@
 
 use crate::casters::Nearby;
 use crate::covered::{Cover, Covering};
-use crate::overlap::{Edges, Overlap};
+use crate::overlap::{Corners, Edges, Overlap};
 use crate::query::Query;
 use crate::target::Target;
 use glam::{DVec2, DVec3};
-use pointillist_dice::{HalfPlane, convex};
+use pointillist_dice::HalfPlane;
 use pointillist_micropoint::{Face, Front, Layer, Lens, LensKind, in_front};
 
 /// Longest extent in the viewer's grid, in its cells, up to which a face is looked at whole: larger ones have casters far from what a tile sees of them.
@@ -66,6 +66,9 @@ pub(crate) struct WholeFace {
     /// Those of them that are opaque and in front of all of it.
     opaque: Vec<Cover>,
     covering: Covering,
+    /// The face's corners.
+    corners: Corners,
+    found: Vec<u32>,
 }
 
 impl WholeFace {
@@ -77,17 +80,16 @@ impl WholeFace {
         target: &Target,
         (face, outline): (&Face, &[DVec2]),
     ) -> Option<f64> {
-        let Self { casters, opaque, covering } = self;
+        let Self { casters, opaque, covering, corners, found } = self;
+        corners.set(outline);
         casters.clear();
         opaque.clear();
-        for near in query.nearby {
-            if !near.may_darken(target, face) {
-                continue;
-            }
+        Nearby::find(query.nearby, target, face, found);
+        for near in found.iter().map(|&at| &query.nearby[at as usize]) {
             let caster = &query.casters[near.index as usize];
             let (shape, sides) = query.shape(near.index);
-            let overlap = Overlap::of(sides, outline);
-            if overlap == Overlap::Apart || convex::has_separating_edge(outline, shape) {
+            let overlap = Overlap::of(sides, corners);
+            if overlap == Overlap::Apart || corners.have_edge_before(shape) {
                 continue;
             }
             let upper = Layer { face: &caster.face, outline: shape, nearness: caster.face.nearness };
@@ -97,7 +99,7 @@ impl WholeFace {
                 Front::Everywhere if caster.opacity == Some(1.0) => {
                     let across = match overlap {
                         Overlap::Across(edges) => edges,
-                        _ if covers(query, sides, outline) => return Some(0.0),
+                        _ if covers(query, sides, corners) => return Some(0.0),
                         _ => Edges::default(),
                     };
                     opaque.push(Cover { caster: near.index, across });
@@ -113,10 +115,8 @@ impl WholeFace {
     }
 }
 
-/// Whether a caster reaches beyond an outline all around, by [`MARGIN`].
-fn covers(query: &Query<'_>, sides: &[HalfPlane], outline: &[DVec2]) -> bool {
-    sides.iter().all(|half| {
-        let margin = MARGIN * half.normal.abs().max_element() * query.lens.scale;
-        outline.iter().all(|&p| half.value(p) > margin)
-    })
+/// Whether a caster reaches beyond some corners all around, by [`MARGIN`].
+fn covers(query: &Query<'_>, sides: &[HalfPlane], corners: &Corners) -> bool {
+    let margin = |half: &HalfPlane| MARGIN * half.normal.abs().max_element() * query.lens.scale;
+    sides.iter().all(|half| corners.range(half).0 > margin(half))
 }
