@@ -60,6 +60,16 @@ fn in_front_by_planes(
 ) -> Front {
     let (fu, fl) = (&upper.face.plane, &lower.face.plane);
     let tie = lens.tie(lower.nearness.most, fu.slope.abs() + fl.slope.abs());
+    // What holds of the planes over all of the lower outline holds over the common area, too. (Nearness itself is clamped to its range, which
+    // beyond the upper outline is not affine.)
+    let mut planes = Interval::EMPTY;
+    lower.outline.iter().for_each(|&v| planes.include(fu.at(v + corner) - fl.at(v + corner)));
+    if planes.least > tie && planes.least.is_finite() {
+        return Front::Everywhere;
+    }
+    if planes.most <= tie && !if_coincident {
+        return Front::Nowhere;
+    }
     let mut common = ConvexPolygon::from_vertices(lower.outline);
     for half in convex::half_planes(upper.outline) {
         // Most half-planes hold the whole polygon, which takes less time to find out than to copy it.
