@@ -129,7 +129,7 @@ fn find_blockers(
         let (c, caster) = (near.index, &query.casters[near.index as usize]);
         let (shape, sides) = query.shape(c);
         let overlap = Overlap::of(sides, &work.corners);
-        if overlap == Overlap::Apart || work.corners.have_edge_before(shape) {
+        if overlap == Overlap::Apart || work.corners.has_separating_edge(shape) {
             continue;
         }
         let upper = Layer { face: &caster.face, outline: shape, nearness: caster.face.nearness };

@@ -59,17 +59,14 @@ impl Corners {
         (least, most)
     }
 
-    /// Whether an edge has all of an outline on or beyond it: [`convex::has_separating_edge`].
+    /// Whether one of the edges has all of an outline on or beyond it, as [`convex::has_separating_edge`] tells.
     #[inline]
-    pub(crate) fn have_edge_before(&self, outline: &[DVec2]) -> bool {
+    pub(crate) fn has_separating_edge(&self, outline: &[DVec2]) -> bool {
         self.groups.iter().any(|four| {
-            let mut most = [f64::NEG_INFINITY; 4];
-            for v in outline {
-                for i in 0..4 {
-                    let value = four.along_x[i] * (v.y - four.y[i]) - four.along_y[i] * (v.x - four.x[i]);
-                    most[i] = more(most[i], value);
-                }
-            }
+            let Four { x, y, along_x, along_y, .. } = four;
+            let value = |v: &DVec2, i: usize| along_x[i] * (v.y - y[i]) - along_y[i] * (v.x - x[i]);
+            let start = [f64::NEG_INFINITY; 4];
+            let most = outline.iter().fold(start, |most, v| [0, 1, 2, 3].map(|i| more(most[i], value(v, i))));
             let separates = |i: usize| most[i] <= four.slack[i];
             separates(0) | separates(1) | separates(2) | separates(3)
         })
@@ -125,5 +122,63 @@ impl Overlap {
         } else {
             Self::Across(Edges(across))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec2;
+
+    /// Convex outlines of three to seven corners; some corners coincide, and some lie on corners or edges of others.
+    fn outlines() -> Vec<Vec<DVec2>> {
+        let corner = |k: u32, count: u32, turn: f64| {
+            DVec2::from_angle(turn + f64::from(k) * std::f64::consts::TAU / f64::from(count))
+        };
+        let mut outlines = vec![];
+        for i in 0..60_u32 {
+            let (count, turn) = (3 + i % 5, f64::from(i / 10));
+            let middle = 0.5 * dvec2(f64::from(i % 7), f64::from(i % 4));
+            let size = dvec2(1.0, if i % 9 == 0 { 1e-9 } else { 0.7 });
+            let mut outline: Vec<DVec2> =
+                (0..count).map(|k| middle + size * corner(k, count, turn)).collect();
+            if i % 6 == 0 {
+                outline.insert(1, outline[1] + if i % 12 == 0 { DVec2::ZERO } else { dvec2(1e-13, -1e-13) });
+            }
+            outlines.push(outline);
+        }
+        // Neighbours across an edge.
+        let mirrored = |o: &Vec<DVec2>| vec![o[1], o[0], o[0] + o[1] - o[2]];
+        outlines.extend(outlines.iter().map(mirrored).collect::<Vec<_>>());
+        outlines
+    }
+
+    #[test]
+    fn four_at_a_time_tell_what_single_corners_tell() {
+        let (outlines, mut corners) = (outlines(), Corners::default());
+        let mut found = [0; 4];
+        for (target, caster) in outlines.iter().flat_map(|t| outlines.iter().map(move |c| (t, c))) {
+            corners.set(target);
+            let separated = convex::has_separating_edge(target, caster);
+            assert_eq!(corners.has_separating_edge(caster), separated, "{target:?} {caster:?}");
+            let sides: Vec<HalfPlane> = convex::half_planes(caster).collect();
+            let any = |half: &HalfPlane, is: fn(f64) -> bool| target.iter().any(|&p| is(half.value(p)));
+            let apart = sides.iter().any(|half| !any(half, |value| value > 0.0));
+            let crossed = |half: &HalfPlane| any(half, |value| value < 0.0) || half.offset != 0.0;
+            let kind = match Overlap::of(&sides, &corners) {
+                Overlap::Apart => 0,
+                Overlap::Over => 1,
+                Overlap::Across(edges) => {
+                    let is_told = |(i, half)| edges.has(i) == crossed(half);
+                    assert!(sides.iter().enumerate().all(is_told), "{target:?} {caster:?}");
+                    2
+                }
+            };
+            let is_over = !apart && !sides.iter().any(|half| any(half, |value| value < 0.0));
+            assert_eq!([apart, is_over], [kind == 0, kind == 1], "{target:?} {caster:?}");
+            found[kind] += 1;
+            found[3] += usize::from(separated);
+        }
+        assert!(found.iter().all(|&count| count > 100), "{found:?}");
     }
 }

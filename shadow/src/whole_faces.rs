@@ -89,7 +89,7 @@ impl WholeFace {
             let caster = &query.casters[near.index as usize];
             let (shape, sides) = query.shape(near.index);
             let overlap = Overlap::of(sides, corners);
-            if overlap == Overlap::Apart || corners.have_edge_before(shape) {
+            if overlap == Overlap::Apart || corners.has_separating_edge(shape) {
                 continue;
             }
             let upper = Layer { face: &caster.face, outline: shape, nearness: caster.face.nearness };
