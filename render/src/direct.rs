@@ -228,7 +228,7 @@ fn ask_for_some(tile: &Tile, count: usize, scratch: &mut DirectScratch) {
         let asked = asked_weights.len();
         choose_asked(candidates, count, |point, fragment, weight| {
             let m = &tile.points()[point as usize];
-            receivers.push(m.face, corners(tile, m, fragment));
+            receivers.push_outline(m.face, tile.outline(fragment), false);
             asked_weights.push(weight);
         });
         shared.push((first..first + group.len(), asked..asked_weights.len()));

@@ -3,7 +3,7 @@
 //! The mean of a texture over a micropoint times the fraction of it that is lit is not what the light meets where a shadow's edge runs across
 //! texels. Maps of micropoints that are lit in part are averaged over their lit regions once more, for each light.
 
-use crate::direct::{DirectScratch, corners};
+use crate::direct::DirectScratch;
 use crate::lights::LightSample;
 use crate::shader::{Point, Shader};
 use crate::surfaces::Surfaces;
@@ -106,10 +106,7 @@ impl Shader<'_> {
             let m = &tile.points()[a.point as usize];
             let varies = a.is_close || self.surfaces.varies(tile.faces()[m.face as usize].id);
             for fragment in tile.fragments(m) {
-                match varies {
-                    true => receivers.push_with_regions(m.face, corners(tile, m, fragment)),
-                    false => receivers.push(m.face, corners(tile, m, fragment)),
-                }
+                receivers.push_outline(m.face, tile.outline(fragment), varies);
             }
         }
     }

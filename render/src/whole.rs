@@ -33,9 +33,10 @@ impl WholeLight<'_> {
         }
     }
 
-    /// Whether any receiver is where it may shine; receivers are relative to `origin`.
-    fn may_reach(&self, receivers: &Receivers, origin: DVec3) -> bool {
-        let Some((low, high)) = receivers.bounds() else { return false };
+    /// Whether any receiver is where it may shine.
+    fn may_reach(&self, receivers: &Receivers, viewer: Viewer<'_>) -> bool {
+        let Some((low, high)) = receivers.bounds(viewer) else { return false };
+        let origin = viewer.lens.origin;
         self.within.is_none_or(|(least, most)| {
             (low + origin).cmple(most).all() && (high + origin).cmpge(least).all()
         })
@@ -54,13 +55,13 @@ impl Shader<'_> {
         monitor: &dyn Monitor,
     ) {
         let DirectScratch { area, line, seen, asked, owners, receivers, .. } = direct;
-        if !light.may_reach(receivers, tile.lens().origin) {
+        let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
+        if !light.may_reach(receivers, viewer) {
             return;
         }
         // Summed up by micropoint first: receivers come in an order that depends on the tile.
         seen.clear();
         seen.resize(points.len(), (Vec3::ZERO, 0.0));
-        let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
         let mut add = |receiver: usize, share: f64, part: &dyn Seen| {
             let Range { start, end } = owners[receiver].clone();
             for &owner in &asked[start as usize..end as usize] {

@@ -125,16 +125,16 @@ impl<'a> ShadowLight<'a> {
                 }
                 Side::Lit | Side::Unknown => {}
             }
-            let corners = receivers.corners(r);
+            let corners = receivers.corners(viewer, r);
             let offset = viewer.lens.origin - self.screens.lenses[0].origin;
             let count = self.screens.lenses.len();
             // Where two screens see all of it, the choice must not depend on other receivers.
-            let likely = self.screens.facing(corners.first().map_or(DVec3::ZERO, |&c| c + offset));
+            let likely = self.screens.facing(corners.clone().next().map_or(DVec3::ZERO, |c| c + offset));
             let ShadowScratch { targets, local, .. } = scratch;
             let mut sees_all = |&screen: &usize| {
                 let lens = &self.screens.lenses[screen];
                 local.clear();
-                local.extend(corners.iter().map(|&c| lens.local_vector(c + offset)));
+                local.extend(corners.clone().map(|c| lens.local_vector(c + offset)));
                 local.iter().all(|&p| sees(lens, p))
             };
             if let Some(screen) = std::iter::once(likely).chain(0..count).find(&mut sees_all) {
@@ -142,7 +142,8 @@ impl<'a> ShadowLight<'a> {
                 targets.push((index as u32, r.face), screen, false, local.iter().map(|&p| placed(lens, p)));
             } else {
                 for screen in 0..count {
-                    self.push_clipped((index as u32, r.face), screen, corners, offset, &mut scratch.targets);
+                    let receiver = (index as u32, r.face);
+                    self.push_clipped(receiver, screen, corners.clone(), offset, &mut scratch.targets);
                 }
             }
         }
@@ -184,12 +185,12 @@ impl<'a> ShadowLight<'a> {
         &self,
         receiver: (u32, u32),
         screen: usize,
-        corners: &[DVec3],
+        corners: impl Iterator<Item = DVec3>,
         offset: DVec3,
         targets: &mut Targets,
     ) {
         let lens = &self.screens.lenses[screen];
-        let mut ring: Vec<DVec3> = corners.iter().map(|&c| lens.local_vector(c + offset)).collect();
+        let mut ring: Vec<DVec3> = corners.map(|c| lens.local_vector(c + offset)).collect();
         let sides = [
             DVec3::new(1.0, 0.0, 1.0),
             DVec3::new(-1.0, 0.0, 1.0),
@@ -299,8 +300,8 @@ impl<'a> ShadowLight<'a> {
                     }
                     single.clear(None);
                     let offset = viewer.lens.origin - query.lens.origin;
-                    let corners = receivers.corners(&receivers.list[receiver as usize]).iter();
-                    let local = corners.map(|&c| query.lens.local_vector(c + offset));
+                    let corners = receivers.corners(viewer, &receivers.list[receiver as usize]);
+                    let local = corners.map(|c| query.lens.local_vector(c + offset));
                     single.push((receiver, target.face), screen, false, local.map(|p| placed(query.lens, p)));
                     if let [target] = &single.list[..] {
                         let part = self.resolve(&query, target, single.outline(target), None, &mut work);

@@ -1,15 +1,18 @@
 //! What light falls on: convex pieces of surfaces, as a viewer sees them.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use pointillist_micropoint::{Face, Fragment, Lens, Micropoint, Tile};
 use std::sync::OnceLock;
 
-/// Convex planar pieces that may be lit. Corners are relative to the viewer's lens, in world axes.
+/// Convex planar pieces that may be lit. Corners are relative to the viewer's lens, in world axes, or on its grid.
 #[derive(Debug, Default)]
 pub struct Receivers {
     pub(crate) list: Vec<Receiver>,
-    pub(crate) vertices: Vec<DVec3>,
-    /// The box around all vertices, once it was asked for: lights that are points never ask.
+    /// Corners of the pieces that were given in world axes.
+    vertices: Vec<DVec3>,
+    /// Corners of the pieces that were given on the viewer's grid.
+    outlines: Vec<DVec2>,
+    /// The box around all corners, once it was asked for: lights that are points never ask.
     around: OnceLock<(DVec3, DVec3)>,
     /// Pieces that do not join the one before.
     wholes: usize,
@@ -18,8 +21,10 @@ pub struct Receivers {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Receiver {
     pub(crate) face: u32,
-    pub(crate) first_vertex: u32,
-    pub(crate) vertex_count: u32,
+    first_vertex: u32,
+    vertex_count: u32,
+    /// Its corners are on the viewer's grid.
+    on_grid: bool,
     /// It is a piece of the same receiver as the one before, for lights with an area.
     pub(crate) joins: bool,
     /// Its share of that receiver.
@@ -35,16 +40,20 @@ impl Receivers {
     pub fn clear(&mut self) {
         self.list.clear();
         self.vertices.clear();
+        self.outlines.clear();
         self.around = OnceLock::new();
         self.wholes = 0;
     }
 
     /// A box around all corners: its lowest and its highest corner, relative to the viewer's lens. `None` if there are none.
+    ///
+    /// The viewer must be the same until the pieces are removed.
     #[must_use]
-    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let (&first, rest) = self.vertices.split_first()?;
-        let grow = |(low, high): (DVec3, DVec3), &v: &DVec3| (low.min(v), high.max(v));
-        Some(*self.around.get_or_init(|| rest.iter().fold((first, first), grow)))
+    pub fn bounds(&self, viewer: Viewer<'_>) -> Option<(DVec3, DVec3)> {
+        let mut corners = self.list.iter().flat_map(|r| self.corners(viewer, r)).peekable();
+        let first = *corners.peek()?;
+        let grow = |(low, high): (DVec3, DVec3), v: DVec3| (low.min(v), high.max(v));
+        Some(*self.around.get_or_init(|| corners.fold((first, first), grow)))
     }
 
     /// Number of pieces.
@@ -61,25 +70,39 @@ impl Receivers {
 
     /// Adds a piece of face `face` with these corners: convex, in any order of winding, at most eleven.
     pub fn push(&mut self, face: u32, corners: impl IntoIterator<Item = DVec3>) {
-        self.add(face, corners, false);
+        self.add_corners(face, corners, false);
     }
 
     /// As [`Receivers::push`]; if only part of the light reaches it, [`ShadowScratch::lit_regions`](crate::ShadowScratch::lit_regions)
     /// knows where.
     pub fn push_with_regions(&mut self, face: u32, corners: impl IntoIterator<Item = DVec3>) {
-        self.add(face, corners, true);
+        self.add_corners(face, corners, true);
     }
 
-    fn add(&mut self, face: u32, corners: impl IntoIterator<Item = DVec3>, wants_regions: bool) {
+    /// Adds a piece of face `face` by its outline on the viewer's grid, as [`Receivers::push`] or
+    /// [`Receivers::push_with_regions`] does. Where its corners are in the world is found only if that is asked: most receivers of
+    /// small faces are lit or dark with their whole face.
+    pub fn push_outline(&mut self, face: u32, outline: &[DVec2], wants_regions: bool) {
+        let first_vertex = self.outlines.len() as u32;
+        self.outlines.extend_from_slice(outline);
+        self.add(face, first_vertex, outline.len() as u32, true, wants_regions);
+    }
+
+    fn add_corners(&mut self, face: u32, corners: impl IntoIterator<Item = DVec3>, wants_regions: bool) {
         let first_vertex = self.vertices.len() as u32;
         self.vertices.extend(corners);
-        self.around = OnceLock::new();
         let vertex_count = self.vertices.len() as u32 - first_vertex;
+        self.add(face, first_vertex, vertex_count, false, wants_regions);
+    }
+
+    fn add(&mut self, face: u32, first_vertex: u32, vertex_count: u32, on_grid: bool, wants_regions: bool) {
+        self.around = OnceLock::new();
         self.wholes += 1;
         self.list.push(Receiver {
             face,
             first_vertex,
             vertex_count,
+            on_grid,
             joins: false,
             weight: 1.0,
             visibility: 1.0,
@@ -128,8 +151,21 @@ impl Receivers {
         self.wholes
     }
 
-    pub(crate) fn corners(&self, r: &Receiver) -> &[DVec3] {
-        &self.vertices[r.first_vertex as usize..][..r.vertex_count as usize]
+    /// Corners of a piece, relative to the viewer's lens.
+    pub(crate) fn corners<'a>(
+        &'a self,
+        viewer: Viewer<'a>,
+        r: &Receiver,
+    ) -> impl Iterator<Item = DVec3> + Clone + 'a {
+        let Viewer { lens, faces } = viewer;
+        let range = r.first_vertex as usize..(r.first_vertex + r.vertex_count) as usize;
+        let (vertices, outline) = match r.on_grid {
+            true => (&[][..], &self.outlines[range]),
+            false => (&self.vertices[range], &[][..]),
+        };
+        let face = &faces[r.face as usize];
+        let place = |&v: &DVec2| lens.to_world_axes(lens.unproject(v, face.nearness_at(v)));
+        vertices.iter().copied().chain(outline.iter().map(place))
     }
 }
 

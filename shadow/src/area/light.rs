@@ -205,7 +205,7 @@ impl<'a> AreaLight<'a> {
         mut visit: impl FnMut(usize, f64, &SeenLight),
     ) {
         let behind = |bounds| self.is_behind(bounds, viewer.lens.origin);
-        if receivers.bounds().is_none_or(behind) {
+        if receivers.bounds(viewer).is_none_or(behind) {
             scratch.counts.batch(receivers.wholes(), 0);
         } else {
             super::group::visit(self, viewer, receivers, scratch, &mut visit);

@@ -54,7 +54,7 @@ impl Targets {
                 next += 1;
                 if r.weight > 0.0 {
                     let first = corners.len();
-                    corners.extend(receivers.corners(r).iter().map(|&c| frame.local_vector(c + offset)));
+                    corners.extend(receivers.corners(viewer, r).map(|c| frame.local_vector(c + offset)));
                     let (middle, _) = piece::middle(&corners[first..]);
                     let corner_count = (corners.len() - first) as u32;
                     pieces.push(Piece { first_corner: first as u32, corner_count, weight: r.weight, middle });
