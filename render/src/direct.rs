@@ -4,10 +4,10 @@ use crate::lights::LightSample;
 use crate::lit_parts::LitParts;
 use crate::monitor::Monitor;
 use crate::scene::MeasuredBrdf;
-use crate::shader::{Economy, Point, Shader};
+use crate::shader::{Economy, Place, Point, Shader};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Face, Fragment, Micropoint, Tile};
-use pointillist_shade::{Incident, Interpolation, Light, interpolate_color, sees_light, turn_to};
+use pointillist_shade::{Incident, Interpolation, Light, Source, interpolate_color, sees_light, turn_to};
 use pointillist_shadow::{AreaScratch, LineScratch, Receivers, ShadowScratch, Viewer};
 use std::ops::Range;
 
@@ -69,20 +69,7 @@ impl Shader<'_> {
         mut lit_layer: Option<&mut Vec<DVec3>>,
         monitor: &dyn Monitor,
     ) {
-        direct.arrivals.clear();
-        for (i, p) in points.iter().enumerate() {
-            let m = &tile.points()[i];
-            let face = &tile.faces()[m.face as usize];
-            let mut radiance = self.arriving(light, p, face);
-            let is_close = radiance != Vec3::ZERO && self.is_close(tile, light, p);
-            if is_close {
-                let fragments = tile.fragments(m).iter().map(|f| (tile.outline(f), f.weight));
-                radiance = self.mean_arriving(tile, light, (p, face), fragments);
-            }
-            if radiance != Vec3::ZERO || lit_layer.is_some() {
-                direct.arrivals.push(Arrival { point: i as u32, radiance, fraction: 1.0, is_close });
-            }
-        }
+        self.find_arrivals(tile, light, points, lit_layer.is_some(), &mut direct.arrivals);
         monitor.lap("shade");
         if let Some(screens) = &light.shadow {
             direct.receivers.clear();
@@ -93,7 +80,7 @@ impl Shader<'_> {
             let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
             screens.lit(viewer, &direct.receivers, &mut direct.shadow, &mut direct.lit);
             match self.economy {
-                None => self.take_all(tile, light, points, direct),
+                None => self.take_all(tile, light, points, lit_layer.is_some(), direct),
                 Some(_) => shared_fractions(direct),
             }
             monitor.lap("shadow");
@@ -111,6 +98,59 @@ impl Shader<'_> {
                 }
             }
         }
+    }
+
+    /// Finds the micropoints that a light may reach. `with_dark`: also those that reflect nothing of it.
+    fn find_arrivals(
+        &self,
+        tile: &Tile,
+        light: &LightSample<'_>,
+        points: &[Point],
+        with_dark: bool,
+        arrivals: &mut Vec<Arrival>,
+    ) {
+        arrivals.clear();
+        let source = self.scene.lights[light.light].light.source(light.sample);
+        let after_shadow = self.reflects_after_shadow(light);
+        for (i, (p, m)) in points.iter().zip(tile.points()).enumerate() {
+            let triangle = tile.faces()[m.face as usize].id;
+            if is_turned_away(&p.place, source) || (!with_dark && self.is_black(p, triangle)) {
+                continue;
+            }
+            let mut radiance = Vec3::ZERO;
+            let mut is_close = self.is_close(tile, light, p);
+            if !after_shadow {
+                (radiance, is_close) = self.without_shadow(tile, light, p, m, is_close);
+            }
+            if after_shadow || with_dark || radiance != Vec3::ZERO {
+                arrivals.push(Arrival { point: i as u32, radiance, fraction: 1.0, is_close });
+            }
+        }
+    }
+
+    /// Whether what arrives is found only where the shadow lets something through. Not where many micropoints get nothing anyway, whose
+    /// shadow need not be asked, nor where the shadow is asked by what arrives.
+    pub(crate) fn reflects_after_shadow(&self, light: &LightSample<'_>) -> bool {
+        light.shadow.is_some() && !light.is_narrow && self.economy.is_none()
+    }
+
+    /// Radiance that a micropoint sends to the eye because of a light, without shadow, and whether it is the mean over its fragments, as
+    /// it is of close lights.
+    pub(crate) fn without_shadow(
+        &self,
+        tile: &Tile,
+        light: &LightSample<'_>,
+        p: &Point,
+        m: &Micropoint,
+        is_close: bool,
+    ) -> (Vec3, bool) {
+        let face = &tile.faces()[m.face as usize];
+        let radiance = self.arriving(light, p, face);
+        if !is_close || radiance == Vec3::ZERO {
+            return (radiance, false);
+        }
+        let fragments = tile.fragments(m).iter().map(|f| (tile.outline(f), f.weight));
+        (self.mean_arriving(tile, light, (p, face), fragments), true)
     }
 
     /// Samples of an area light are summed up as fragments are: together they get as many shadows as a light of one point, but each one.
@@ -195,6 +235,19 @@ impl Shader<'_> {
         let material = self.scene.mesh.material(triangle) as usize;
         self.scene.materials[material].details.measured.as_ref()
     }
+}
+
+/// Cosine below which a light is behind a face for certain: directions are rounded by less.
+const BEHIND: f64 = -1e-6;
+
+/// Whether a light is behind the face of a place, so that [`sees_light`] would say no. Much less work than to find what arrives.
+fn is_turned_away(place: &Place, source: Source) -> bool {
+    let to_light = match source {
+        Source::Position(from) => from - place.position,
+        Source::Direction(direction) => -direction,
+        _ => return false,
+    };
+    place.face_normal.as_dvec3().dot(to_light) < BEHIND * to_light.abs().element_sum()
 }
 
 /// Corners of a fragment relative to the eye, in world axes.

@@ -7,7 +7,7 @@ use crate::direct::DirectScratch;
 use crate::lights::LightSample;
 use crate::shader::{Point, Shader};
 use crate::surfaces::Surfaces;
-use glam::DVec2;
+use glam::{DVec2, Vec3};
 use pointillist_micropoint::{Face, Fragment, SurfacePoint, TexturedOpacity, Tile};
 use pointillist_shadow::ShadowScratch;
 use std::ops::Range;
@@ -117,8 +117,10 @@ impl Shader<'_> {
         tile: &Tile,
         light: &LightSample<'_>,
         points: &[Point],
+        with_dark: bool,
         direct: &mut DirectScratch,
     ) {
+        let after_shadow = self.reflects_after_shadow(light);
         let DirectScratch { shadow, lit, arrivals, lit_parts, .. } = direct;
         let mut first = 0;
         for a in arrivals {
@@ -128,9 +130,19 @@ impl Shader<'_> {
             let of = LitFragments { tile, face, fragments, lit, first };
             first += fragments.len();
             a.fraction = of.fraction();
+            if after_shadow {
+                if a.fraction == 0.0 {
+                    continue;
+                }
+                let p = &points[a.point as usize];
+                (a.radiance, a.is_close) = self.without_shadow(tile, light, p, m, a.is_close);
+                if a.radiance == Vec3::ZERO && !with_dark {
+                    continue;
+                }
+            }
             // What is evenly lit is seen as without shadow.
-            let is_even = fragments.len() == 1 && shadow.lit_regions(of.first as u32).next().is_none();
-            let is_partly_lit = a.fraction > 0.0 && a.fraction < 1.0 && !is_even;
+            let is_even = || fragments.len() == 1 && shadow.lit_regions(of.first as u32).next().is_none();
+            let is_partly_lit = a.fraction > 0.0 && a.fraction < 1.0 && !is_even();
             let varies = is_partly_lit && self.surfaces.varies(face.id);
             if varies || (is_partly_lit && a.is_close) {
                 a.fraction = lit_parts.collect(&of, shadow, self.surfaces).min(1.0);
