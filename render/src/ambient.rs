@@ -61,6 +61,14 @@ impl Ambient<'_> {
         }
     }
 
+    /// Whether it differs between places of the same normal.
+    pub(crate) fn depends_on_place(&self) -> bool {
+        match self {
+            Self::Color(_) | Self::Sky(_) | Self::Environment(_) => false,
+            Self::Probes(..) | Self::Radiosity(_) | Self::RadiosityAndProbes(..) => true,
+        }
+    }
+
     /// The side of a surface from which probes light it; 0 for all sides.
     pub(crate) fn side(&self, spot: &Spot) -> Vec3 {
         match self {

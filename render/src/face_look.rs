@@ -1,8 +1,10 @@
 //! What all micropoints of a face have in common, found once for each face of a tile.
 
+use crate::ambient::Spot;
 use crate::scene;
 use crate::shader::{Glow, Shader};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
+use pointillist_delaunay::Hint;
 use pointillist_micropoint::Face;
 use pointillist_shade::{Interpolation, Material, face_normal};
 
@@ -21,6 +23,8 @@ pub(crate) struct FaceLook {
     smoothness: f32,
     /// Whether it looks the same from everywhere in any light: it glows, or is black.
     pub(crate) is_constant: bool,
+    /// What all of it reflects of ambient light, if that, the normal and the material are the same everywhere on it.
+    pub(crate) even_indirect: Option<Vec3>,
     /// Whether its colour varies.
     pub(crate) has_color: bool,
     /// Whether its material has anything beyond colour and opacity.
@@ -90,6 +94,8 @@ impl Shader<'_> {
         let corners = if is_flat { None } else { self.corner_normals(face) };
         let has_details = self.surfaces.details(face.id).is_some();
         let varies_by_corner = self.scene.mesh.has_colors() || corners.is_some();
+        let has_color = self.surfaces.has_color(face.id);
+        let is_even = !has_details && !varies_by_corner && !has_color && !material.model.is_opengl();
         FaceLook {
             normal,
             material,
@@ -103,9 +109,23 @@ impl Shader<'_> {
                 && material.diffuse == Vec3::ZERO
                 && material.ambient_albedo() == Vec3::ZERO
                 && material.specular == Vec3::ZERO,
-            has_color: self.surfaces.has_color(face.id),
+            even_indirect: is_even.then(|| self.even_indirect(face, normal, &material)).flatten(),
+            has_color,
             has_details,
         }
+    }
+
+    /// What a face with this normal and material reflects of ambient light, if that is the same everywhere on it.
+    fn even_indirect(&self, face: &Face, normal: Vec3, material: &Material) -> Option<Vec3> {
+        let albedo = material.ambient_albedo();
+        if albedo == Vec3::ZERO {
+            // What reflects nothing needs no light.
+            return Some(Vec3::ZERO);
+        }
+        let anywhere =
+            Spot { position: DVec3::ZERO, triangle: face.id, front: face.front, side: normal, normal };
+        let is_even = !self.ambient.depends_on_place();
+        is_even.then(|| self.ambient.at(&anywhere, &mut Hint::default()) * albedo)
     }
 
     /// The material of a face.

@@ -27,6 +27,10 @@ impl Shader<'_> {
         }
         let face = &tile.faces()[m.face as usize];
         let place = self.place(tile, m.grid, face, look);
+        if let Some(indirect) = look.even_indirect {
+            let FaceLook { normal, material, .. } = *look;
+            return Point { place, normal, material, direct: Vec3::ZERO, indirect };
+        }
         let outlines =
             |each: &mut dyn FnMut(&[SurfacePoint], f32)| self.for_outlines(tile, m, face, polygon, each);
         let (surface, mapped) = self.surface(face, look, &place, outlines);
