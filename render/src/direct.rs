@@ -7,7 +7,7 @@ use crate::scene::MeasuredBrdf;
 use crate::shader::{Economy, Place, Point, Shader};
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Face, Fragment, Micropoint, Tile};
-use pointillist_shade::{Incident, Interpolation, Light, Source, interpolate_color, sees_light, turn_to};
+use pointillist_shade::{Incident, Interpolation, Source, interpolate_color, sees_light, turn_to};
 use pointillist_shadow::{AreaScratch, LineScratch, Receivers, ShadowScratch, Viewer};
 use std::ops::Range;
 
@@ -165,31 +165,36 @@ impl Shader<'_> {
         if self.is_black(p, face.id) {
             return Vec3::ZERO;
         }
+        let diffuse = light.incident(source, p.place.position);
+        if !sees_light(p.place.face_normal, diffuse.to_light) {
+            return Vec3::ZERO;
+        }
         let of_highlights = light.of_highlights.as_ref().filter(|_| p.material.model.is_opengl());
+        let by_corner = match self.scene.render.shading {
+            Interpolation::Gouraud => self.corner_normals(face),
+            _ => None,
+        };
+        if of_highlights.is_none() && by_corner.is_none() {
+            return self.reflect(p, face.id, &diffuse, p.normal, p.place.to_eye);
+        }
         let arrives = |position: DVec3| {
-            let from = |lamp: &Light| {
-                let mut incident = lamp.illuminate(light.sample, position);
-                incident.irradiance *= light.channels;
-                incident
-            };
+            let from = |lamp| light.incident(lamp, position);
             Arriving { diffuse: from(source), highlight: of_highlights.map(from) }
         };
         let arriving = arrives(p.place.position);
-        if arriving.is_dark() || !sees_light(p.place.face_normal, arriving.diffuse.to_light) {
+        if arriving.is_dark() {
             return Vec3::ZERO;
         }
-        if self.scene.render.shading == Interpolation::Gouraud
-            && let Some(normals) = self.corner_normals(face)
-        {
-            let corners = self.scene.corners(face.id);
-            let at = |k: usize| {
-                let to_eye = self.to_eye(corners[k]);
-                let normal = turn_to(normals[k], p.place.face_normal);
-                self.reflect_arriving(p, face.id, &arrives(corners[k]), normal, to_eye)
-            };
-            return interpolate_color([at(0), at(1), at(2)], p.place.barycentric);
-        }
-        self.reflect_arriving(p, face.id, &arriving, p.normal, p.place.to_eye)
+        let Some(normals) = by_corner else {
+            return self.reflect_arriving(p, face.id, &arriving, p.normal, p.place.to_eye);
+        };
+        let corners = self.scene.corners(face.id);
+        let at = |k: usize| {
+            let to_eye = self.to_eye(corners[k]);
+            let normal = turn_to(normals[k], p.place.face_normal);
+            self.reflect_arriving(p, face.id, &arrives(corners[k]), normal, to_eye)
+        };
+        interpolate_color([at(0), at(1), at(2)], p.place.barycentric)
     }
 
     /// As [`Self::reflect`], with light of another colour for the highlight.

@@ -9,7 +9,7 @@ use crate::shader::Economy;
 use crate::surfaces::Surfaces;
 use glam::{DVec3, Vec3};
 use pointillist_micropoint::{Geometry, Lens};
-use pointillist_shade::{Emission, Falloff, Light, LightOutline, Source};
+use pointillist_shade::{Emission, Falloff, Incident, Light, LightOutline, Source};
 use pointillist_shadow::{
     AreaLight, AreaOptions, Emitter, LineLight, ShadowError, ShadowLight, ShadowOptions,
 };
@@ -29,6 +29,15 @@ pub(crate) struct LightSample<'a> {
     pub(crate) shadow: Option<ShadowLight<'a>>,
     /// Whether it reaches a part of the world only, so that tiles are asked one by one.
     pub(crate) is_narrow: bool,
+}
+
+impl LightSample<'_> {
+    /// What arrives at a place of the channels that it brings, with nothing in between; `lamp` is the light itself or as its highlights have it.
+    pub(crate) fn incident(&self, lamp: &Light, position: DVec3) -> Incident {
+        let mut incident = lamp.illuminate(self.sample, position);
+        incident.irradiance *= self.channels;
+        incident
+    }
 }
 
 /// One side of a light with an area, or of an emitting polygon, taken as a whole.
