@@ -117,11 +117,11 @@ impl Shader<'_> {
             if is_turned_away(&p.place, source) || (!with_dark && self.is_black(p, triangle)) {
                 continue;
             }
-            let mut radiance = Vec3::ZERO;
-            let mut is_close = self.is_close(tile, light, p);
-            if !after_shadow {
-                (radiance, is_close) = self.without_shadow(tile, light, p, m, is_close);
-            }
+            let is_close = || self.is_close(tile, light, p);
+            let (radiance, is_close) = match after_shadow {
+                true => (Vec3::ZERO, is_close()),
+                false => self.without_shadow(tile, light, p, m, is_close),
+            };
             if after_shadow || with_dark || radiance != Vec3::ZERO {
                 arrivals.push(Arrival { point: i as u32, radiance, fraction: 1.0, is_close });
             }
@@ -134,19 +134,19 @@ impl Shader<'_> {
         light.shadow.is_some() && !light.is_narrow && self.economy.is_none()
     }
 
-    /// Radiance that a micropoint sends to the eye because of a light, without shadow, and whether it is the mean over its fragments, as
-    /// it is of close lights.
+    /// Radiance that a micropoint sends to the eye because of a light, without shadow. If there is any, and `is_close` says that the light
+    /// varies over the micropoint, it is the mean over its fragments, and the flag is set.
     pub(crate) fn without_shadow(
         &self,
         tile: &Tile,
         light: &LightSample<'_>,
         p: &Point,
         m: &Micropoint,
-        is_close: bool,
+        is_close: impl FnOnce() -> bool,
     ) -> (Vec3, bool) {
         let face = &tile.faces()[m.face as usize];
         let radiance = self.arriving(light, p, face);
-        if !is_close || radiance == Vec3::ZERO {
+        if radiance == Vec3::ZERO || !is_close() {
             return (radiance, false);
         }
         let fragments = tile.fragments(m).iter().map(|f| (tile.outline(f), f.weight));

@@ -95,6 +95,7 @@ impl Shader<'_> {
         let has_details = self.surfaces.details(face.id).is_some();
         let varies_by_corner = self.scene.mesh.has_colors() || corners.is_some();
         let has_color = self.surfaces.has_color(face.id);
+        // By OpenGL's formula lamps add ambient light that depends on the place.
         let is_even = !has_details && !varies_by_corner && !has_color && !material.model.is_opengl();
         FaceLook {
             normal,

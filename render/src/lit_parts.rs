@@ -135,7 +135,7 @@ impl Shader<'_> {
                     continue;
                 }
                 let p = &points[a.point as usize];
-                (a.radiance, a.is_close) = self.without_shadow(tile, light, p, m, a.is_close);
+                (a.radiance, a.is_close) = self.without_shadow(tile, light, p, m, || a.is_close);
                 if a.radiance == Vec3::ZERO && !with_dark {
                     continue;
                 }

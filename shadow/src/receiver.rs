@@ -47,7 +47,7 @@ impl Receivers {
 
     /// A box around all corners: its lowest and its highest corner, relative to the viewer's lens. `None` if there are none.
     ///
-    /// The viewer must be the same until the pieces are removed.
+    /// All calls up to the next [`Receivers::clear`] must be for the same viewer.
     #[must_use]
     pub fn bounds(&self, viewer: Viewer<'_>) -> Option<(DVec3, DVec3)> {
         let mut corners = self.list.iter().flat_map(|r| self.corners(viewer, r)).peekable();
