@@ -79,11 +79,11 @@ impl Shader<'_> {
             }
             let viewer = Viewer { lens: tile.lens(), faces: tile.faces() };
             screens.lit(viewer, &direct.receivers, &mut direct.shadow, &mut direct.lit);
+            monitor.lap("shadow");
             match self.economy {
                 None => self.take_all(tile, light, points, lit_layer.is_some(), direct),
                 Some(_) => shared_fractions(direct),
             }
-            monitor.lap("shadow");
         }
         let samples = f64::from(self.scene.lights[light.light].light.samples());
         let share = light.channels.as_dvec3() / samples;
