@@ -89,14 +89,49 @@ fn ordered(number: f64) -> i64 {
 /// Outline of a whole cell.
 const CELL: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
 
-/// Whether an edge lies on the border of the cell, or has no length.
-fn on_border(from: DVec2, to: DVec2) -> bool {
-    let on_line = |a: f64, b: f64| (a == b) & ((a == 0.0) | (a == 1.0));
-    on_line(from.x, to.x) | on_line(from.y, to.y) | (from == to)
+/// The sides of the cell that a point lies on, a bit for each.
+#[inline]
+fn sides_at(p: DVec2) -> u8 {
+    // Compared as integers, which takes fewer instructions; both zeros count.
+    let (zero, one) = (|c: f64| c.to_bits() << 1 == 0, |c: f64| c.to_bits() == 1.0_f64.to_bits());
+    u8::from(zero(p.x)) | u8::from(one(p.x)) << 1 | u8::from(zero(p.y)) << 2 | u8::from(one(p.y)) << 3
 }
 
-/// Edges without their reverse so far, up to which [`Dicer::edges_close`] goes on.
-const MOST_OPEN_EDGES: usize = 32;
+/// Most edges within a cell with which [`Dicer::tiled_by_edges`] goes on: more do not belong to a few neighbours in a mesh.
+const MOST_INNER_EDGES: usize = 64;
+
+/// Pieces that lie over a cell equally often everywhere tile it if their areas add up to less than this.
+const MOST_TILED: f64 = 1.5;
+
+/// Writes the edges of an outline that are not on the border of the cell to the front of `edges`, and returns how many they are.
+#[inline]
+fn collect_inner_edges(outline: &[DVec2], edges: &mut [(DVec2, DVec2)]) -> usize {
+    let mut from = outline[outline.len() - 1];
+    let mut sides_from = sides_at(from);
+    let mut count = 0;
+    for &to in outline {
+        let sides_to = sides_at(to);
+        // Written in any case: whether an edge is on the border is hard to predict.
+        edges[count] = (from, to);
+        count += usize::from(sides_from & sides_to == 0);
+        (from, sides_from) = (to, sides_to);
+    }
+    count
+}
+
+/// Whether each edge has another that is its reverse, or no length.
+fn pair_up(edges: &mut [(DVec2, DVec2)]) -> bool {
+    let mut unpaired = edges;
+    while let Some((&mut (from, to), others)) = unpaired.split_first_mut() {
+        unpaired = others;
+        if from != to {
+            let Some(reverse) = unpaired.iter().position(|&other| other == (to, from)) else { return false };
+            unpaired[reverse] = unpaired[0];
+            unpaired = &mut unpaired[1..];
+        }
+    }
+    true
+}
 
 /// State of one cell of the tile.
 #[derive(Clone, Copy, Debug)]
@@ -204,7 +239,7 @@ pub(crate) struct Dicer {
     memory: VisitMemory,
     order: Vec<u32>,
     keys: Vec<(i64, u32)>,
-    /// Edges that have not met their reverse.
+    /// Memory of [`Dicer::tiled_by_edges`].
     edges: Vec<(DVec2, DVec2)>,
     neighbours: Neighbours,
     pub(crate) counts: TileCounts,
@@ -334,6 +369,8 @@ impl Dicer {
         }
         let parts_before = self.parts.len();
         let index = self.faces.len() as u32;
+        // Its parts are compared with others by their faces.
+        self.faces.push(face);
         cut(outline, self.window(), |c| match c {
             Cut::Span { row, first, end } => {
                 for column in first..end {
@@ -342,8 +379,8 @@ impl Dicer {
             }
             Cut::Piece { cell, polygon } => self.add_piece(job, &face, index, cell, polygon, opacity),
         });
-        if self.parts.len() > parts_before {
-            self.faces.push(face);
+        if self.parts.len() == parts_before {
+            self.faces.pop();
         }
     }
 
@@ -445,10 +482,7 @@ impl Dicer {
         if opacity >= 1.0 {
             self.cells[i].opaque_area += area;
             if self.cells[i].opaque_area >= self.cells[i].next_try {
-                // The face is needed to order the parts, but only stored once it is diced.
-                self.faces.push(*face);
                 self.try_to_close(i, job.lens);
-                self.faces.pop();
             }
         }
     }
@@ -486,10 +520,10 @@ impl Dicer {
             self.cells[cell].next_try = summed + 1.0;
             return;
         }
-        if summed < 1.5 && self.cells[cell].closed == f64::NEG_INFINITY && self.edges_close(cell) {
-            let least = |nearness: f64, p: u32| nearness.min(self.parts[p as usize].nearness.least);
-            let nearness = self.parts_of(cell).fold(f64::INFINITY, least);
-            self.set_tiling(cell, count, nearness);
+        if summed < MOST_TILED
+            && let Some((pieces, nearness)) = self.tiled_by_edges(cell, lens)
+        {
+            self.set_tiling(cell, pieces, nearness);
             self.cells[cell].next_try = summed + 0.5;
             return;
         }
@@ -519,14 +553,11 @@ impl Dicer {
                 break;
             }
         }
-        let hidden = |&p: &u32| {
-            let part = &self.parts[p as usize];
-            let slope = self.faces[part.face as usize].plane.slope;
-            part.nearness.most + lens.tie(part.nearness.most, slope) < nearness
-        };
+        let hidden = |&p: &u32| self.nearest(lens, self.part(p)) < nearness;
+        let tiles = tiling > 0 && order[tiling..].iter().all(hidden);
         // Whatever broke the prefix off must come to lie behind it, so that only new parts can add to it.
         self.cells[cell].next_try = if tiling > 0 { summed + 0.5 } else { summed + 1.0 - area - COVERED };
-        if tiling > 0 && order[tiling..].iter().all(hidden) {
+        if tiles {
             self.set_tiling(cell, tiling as u32, nearness);
         }
         self.order = order;
@@ -541,37 +572,39 @@ impl Dicer {
         }
     }
 
-    /// Whether the parts of a cell are opaque, and each of their edges that is not on the border of the cell is another's edge, the other way round.
+    /// Largest nearness of a part, with what it may be rounded by.
+    #[inline]
+    fn nearest(&self, lens: &Lens, part: &Part) -> f64 {
+        let slope = self.faces[part.face as usize].plane.slope;
+        part.nearness.most + lens.tie(part.nearness.most, slope)
+    }
+
+    /// The number of opaque pieces in a cell and their smallest nearness, if each of their edges that is not on the border of the cell is another's
+    /// edge, the other way round, and the other parts lie behind them.
     ///
-    /// Then as many parts lie over one point of the cell as over any other: one, if their areas add up to less than twice that of the cell. Faces that share an edge are cut at
-    /// the same points, bit for bit, so that this holds for pieces of a mesh.
-    fn edges_close(&mut self, cell: usize) -> bool {
+    /// Then as many pieces lie over one point of the cell as over any other: one, if their areas add up to less than [`MOST_TILED`]. Faces that share
+    /// an edge are cut at the same points, bit for bit, so that this holds for pieces of a mesh.
+    fn tiled_by_edges(&mut self, cell: usize, lens: &Lens) -> Option<(u32, f64)> {
         let mut edges = std::mem::take(&mut self.edges);
-        edges.clear();
-        let (mut opaque, mut area) = (true, 0.0);
+        edges.resize(MOST_INNER_EDGES + convex::MAX_VERTICES, (DVec2::ZERO, DVec2::ZERO));
+        let (mut pieces, mut inner) = (0, 0);
+        let (mut nearness, mut others) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in self.parts_of(cell) {
             let part = &self.parts[p as usize];
-            opaque &= part.opacity >= 1.0;
-            area += part.area;
-            let outline = self.outline(part);
-            let mut from = outline[outline.len() - 1];
-            for &to in outline {
-                if !on_border(from, to) {
-                    match edges.iter().position(|&other| other == (to, from)) {
-                        Some(reverse) => drop(edges.swap_remove(reverse)),
-                        None => edges.push((from, to)),
-                    }
-                }
-                from = to;
+            if part.vertex_count == 0 || part.opacity < 1.0 {
+                others = others.max(self.nearest(lens, part));
+                continue;
             }
-            // More than this do not belong to a few neighbours in a mesh.
-            if edges.len() > MOST_OPEN_EDGES {
+            pieces += 1;
+            nearness = nearness.min(part.nearness.least);
+            inner += collect_inner_edges(self.outline(part), &mut edges[inner..]);
+            if inner > MOST_INNER_EDGES {
                 break;
             }
         }
-        let closed = opaque && area < 1.5 && edges.is_empty();
+        let tiled = inner <= MOST_INNER_EDGES && others < nearness && pair_up(&mut edges[..inner]);
         self.edges = edges;
-        closed
+        tiled.then_some((pieces, nearness))
     }
 
     /// How many parts, from the first on, are disjoint; `None` where it takes comparing each with each to tell.
