@@ -84,8 +84,8 @@ fn weld(positions: &[DVec3]) -> Vec<u32> {
 #[derive(Clone, Copy)]
 struct HalfEdge {
     other: u32,
-    /// Triangle index × 2 + (1 if the edge runs from the lower vertex to the higher).
-    code: u64,
+    /// Triangle index × 2 + (1 if the edge runs from the lower vertex to the higher). There are fewer than 2³⁰ triangles.
+    code: u32,
 }
 
 struct EdgesByVertex {
@@ -101,26 +101,13 @@ impl EdgesByVertex {
 
 /// Counting sort of all half-edges by their lower vertex.
 fn edges_by_vertex(vertices: usize, triangles: &[[u32; 3]], welded: &[u32]) -> EdgesByVertex {
-    let for_each = |visit: &mut dyn FnMut(u32, HalfEdge)| {
-        for (t, tri) in triangles.iter().enumerate() {
-            let v = tri.map(|c| welded[c as usize]);
-            // Without area, and nobody's neighbour: its other two edges pair up as if it were not there.
-            if is_degenerate(v) {
-                continue;
-            }
-            for (a, b) in [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])] {
-                let code = (t as u64) * 2 + u64::from(a < b);
-                visit(a.min(b), HalfEdge { other: a.max(b), code });
-            }
-        }
-    };
     let mut first = vec![0u32; vertices + 2];
-    for_each(&mut |v, _| first[v as usize + 2] += 1);
+    for_each_edge(triangles, welded, |v, _| first[v as usize + 2] += 1);
     for i in 1..first.len() {
         first[i] += first[i - 1];
     }
     let mut edges = vec![HalfEdge { other: 0, code: 0 }; first[first.len() - 1] as usize];
-    for_each(&mut |v, edge| {
+    for_each_edge(triangles, welded, |v, edge| {
         let slot = &mut first[v as usize + 1];
         edges[*slot as usize] = edge;
         *slot += 1;
@@ -129,25 +116,38 @@ fn edges_by_vertex(vertices: usize, triangles: &[[u32; 3]], welded: &[u32]) -> E
     EdgesByVertex { first, edges }
 }
 
+/// Hands over every half-edge with its lower vertex.
+#[inline]
+fn for_each_edge(triangles: &[[u32; 3]], welded: &[u32], mut visit: impl FnMut(u32, HalfEdge)) {
+    for (t, tri) in triangles.iter().enumerate() {
+        let v = tri.map(|c| welded[c as usize]);
+        // Without area, and nobody's neighbour: its other two edges pair up as if it were not there.
+        if is_degenerate(v) {
+            continue;
+        }
+        for (a, b) in [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])] {
+            let code = t as u32 * 2 + u32::from(a < b);
+            visit(a.min(b), HalfEdge { other: a.max(b), code });
+        }
+    }
+}
+
 /// Joins triangles across manifold edges; marks those with any other kind of edge as open.
 fn pair_edges(edges: &[HalfEdge], components: &mut Components, open: &mut [bool]) {
-    for (i, e) in edges.iter().enumerate() {
-        let triangle = |code: u64| (code / 2) as usize;
-        let mut partner = None;
-        let mut count = 0;
-        for (j, f) in edges.iter().enumerate() {
-            if i != j && f.other == e.other {
-                count += 1;
-                if (e.code ^ f.code) & 1 == 1 {
-                    partner = Some(f.code);
-                }
-            }
+    let triangle = |code: u32| code / 2;
+    for e in edges {
+        // Of the edges between these two vertices, of which one is `e`: their number, and the sum of their codes. Without branches, which are hard to predict.
+        let (mut count, mut codes) = (0, 0u32);
+        for f in edges {
+            let same = f.other == e.other;
+            count += u32::from(same);
+            codes = codes.wrapping_add(if same { f.code } else { 0 });
         }
-        match partner {
-            Some(code) if count == 1 => {
-                components.join(triangle(e.code) as u32, triangle(code) as u32);
-            }
-            _ => open[triangle(e.code)] = true,
+        let partner = codes.wrapping_sub(e.code);
+        if count != 2 || (e.code ^ partner) & 1 == 0 {
+            open[triangle(e.code) as usize] = true;
+        } else if e.code < partner {
+            components.join(triangle(e.code), triangle(partner));
         }
     }
 }
