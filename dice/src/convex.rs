@@ -161,8 +161,15 @@ impl ConvexPolygon {
     #[inline]
     pub fn clipped(&self, half: &HalfPlane) -> Self {
         let mut inside = Self::EMPTY;
-        clip_ring(self.vertices(), |p| half.value(p), crossing, |p| inside.push(p));
+        self.clip_into(half, &mut inside);
         inside
+    }
+
+    /// As [`ConvexPolygon::clipped`], into a polygon that is there already.
+    #[inline]
+    pub fn clip_into(&self, half: &HalfPlane, inside: &mut Self) {
+        inside.clear();
+        clip_ring(self.vertices(), |p| half.value(p), crossing, |p| inside.push(p));
     }
 
     /// The parts inside and outside the half-plane. Both share the cut's end points bit for bit.
@@ -258,7 +265,12 @@ pub fn area_and_centroid(ring: &[DVec2]) -> (f64, DVec2) {
 #[inline]
 pub fn bounds(points: &[DVec2]) -> (DVec2, DVec2) {
     let start = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    points.iter().fold(start, |(lo, hi), &p| (lo.min(p), hi.max(p)))
+    // Comparisons are one instruction each, `f64::min` and `f64::max` several; of NaN both keep the bounds.
+    let less = |a: f64, b: f64| if a < b { a } else { b };
+    let more = |a: f64, b: f64| if a > b { a } else { b };
+    points.iter().fold(start, |(lo, hi), p| {
+        (DVec2::new(less(p.x, lo.x), less(p.y, lo.y)), DVec2::new(more(p.x, hi.x), more(p.y, hi.y)))
+    })
 }
 
 /// Relative slack of [`has_separating_edge`], in units of edge length times distance.
@@ -307,15 +319,17 @@ pub fn half_planes(ring: &[DVec2]) -> impl Iterator<Item = HalfPlane> + '_ {
 #[must_use]
 #[inline]
 pub fn has_separating_edge(a: &[DVec2], b: &[DVec2]) -> bool {
-    let (Some(&last), Some((&first, others))) = (a.last(), b.split_first()) else { return true };
+    let (Some(&last), Some(&first)) = (a.last(), b.first()) else { return true };
+    let middle = b[b.len() / 2];
     let mut p = last;
     for &q in a {
         let d = q - p;
         let slack = separation_slack(d);
-        // The first point alone refuses most edges.
-        if d.perp_dot(first - p) <= slack
+        let beyond = |v: DVec2| d.perp_dot(v - p) <= slack;
+        // Two opposite points refuse nearly all edges that do not separate.
+        if (beyond(first) & beyond(middle))
             && d != DVec2::ZERO
-            && others.iter().all(|&v| d.perp_dot(v - p) <= slack)
+            && b.iter().all(|&v| beyond(v))
             // The line through two vertices that nearly coincide may run through `a` itself.
             && a.iter().all(|&v| d.perp_dot(v - p) >= -slack)
         {

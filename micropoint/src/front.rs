@@ -70,11 +70,14 @@ fn in_front_by_planes(
     if planes.most <= tie && !if_coincident {
         return Front::Nowhere;
     }
-    let mut common = ConvexPolygon::from_vertices(lower.outline);
+    // Two polygons that stay in place: moving one takes as long as cutting it.
+    let (mut common, mut spare) =
+        (&mut ConvexPolygon::from_vertices(lower.outline), &mut ConvexPolygon::default());
     for half in convex::half_planes(upper.outline) {
         // Most half-planes hold the whole polygon, which takes less time to find out than to copy it.
         if common.vertices().iter().any(|&v| half.value(v) < 0.0) {
-            common = common.clipped(&half);
+            common.clip_into(&half, spare);
+            std::mem::swap(&mut common, &mut spare);
         }
     }
     let mut difference = Interval::EMPTY;
