@@ -70,15 +70,23 @@ impl Edge {
     #[inline]
     fn x_at(&self, y: f64) -> f64 {
         let x = self.low.x + (y - self.low.y) * self.run;
-        x.clamp(self.low.x.min(self.high.x), self.low.x.max(self.high.x))
+        let (a, b) = (self.low.x, self.high.x);
+        if a < b { within(x, a, b) } else { within(x, b, a) }
     }
 
     /// y where the edge meets the vertical line `x`.
     #[inline]
     fn y_at(&self, x: f64) -> f64 {
         let y = self.low.y + (x - self.low.x) * self.rise;
-        y.clamp(self.low.y, self.high.y)
+        within(y, self.low.y, self.high.y)
     }
+}
+
+/// The number between two bounds that is closest to `value`. `f64::clamp` also checks that the bounds are in order.
+#[inline]
+fn within(value: f64, low: f64, high: f64) -> f64 {
+    let above = if value < low { low } else { value };
+    if above > high { high } else { above }
 }
 
 /// The polygon within one row of cells. `edges[i]` is what the side from vertex `i` lies on: an edge
@@ -272,7 +280,7 @@ fn clip_to_column(slab: &Slab, edges: &[Edge], row: i32, column: i32, piece: &mu
     let (top, bottom) = (f64::from(row), f64::from(row + 1));
     let crossing = |edge: Option<u8>, from: DVec2, x: f64| {
         let y = edge.map_or(from.y, |e| edges[usize::from(e)].y_at(x));
-        DVec2::new(x, y.clamp(top, bottom))
+        DVec2::new(x, within(y, top, bottom))
     };
     piece.clear();
     let mut push = |p: DVec2| {

@@ -46,7 +46,10 @@ impl Extent {
     const CELL: Self = Self { low: Vec2::ZERO, high: Vec2::ONE };
 
     fn of(outline: &[DVec2]) -> Self {
-        let (low, high) = convex::bounds(outline);
+        Self::around(convex::bounds(outline))
+    }
+
+    fn around((low, high): (DVec2, DVec2)) -> Self {
         // A cell is 1 wide: this is half a unit in the last place of its far corner.
         let slack = Vec2::splat(f32::EPSILON);
         Self { low: low.as_vec2() - slack, high: high.as_vec2() + slack }
@@ -453,14 +456,21 @@ impl Dicer {
     ) {
         self.counts.pieces += 1;
         let corner = cell.as_dvec2();
-        let mut nearness = Interval::EMPTY;
-        polygon.vertices().iter().for_each(|&v| nearness.include(face.nearness_at(v)));
+        let first = self.vertices.len();
+        // One loop: how many vertices there are is hard to predict.
+        let (mut nearness, mut x, mut y) = (Interval::EMPTY, Interval::EMPTY, Interval::EMPTY);
+        self.vertices.extend(polygon.vertices().iter().map(|&v| {
+            let local = v - corner;
+            nearness.include(face.nearness_at(v));
+            x.include(local.x);
+            y.include(local.y);
+            local
+        }));
         let i = self.cell_index(cell);
         if self.refuses(job.lens, i, face, nearness.most) {
+            self.vertices.truncate(first);
             return;
         }
-        let first = self.vertices.len();
-        self.vertices.extend(polygon.vertices().iter().map(|&v| v - corner));
         let local = &self.vertices[first..];
         let (area, centroid) = convex::area_and_centroid(local);
         if area <= 0.0 || area.is_nan() {
@@ -474,7 +484,7 @@ impl Dicer {
             vertex_count: local.len() as u32,
             area,
             centroid,
-            bounds: Extent::of(local),
+            bounds: Extent::around((DVec2::new(x.least, y.least), DVec2::new(x.most, y.most))),
             nearness,
             opacity,
         };
