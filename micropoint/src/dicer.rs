@@ -100,7 +100,7 @@ fn sides_at(p: DVec2) -> u8 {
     u8::from(zero(p.x)) | u8::from(one(p.x)) << 1 | u8::from(zero(p.y)) << 2 | u8::from(one(p.y)) << 3
 }
 
-/// Most edges within a cell with which [`Dicer::tiled_by_edges`] goes on: more do not belong to a few neighbours in a mesh.
+/// Most edges within a cell with which [`Dicer::edges_close`] goes on: more do not belong to a few neighbours in a mesh.
 const MOST_INNER_EDGES: usize = 64;
 
 /// Pieces that lie over a cell equally often everywhere tile it if their areas add up to less than this.
@@ -120,6 +120,17 @@ fn collect_inner_edges(outline: &[DVec2], edges: &mut [(DVec2, DVec2)]) -> usize
         (from, sides_from) = (to, sides_to);
     }
     count
+}
+
+/// Whether an edge of one outline is one of the other, the other way round.
+fn have_common_edge(a: &[DVec2], b: &[DVec2]) -> bool {
+    let mut from = a[a.len() - 1];
+    a.iter().any(|&to| {
+        let start = b.iter().position(|&v| v == to);
+        let common = start.is_some_and(|i| b[if i + 1 == b.len() { 0 } else { i + 1 }] == from);
+        from = to;
+        common
+    })
 }
 
 /// Whether each edge has another that is its reverse, or no length.
@@ -242,7 +253,7 @@ pub(crate) struct Dicer {
     memory: VisitMemory,
     order: Vec<u32>,
     keys: Vec<(i64, u32)>,
-    /// Memory of [`Dicer::tiled_by_edges`].
+    /// Memory of [`Dicer::edges_close`].
     edges: Vec<(DVec2, DVec2)>,
     neighbours: Neighbours,
     pub(crate) counts: TileCounts,
@@ -589,32 +600,49 @@ impl Dicer {
         part.nearness.most + lens.tie(part.nearness.most, slope)
     }
 
-    /// The number of opaque pieces in a cell and their smallest nearness, if each of their edges that is not on the border of the cell is another's
-    /// edge, the other way round, and the other parts lie behind them.
+    /// The number of opaque pieces in a cell and their smallest nearness, if their edges tell that they tile it, and the other parts lie behind them.
     ///
-    /// Then as many pieces lie over one point of the cell as over any other: one, if their areas add up to less than [`MOST_TILED`]. Faces that share
-    /// an edge are cut at the same points, bit for bit, so that this holds for pieces of a mesh.
+    /// Faces that share an edge are cut at the same points, bit for bit, so that this holds for pieces of a mesh. Their areas add up to that of the
+    /// cell at least, and to less than [`MOST_TILED`].
     fn tiled_by_edges(&mut self, cell: usize, lens: &Lens) -> Option<(u32, f64)> {
-        let mut edges = std::mem::take(&mut self.edges);
-        edges.resize(MOST_INNER_EDGES + convex::MAX_VERTICES, (DVec2::ZERO, DVec2::ZERO));
-        let (mut pieces, mut inner) = (0, 0);
+        let mut pieces = std::mem::take(&mut self.order);
+        pieces.clear();
         let (mut nearness, mut others) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in self.parts_of(cell) {
             let part = &self.parts[p as usize];
             if part.vertex_count == 0 || part.opacity < 1.0 {
                 others = others.max(self.nearest(lens, part));
-                continue;
+            } else {
+                nearness = nearness.min(part.nearness.least);
+                pieces.push(p);
             }
-            pieces += 1;
-            nearness = nearness.min(part.nearness.least);
-            inner += collect_inner_edges(self.outline(part), &mut edges[inner..]);
+        }
+        let tiled = others < nearness
+            && match *pieces {
+                // They lie on either side of it.
+                [a, b] => have_common_edge(self.outline(self.part(a)), self.outline(self.part(b))),
+                _ => self.edges_close(&pieces),
+            };
+        let count = pieces.len() as u32;
+        self.order = pieces;
+        tiled.then_some((count, nearness))
+    }
+
+    /// Whether each edge of some pieces that is not on the border of the cell is another's edge, the other way round. Then as many of them lie over one
+    /// point of the cell as over any other.
+    fn edges_close(&mut self, pieces: &[u32]) -> bool {
+        let mut edges = std::mem::take(&mut self.edges);
+        edges.resize(MOST_INNER_EDGES + convex::MAX_VERTICES, (DVec2::ZERO, DVec2::ZERO));
+        let mut inner = 0;
+        for &p in pieces {
+            inner += collect_inner_edges(self.outline(self.part(p)), &mut edges[inner..]);
             if inner > MOST_INNER_EDGES {
                 break;
             }
         }
-        let tiled = inner <= MOST_INNER_EDGES && others < nearness && pair_up(&mut edges[..inner]);
+        let closed = inner <= MOST_INNER_EDGES && pair_up(&mut edges[..inner]);
         self.edges = edges;
-        tiled.then_some((pieces, nearness))
+        closed
     }
 
     /// How many parts, from the first on, are disjoint; `None` where it takes comparing each with each to tell.
