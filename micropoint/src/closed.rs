@@ -45,9 +45,7 @@ pub(crate) fn find_solids(
     let mut components = Components::new(triangles.len());
     let mut open = vec![false; triangles.len()];
     let edges = edges_by_vertex(positions.len(), triangles, &welded);
-    for v in 0..positions.len() {
-        pair_edges(edges.of_vertex(v), &mut components, &mut open);
-    }
+    pair_edges(&edges, &mut components, &mut open);
     for (t, tri) in triangles.iter().enumerate() {
         open[t] |= is_degenerate(tri.map(|c| welded[c as usize])) || !opaque(t);
     }
@@ -94,6 +92,10 @@ struct EdgesByVertex {
 }
 
 impl EdgesByVertex {
+    fn vertex_count(&self) -> usize {
+        self.first.len() - 1
+    }
+
     fn of_vertex(&self, v: usize) -> &[HalfEdge] {
         &self.edges[self.first[v] as usize..self.first[v + 1] as usize]
     }
@@ -132,24 +134,43 @@ fn for_each_edge(triangles: &[[u32; 3]], welded: &[u32], mut visit: impl FnMut(u
     }
 }
 
+/// The half-edges between a vertex and its lower neighbour that was looked at last.
+#[derive(Clone, Copy)]
+struct Between {
+    lower: u32,
+    count: u32,
+    /// Sum of their codes: of two, it tells the other by the one.
+    codes: u32,
+}
+
 /// Joins triangles across manifold edges; marks those with any other kind of edge as open.
-fn pair_edges(edges: &[HalfEdge], components: &mut Components, open: &mut [bool]) {
-    let triangle = |code: u32| code / 2;
-    for e in edges {
-        // Of the edges between these two vertices, of which one is `e`: their number, and the sum of their codes. Without branches, which are hard to predict.
-        let (mut count, mut codes) = (0, 0u32);
-        for f in edges {
-            let same = f.other == e.other;
-            count += u32::from(same);
-            codes = codes.wrapping_add(if same { f.code } else { 0 });
+fn pair_edges(edges: &EdgesByVertex, components: &mut Components, open: &mut [bool]) {
+    let none = Between { lower: u32::MAX, count: 0, codes: 0 };
+    let mut between = vec![none; edges.vertex_count()];
+    for lower in 0..edges.vertex_count() as u32 {
+        for e in edges.of_vertex(lower as usize) {
+            let found = &mut between[e.other as usize];
+            if found.lower != lower {
+                *found = Between { lower, ..none };
+            }
+            found.count += 1;
+            found.codes = found.codes.wrapping_add(e.code);
         }
-        let partner = codes.wrapping_sub(e.code);
-        if count != 2 || (e.code ^ partner) & 1 == 0 {
-            open[triangle(e.code) as usize] = true;
-        } else if e.code < partner {
-            components.join(triangle(e.code), triangle(partner));
+        for e in edges.of_vertex(lower as usize) {
+            let Between { count, codes, .. } = between[e.other as usize];
+            let partner = codes.wrapping_sub(e.code);
+            if count != 2 || (e.code ^ partner) & 1 == 0 {
+                open[triangle_of(e.code)] = true;
+            } else if e.code < partner {
+                components.join(triangle_of(e.code) as u32, triangle_of(partner) as u32);
+            }
         }
     }
+}
+
+/// The triangle of a half-edge's code.
+fn triangle_of(code: u32) -> usize {
+    (code / 2) as usize
 }
 
 fn collect_solids(
