@@ -698,16 +698,18 @@ impl Dicer {
     /// The parts of a cell, nearest first, in an order that does not depend on the order of triangles.
     pub(crate) fn sorted_parts(&mut self, cell: usize) -> Vec<u32> {
         let mut order = std::mem::take(&mut self.order);
-        let mut keys = std::mem::take(&mut self.keys);
         order.clear();
+        if self.cells[cell].count <= 1 {
+            order.extend(self.parts_of(cell));
+            return order;
+        }
+        let mut keys = std::mem::take(&mut self.keys);
         keys.clear();
         keys.extend(self.parts_of(cell).map(|p| (ordered(-self.part(p).nearness.most), p)));
-        if keys.len() > 1 {
-            keys.sort_unstable_by_key(|key| key.0);
-            if keys.windows(2).any(|pair| pair[0].0 == pair[1].0) {
-                for equal in keys.chunk_by_mut(|a, b| a.0 == b.0) {
-                    equal.sort_unstable_by(|a, b| self.compare(a.1, b.1));
-                }
+        keys.sort_unstable_by_key(|key| key.0);
+        if keys.windows(2).any(|pair| pair[0].0 == pair[1].0) {
+            for equal in keys.chunk_by_mut(|a, b| a.0 == b.0) {
+                equal.sort_unstable_by(|a, b| self.compare(a.1, b.1));
             }
         }
         order.extend(keys.iter().map(|key| key.1));
