@@ -54,7 +54,13 @@ struct Edge {
 }
 
 impl Edge {
-    const NONE: Self = Self { low: DVec2::ZERO, high: DVec2::ZERO, run: 0.0, rise: 0.0 };
+    const NONE: Self = Self::grid_line(0.0);
+
+    /// The grid line between two rows.
+    const fn grid_line(y: f64) -> Self {
+        let on_line = DVec2::new(0.0, y);
+        Self { low: on_line, high: on_line, run: 0.0, rise: 0.0 }
+    }
 
     fn new(a: DVec2, b: DVec2) -> Self {
         let ordered = (a.y, a.x) <= (b.y, b.x);
@@ -90,18 +96,18 @@ fn within(value: f64, low: f64, high: f64) -> f64 {
 }
 
 /// The polygon within one row of cells. `edges[i]` is what the side from vertex `i` lies on: an edge
-/// of the input, or a grid line.
+/// of the input, or one of the two [grid lines](Edge::grid_line) of the row, which follow these.
 struct Slab {
     len: usize,
     vertices: [DVec2; 16],
-    edges: [Option<u8>; 16],
+    edges: [u8; 16],
 }
 
 impl Slab {
-    const EMPTY: Self = Self { len: 0, vertices: [DVec2::ZERO; 16], edges: [None; 16] };
+    const EMPTY: Self = Self { len: 0, vertices: [DVec2::ZERO; 16], edges: [0; 16] };
 
     #[inline]
-    fn push(&mut self, p: DVec2, edge: Option<u8>) {
+    fn push(&mut self, p: DVec2, edge: u8) {
         // Corners on a grid line arrive once from each of their two edges.
         if self.len > 0 && self.vertices[self.len - 1] == p {
             self.edges[self.len - 1] = edge;
@@ -163,13 +169,13 @@ pub fn cut(polygon: &[DVec2], window: CellWindow, mut visit: impl FnMut(Cut<'_>)
     }
     // Nearly all polygons are triangles; clearing room for twelve edges would cost as much as one cut.
     if n <= 4 {
-        cut_rows::<4>(polygon, rows, columns, &mut visit);
+        cut_rows::<6>(polygon, rows, columns, &mut visit);
     } else {
-        cut_rows::<MAX_CUT_VERTICES>(polygon, rows, columns, &mut visit);
+        cut_rows::<{ MAX_CUT_VERTICES + 2 }>(polygon, rows, columns, &mut visit);
     }
 }
 
-/// Cuts a polygon of at most `N` vertices row by row.
+/// Cuts a polygon of at most `N - 2` vertices row by row.
 #[inline]
 fn cut_rows<const N: usize>(
     polygon: &[DVec2],
@@ -184,9 +190,11 @@ fn cut_rows<const N: usize>(
     }
     let (mut slab, mut piece) = (Slab::EMPTY, ConvexPolygon::EMPTY);
     for row in rows {
-        clip_to_row(polygon, &edges[..n], row, &mut slab);
+        edges[n] = Edge::grid_line(f64::from(row));
+        edges[n + 1] = Edge::grid_line(f64::from(row + 1));
+        clip_to_row(polygon, &edges, row, &mut slab);
         if slab.len >= 3 {
-            walk_row(&slab, &edges[..n], row, columns.clone(), &mut piece, visit);
+            walk_row(&slab, &edges, row, columns.clone(), &mut piece, visit);
         }
     }
 }
@@ -205,6 +213,7 @@ fn clip_to_row(polygon: &[DVec2], edges: &[Edge], row: i32, slab: &mut Slab) {
     let (top, bottom) = (f64::from(row), f64::from(row + 1));
     slab.len = 0;
     let n = polygon.len();
+    let (top_line, bottom_line) = (n as u8, n as u8 + 1);
     for i in 0..n {
         let (a, b) = (polygon[i], polygon[if i + 1 == n { 0 } else { i + 1 }]);
         let (above_a, below_a) = (a.y < top, a.y > bottom);
@@ -212,7 +221,7 @@ fn clip_to_row(polygon: &[DVec2], edges: &[Edge], row: i32, slab: &mut Slab) {
         if (above_a && above_b) || (below_a && below_b) {
             continue;
         }
-        let edge = Some(i as u8);
+        let edge = i as u8;
         if above_a {
             slab.push(DVec2::new(edges[i].x_at(top), top), edge);
         } else if below_a {
@@ -222,9 +231,9 @@ fn clip_to_row(polygon: &[DVec2], edges: &[Edge], row: i32, slab: &mut Slab) {
         }
         // Where the edge leaves the row, a side along the grid line follows.
         if above_b {
-            slab.push(DVec2::new(edges[i].x_at(top), top), None);
+            slab.push(DVec2::new(edges[i].x_at(top), top), top_line);
         } else if below_b {
-            slab.push(DVec2::new(edges[i].x_at(bottom), bottom), None);
+            slab.push(DVec2::new(edges[i].x_at(bottom), bottom), bottom_line);
         }
     }
     while slab.len > 1 && slab.vertices[slab.len - 1] == slab.vertices[0] {
@@ -278,10 +287,6 @@ fn covered_columns(vertices: &[DVec2], row: i32) -> Range<i32> {
 fn clip_to_column(slab: &Slab, edges: &[Edge], row: i32, column: i32, piece: &mut ConvexPolygon) {
     let (left, right) = (f64::from(column), f64::from(column + 1));
     let (top, bottom) = (f64::from(row), f64::from(row + 1));
-    let crossing = |edge: Option<u8>, from: DVec2, x: f64| {
-        let y = edge.map_or(from.y, |e| edges[usize::from(e)].y_at(x));
-        DVec2::new(x, within(y, top, bottom))
-    };
     piece.clear();
     let mut push = |p: DVec2| {
         if piece.vertices().last() != Some(&p) {
@@ -290,21 +295,22 @@ fn clip_to_column(slab: &Slab, edges: &[Edge], row: i32, column: i32, piece: &mu
     };
     for i in 0..slab.len {
         let j = if i + 1 == slab.len { 0 } else { i + 1 };
-        let (a, b, edge) = (slab.vertices[i], slab.vertices[j], slab.edges[i]);
+        let (a, b, edge) = (slab.vertices[i], slab.vertices[j], &edges[usize::from(slab.edges[i])]);
         if (a.x < left && b.x < left) || (a.x > right && b.x > right) {
             continue;
         }
+        let crossing = |x: f64| DVec2::new(x, within(edge.y_at(x), top, bottom));
         if a.x < left {
-            push(crossing(edge, a, left));
+            push(crossing(left));
         } else if a.x > right {
-            push(crossing(edge, a, right));
+            push(crossing(right));
         } else {
             push(a);
         }
         if b.x < left {
-            push(crossing(edge, a, left));
+            push(crossing(left));
         } else if b.x > right {
-            push(crossing(edge, a, right));
+            push(crossing(right));
         }
     }
 }
