@@ -254,7 +254,9 @@ fn walk_row(
     let vertices = &slab.vertices[..slab.len];
     let (lo, hi) = crate::convex::bounds(vertices);
     let touched = cells_between(lo.x, hi.x, columns);
-    let full = covered_columns(vertices, row);
+    // A cell is covered wholly only where the polygon reaches from one grid line to the other.
+    let crosses = lo.y == f64::from(row) && hi.y == f64::from(row + 1);
+    let full = if crosses { covered_columns(vertices, row) } else { 0..0 };
     let mut column = touched.start;
     while column < touched.end {
         if full.start <= column && column < full.end {

@@ -92,12 +92,11 @@ fn ordered(number: f64) -> i64 {
 /// Outline of a whole cell.
 const CELL: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
 
-/// The sides of the cell that a point lies on, a bit for each.
+/// The sides of the cell that a point of it lies on, a bit for each.
 #[inline]
 fn sides_at(p: DVec2) -> u8 {
-    // Compared as integers, which takes fewer instructions; both zeros count.
-    let (zero, one) = (|c: f64| c.to_bits() << 1 == 0, |c: f64| c.to_bits() == 1.0_f64.to_bits());
-    u8::from(zero(p.x)) | u8::from(one(p.x)) << 1 | u8::from(zero(p.y)) << 2 | u8::from(one(p.y)) << 3
+    let [left, right, top, bottom] = [p.x <= 0.0, p.x >= 1.0, p.y <= 0.0, p.y >= 1.0].map(u8::from);
+    left | right << 1 | top << 2 | bottom << 3
 }
 
 /// Most edges within a cell with which [`Dicer::edges_close`] goes on: more do not belong to a few neighbours in a mesh.
@@ -822,10 +821,6 @@ impl Dicer {
     pub(crate) fn tiling(&self, cell: usize) -> Option<usize> {
         let c = &self.cells[cell];
         (c.tiling > 0 && c.tiling_count == c.count).then_some(c.tiling as usize)
-    }
-
-    pub(crate) fn cell_count(&self) -> usize {
-        self.cells.len()
     }
 }
 

@@ -234,11 +234,10 @@ impl<'a> Renderer<'a> {
             depths,
         };
         dicer.dice(&job, window);
-        let columns = (window.x1 - window.x0) as usize;
         let share = 1.0 / f64::from(cells * cells);
-        for cell in 0..dicer.cell_count() {
-            let x = window.x0 as u32 + (cell % columns) as u32;
-            let y = window.y0 as u32 + (cell / columns) as u32;
+        let rows = rect.y0 * cells..rect.y1 * cells;
+        let places = rows.flat_map(|y| (rect.x0 * cells..rect.x1 * cells).map(move |x| (x, y)));
+        for (cell, (x, y)) in places.enumerate() {
             let corner = DVec2::new(f64::from(x), f64::from(y));
             let pixel = (x / cells, y / cells);
             let emit = |dicer: &Dicer, seen: Visible<'_>| tile.push(dicer, &seen, corner, pixel, share);
