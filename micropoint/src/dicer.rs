@@ -842,3 +842,40 @@ pub(crate) fn mean_opacity(job: &DiceJob<'_>, face: &Face, corner: DVec2, local:
     let surface = &job.geometry.surfaces()[face.surface as usize];
     face.mean_opacity(job.lens, surface, job.opacity, corner, local)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec2;
+
+    fn close(pieces: &[[DVec2; 3]]) -> bool {
+        let mut edges = [(DVec2::ZERO, DVec2::ZERO); 32];
+        let inner =
+            pieces.iter().fold(0, |inner, piece| inner + collect_inner_edges(piece, &mut edges[inner..]));
+        pair_up(&mut edges[..inner])
+    }
+
+    #[test]
+    fn edges_of_pieces_that_tile_the_cell_pair_up() {
+        let middle = dvec2(0.4, 0.6);
+        let fan: Vec<_> = (0..4).map(|i| [CELL[i], CELL[(i + 1) % 4], middle]).collect();
+        assert!(close(&fan));
+        assert!(!close(&fan[..3]), "two edges of the hole are left");
+        // The hole is covered, too, but its edges are not bit for bit those of its neighbours.
+        let moved = [CELL[3], CELL[0], middle + dvec2(1e-16, 0.0)];
+        assert!(!close(&[fan[0], fan[1], fan[2], moved]));
+        // From side to side of the cell is not along a side.
+        assert!(!close(&[[dvec2(0.0, 0.5), dvec2(1.0, 0.5), CELL[3]]]));
+        // A corner given twice has an edge without a length.
+        assert!(close(&[[CELL[0], CELL[1], middle], [middle, CELL[1], middle], [CELL[1], CELL[0], middle]]));
+    }
+
+    #[test]
+    fn a_common_edge_runs_the_other_way_round_in_the_neighbour() {
+        let [a, b, c, d] = CELL;
+        assert!(have_common_edge(&[a, b, c], &[c, d, a]));
+        assert!(have_common_edge(&[b, c, a], &[a, c, d]));
+        assert!(!have_common_edge(&[a, b, c], &[a, b, d]), "on the same side of their edge");
+        assert!(!have_common_edge(&[a, b, c], &[c, d, dvec2(0.5, 0.5)]), "only a corner in common");
+    }
+}
