@@ -102,8 +102,9 @@ fn sides_at(p: DVec2) -> u8 {
 /// Most edges within a cell with which [`Dicer::edges_close`] goes on: more do not belong to a few neighbours in a mesh.
 const MOST_INNER_EDGES: usize = 64;
 
-/// Pieces that lie over a cell equally often everywhere tile it if their areas add up to less than this.
-const MOST_TILED: f64 = 1.5;
+/// Areas of pieces that tile a cell add up to less than this: to 1, within [`CUT_ERROR`](pointillist_dice::CUT_ERROR) for each, which is below 1e-9 as
+/// far from the origin as faces reach. Where they add up to more, edges need not be compared.
+const MOST_TILED: f64 = 1.0 + 1e-6;
 
 /// Writes the edges of an outline that are not on the border of the cell to the front of `edges`, and returns how many they are.
 #[inline]
