@@ -3,7 +3,7 @@
 use glam::DVec2;
 use pointillist_dice::{HalfPlane, convex};
 
-/// A target's corners and edges in groups of four, coordinate by coordinate: what is computed of each then takes few instructions, and no branches.
+/// A target's corners and edges in groups of four: what is computed of each then takes few instructions, and no branches.
 #[derive(Debug, Default)]
 pub(crate) struct Corners {
     groups: Vec<Four>,
@@ -12,74 +12,56 @@ pub(crate) struct Corners {
 /// Four corners, and the edges from each to the next. Where there are fewer, the last one counts several times.
 #[derive(Clone, Copy, Debug)]
 struct Four {
-    x: [f64; 4],
-    y: [f64; 4],
-    along_x: [f64; 4],
-    along_y: [f64; 4],
-    /// As in [`convex::has_separating_edge`]; −∞ for an edge that separates nothing.
+    corners: [DVec2; 4],
+    along: [DVec2; 4],
+    /// Up to this an edge separates, as in [`convex::has_separating_edge`].
     slack: [f64; 4],
 }
 
 impl Corners {
     /// Becomes those of an outline.
     pub(crate) fn set(&mut self, outline: &[DVec2]) {
+        let last = outline.len() - 1;
         self.groups.clear();
-        for first in (0..outline.len()).step_by(4) {
-            let corner = |i: usize| {
-                let at = (first + i).min(outline.len() - 1);
-                (outline[at], outline[(at + 1) % outline.len()] - outline[at])
-            };
-            let corners = [corner(0), corner(1), corner(2), corner(3)];
-            self.groups.push(Four {
-                x: corners.map(|(p, _)| p.x),
-                y: corners.map(|(p, _)| p.y),
-                along_x: corners.map(|(_, along)| along.x),
-                along_y: corners.map(|(_, along)| along.y),
-                slack: corners.map(|(p, along)| {
-                    let slack = convex::separation_slack(along);
-                    // The line through two vertices that nearly coincide may run through the outline itself.
-                    let holds = outline.iter().all(|&v| along.perp_dot(v - p) >= -slack);
-                    if holds && along != DVec2::ZERO { slack } else { f64::NEG_INFINITY }
-                }),
-            });
-        }
+        self.groups.extend((0..=last).step_by(4).map(|first| {
+            let numbers = [first, first + 1, first + 2, first + 3].map(|i| i.min(last));
+            let corners = numbers.map(|i| outline[i]);
+            let along = numbers.map(|i| outline[if i == last { 0 } else { i + 1 }] - outline[i]);
+            Four { corners, along, slack: along.map(convex::separation_slack) }
+        }));
     }
 
     /// The least and the largest value of a half-plane.
     #[inline]
     pub(crate) fn range(&self, half: &HalfPlane) -> (f64, f64) {
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for Four { x, y, .. } in &self.groups {
-            let HalfPlane { anchor, normal, offset } = *half;
-            let value = |i: usize| normal.x * (x[i] - anchor.x) + normal.y * (y[i] - anchor.y) + offset;
-            let values = [value(0), value(1), value(2), value(3)];
-            least = less(least, less(less(values[0], values[2]), less(values[1], values[3])));
-            most = more(most, more(more(values[0], values[2]), more(values[1], values[3])));
-        }
-        (least, most)
+        // One instruction each; those of `f64` look for NaN.
+        let less = |a: f64, b: f64| if a < b { a } else { b };
+        let more = |a: f64, b: f64| if a > b { a } else { b };
+        self.groups.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), four| {
+            let [a, b, c, d] = four.corners.map(|p| half.value(p));
+            (less(least, less(less(a, c), less(b, d))), more(most, more(more(a, c), more(b, d))))
+        })
     }
 
     /// Whether one of the edges has all of an outline on or beyond it, as [`convex::has_separating_edge`] tells.
     #[inline]
     pub(crate) fn has_separating_edge(&self, outline: &[DVec2]) -> bool {
-        self.groups.iter().any(|four| {
-            let Four { x, y, along_x, along_y, .. } = four;
-            let value = |v: &DVec2, i: usize| along_x[i] * (v.y - y[i]) - along_y[i] * (v.x - x[i]);
-            let start = [f64::NEG_INFINITY; 4];
-            let most = outline.iter().fold(start, |most, v| [0, 1, 2, 3].map(|i| more(most[i], value(v, i))));
-            let separates = |i: usize| most[i] <= four.slack[i];
-            separates(0) | separates(1) | separates(2) | separates(3)
+        self.groups.iter().any(|Four { corners, along, slack }| {
+            let mut separates = [true; 4];
+            for &v in outline {
+                let is_beyond = |i: usize| along[i].perp_dot(v - corners[i]) <= slack[i];
+                separates = [0, 1, 2, 3].map(|i| separates[i] & is_beyond(i));
+            }
+            separates != [false; 4]
+                && (0..4).any(|i| separates[i] && self.has_before(corners[i], along[i], slack[i]))
         })
     }
-}
 
-// One instruction each; those of `f64` look for NaN.
-fn less(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-fn more(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
+    /// Whether all corners are before an edge: the line through two that nearly coincide may run through the target itself.
+    fn has_before(&self, from: DVec2, along: DVec2, slack: f64) -> bool {
+        let mut corners = self.groups.iter().flat_map(|four| &four.corners);
+        along != DVec2::ZERO && corners.all(|&v| along.perp_dot(v - from) >= -slack)
+    }
 }
 
 /// Edges of a caster, by the numbers of their half-planes.
