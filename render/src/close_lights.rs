@@ -38,8 +38,10 @@ impl Shader<'_> {
             LensKind::Orthographic => (1.0, normal.dot(self.forward).abs()),
         };
         let close = CLOSE.min(CLOSE_TO_LOBE * lobe_width(p));
+        let limit = close * height * tile.lens().scale;
+        // Squares, since roots take long.
         self.economy.is_none()
-            && distance2 > close * height * tile.lens().scale * p.place.position.distance(from)
+            && distance2 * distance2 > limit * limit * p.place.position.distance_squared(from)
     }
 
     /// The mean of [`Shader::arriving`] over convex polygons of the picture, each with its weight.

@@ -41,8 +41,7 @@ impl Shader<'_> {
         }
         let depth = |i: usize| {
             let m = &tile.points()[i];
-            let nearness = tile.faces()[m.face as usize].nearness_at(m.grid);
-            tile.position(m.grid, nearness).dot(self.forward) as f32
+            tile.lens().depth(tile.faces()[m.face as usize].nearness_at(m.grid)) as f32
         };
         pixels.depth.clear();
         pixels.depth.extend(heaviest(tile).into_iter().map(|i| i.map_or(f32::INFINITY, depth)));
