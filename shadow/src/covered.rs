@@ -83,9 +83,26 @@ impl Covering {
         self.find_partners();
         while self.leave_out_incomplete() {}
         // One that only touches the target within rounding has no edge that crosses it.
-        let middle = middle(outline);
-        let covers_middle = |(c, left_out): (&Cover, &bool)| !left_out && covers(shape(c.caster), middle);
-        casters.iter().zip(&self.left_out).any(covers_middle)
+        let stay = casters.iter().zip(&self.left_out).filter(|(_, left_out)| !**left_out);
+        covers_middle(stay.map(|(cover, _)| cover), shape, outline)
+    }
+
+    /// Calls `visit` with the edges of these casters that cross a target and have none of another on their other side. Returns false, and visits
+    /// none, if there are too many casters to look at.
+    pub(crate) fn for_each_unpaired<'c>(
+        &mut self,
+        casters: &[Cover],
+        shape: impl Fn(u32) -> Shape<'c>,
+        outline: &[DVec2],
+        mut visit: impl FnMut([DVec2; 2]),
+    ) -> bool {
+        if casters.len() > MOST {
+            return false;
+        }
+        self.collect_edges(casters, &shape, outline);
+        self.find_partners();
+        self.edges.iter().filter(|edge| edge.partner.is_none()).for_each(|edge| visit([edge.from, edge.to]));
+        true
     }
 
     fn collect_edges<'c>(&mut self, casters: &[Cover], shape: &impl Fn(u32) -> Shape<'c>, outline: &[DVec2]) {
@@ -173,6 +190,16 @@ impl Covering {
 fn covers_samples<'c>(casters: &[Cover], shape: &impl Fn(u32) -> Shape<'c>, outline: &[DVec2]) -> bool {
     let middle = middle(outline);
     outline.iter().all(|&v| casters.iter().any(|c| covers(shape(c.caster), 0.5 * (middle + v))))
+}
+
+/// Whether some of these casters cover the middle of an outline.
+pub(crate) fn covers_middle<'c, 'l>(
+    casters: impl IntoIterator<Item = &'l Cover>,
+    shape: impl Fn(u32) -> Shape<'c>,
+    outline: &[DVec2],
+) -> bool {
+    let middle = middle(outline);
+    casters.into_iter().any(|c| covers(shape(c.caster), middle))
 }
 
 fn covers((_, sides): Shape<'_>, p: DVec2) -> bool {

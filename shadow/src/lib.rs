@@ -30,6 +30,7 @@ mod cells;
 mod copies;
 mod counts;
 mod covered;
+mod ends;
 mod error;
 mod exact;
 mod grid;

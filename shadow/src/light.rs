@@ -2,6 +2,7 @@
 
 use crate::casters::{Casters, Nearby};
 use crate::cells::LightCells;
+use crate::ends::Shadow;
 use crate::error::ShadowError;
 use crate::grid::LightGrid;
 use crate::lit_regions::LitRegions;
@@ -14,7 +15,7 @@ use crate::target::{Target, Targets, WHOLE_FACE};
 use crate::whole_faces;
 use crate::{copies, exact, layers};
 use glam::{DVec2, DVec3};
-use pointillist_dice::{clip_ring, share_before_crossing};
+use pointillist_dice::{ConvexPolygon, clip_ring, share_before_crossing};
 use pointillist_micropoint::{
     Bounds, DepthRange, Face, FaceVisitor, Geometry, GridRect, Interval, Lens, LensKind, Occlusion,
     ProjectedVertex, Setup, SurfaceOpacity, TexturedOpacity,
@@ -272,6 +273,7 @@ impl<'a> ShadowLight<'a> {
             ..
         } = scratch;
         let mut work = Work { screen, viewer, receivers, lit_faces, rules, lit_regions };
+        let mut lit_part = ConvexPolygon::EMPTY;
         for group in &grid.groups {
             casters.of_group(group, nearby);
             let settled = if group.dark { Some(0.0) } else { nearby.is_empty().then_some(1.0) };
@@ -282,7 +284,8 @@ impl<'a> ShadowLight<'a> {
                 let outline = targets.outline(target);
                 if target.receiver != WHOLE_FACE {
                     counts.settle(settled, 1);
-                    let part = self.resolve(&query, target, outline, settled, &mut work);
+                    let shadow = settled.map_or(Shadow::Unknown, Shadow::Even);
+                    let part = self.resolve(&query, target, outline, &shadow, &mut work);
                     sums[target.receiver as usize].add(part);
                     continue;
                 }
@@ -304,7 +307,9 @@ impl<'a> ShadowLight<'a> {
                     let local = corners.map(|c| query.lens.local_vector(c + offset));
                     single.push((receiver, target.face), screen, false, local.map(|p| placed(query.lens, p)));
                     if let [target] = &single.list[..] {
-                        let part = self.resolve(&query, target, single.outline(target), None, &mut work);
+                        let outline = single.outline(target);
+                        let shadow = whole_face.shadow_on(&query, outline, &mut lit_part);
+                        let part = self.resolve(&query, target, outline, &shadow, &mut work);
                         sums[receiver as usize].add(part);
                     }
                 }
@@ -314,17 +319,19 @@ impl<'a> ShadowLight<'a> {
         counts.partial += work.rules.take_partial();
     }
 
-    /// The lit fraction of a target, which may be settled, and its weight among the parts of its receiver.
+    /// The lit fraction of a target, and its weight among the parts of its receiver.
     fn resolve(
         &self,
         query: &Query<'_>,
         target: &Target,
         outline: &[DVec2],
-        settled: Option<f64>,
+        shadow: &Shadow<'_>,
         work: &mut Work<'_>,
     ) -> (f64, f64) {
         // A receiver on one screen needs no weight, and keeps a plain 0 or 1.
-        if let Some(fraction) = settled.filter(|_| !target.shared) {
+        if let Shadow::Even(fraction) = *shadow
+            && !target.shared
+        {
             return (fraction, 1.0);
         }
         let wanted = self.wanted(work.viewer, work.receivers, target);
@@ -335,12 +342,25 @@ impl<'a> ShadowLight<'a> {
         let measure = Measure { lens: query.lens, viewer: work.viewer.lens, face };
         let total = if target.shared { measure.area(outline) } else { 1.0 };
         let mut regions = wanted.then_some(lit_regions);
-        if let (Some(regions), Some(1.0)) = (&mut regions, settled) {
-            // What another screen sees of the same receiver may be dark.
-            regions.push(target.receiver, outline, total, &measure);
-        }
-        let fraction = settled
-            .unwrap_or_else(|| self.lit_fraction(query, target, outline, &measure, work.rules, regions));
+        let fraction = match shadow {
+            Shadow::Even(fraction) => {
+                // What another screen sees of the same receiver may be dark.
+                if let (Some(regions), 1.0) = (&mut regions, fraction) {
+                    regions.push(target.receiver, outline, total, &measure);
+                }
+                *fraction
+            }
+            Shadow::AllBut(lit) => {
+                let weight = measure.area(lit.vertices());
+                if let Some(regions) = regions {
+                    regions.push(target.receiver, lit.vertices(), weight, &measure);
+                }
+                work.rules.exact.partial += 1;
+                let whole = measure.area(outline);
+                if whole > 0.0 { (weight / whole).min(1.0) } else { 0.0 }
+            }
+            Shadow::Unknown => self.lit_fraction(query, target, outline, &measure, work.rules, regions),
+        };
         (fraction, total)
     }
 

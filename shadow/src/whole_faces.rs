@@ -5,11 +5,12 @@
 
 use crate::casters::Nearby;
 use crate::covered::{Cover, Covering};
+use crate::ends::{Shadow, ShadowEnds};
 use crate::overlap::{Corners, Edges, Overlap};
 use crate::query::Query;
 use crate::target::Target;
 use glam::{DVec2, DVec3};
-use pointillist_dice::HalfPlane;
+use pointillist_dice::{ConvexPolygon, HalfPlane};
 use pointillist_micropoint::{Face, Front, Layer, Lens, LensKind, in_front};
 
 /// Longest extent in the viewer's grid, in its cells, up to which a face is looked at whole: larger ones have casters far from what a tile sees of them.
@@ -66,6 +67,8 @@ pub(crate) struct WholeFace {
     /// Those of them that are opaque and in front of all of it.
     opaque: Vec<Cover>,
     covering: Covering,
+    /// Where their shadow ends, if they are all there is.
+    ends: ShadowEnds,
     /// The face's corners.
     corners: Corners,
     found: Vec<u32>,
@@ -80,7 +83,8 @@ impl WholeFace {
         target: &Target,
         (face, outline): (&Face, &[DVec2]),
     ) -> Option<f64> {
-        let Self { casters, opaque, covering, corners, found } = self;
+        let Self { casters, opaque, covering, corners, found, ends } = self;
+        ends.clear();
         corners.set(outline);
         casters.clear();
         opaque.clear();
@@ -111,7 +115,24 @@ impl WholeFace {
         if casters.is_empty() {
             return Some(1.0);
         }
-        covering.hides(opaque, |caster| query.shape(caster), outline).then_some(0.0)
+        let shape = |caster| query.shape(caster);
+        if covering.hides(opaque, shape, outline) {
+            return Some(0.0);
+        }
+        if opaque.len() == casters.len() {
+            ends.find(covering, opaque, shape, outline);
+        }
+        None
+    }
+
+    /// The shadow on a receiver of the face that was looked at last, by its outline. `lit` is memory for what is lit.
+    pub(crate) fn shadow_on<'l>(
+        &self,
+        query: &Query<'_>,
+        outline: &[DVec2],
+        lit: &'l mut ConvexPolygon,
+    ) -> Shadow<'l> {
+        self.ends.shadow_on(&self.opaque, |caster| query.shape(caster), outline, lit)
     }
 }
 
