@@ -88,22 +88,18 @@ pub(crate) enum Overlap {
 impl Overlap {
     /// Takes the caster by the half-planes of its edges, at most 32.
     pub(crate) fn of(sides: &[HalfPlane], target: &Corners) -> Self {
-        let (mut across, mut over, mut apart) = (0, true, false);
+        let (mut across, mut over) = (0, true);
         for (number, half) in sides.iter().enumerate() {
             let (least, most) = target.range(half);
-            apart |= most <= 0.0;
+            if most <= 0.0 {
+                return Self::Apart;
+            }
             let outside = least < 0.0;
             over &= !outside;
             // The half-plane of a short edge was moved outward from its line.
             across |= u32::from(outside | (half.offset != 0.0)) << number;
         }
-        if apart {
-            Self::Apart
-        } else if over {
-            Self::Over
-        } else {
-            Self::Across(Edges(across))
-        }
+        if over { Self::Over } else { Self::Across(Edges(across)) }
     }
 }
 
