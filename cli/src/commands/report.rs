@@ -162,10 +162,11 @@ fn threads_possible(count: usize) -> usize {
     std::thread::scope(|scope| {
         let closed = gate.lock();
         let waits = || drop(gate.lock());
-        let started = |_: &usize| std::thread::Builder::new().spawn_scoped(scope, waits).is_ok();
-        let possible = (0..count).take_while(started).count();
+        let start = |_| std::thread::Builder::new().spawn_scoped(scope, waits).ok();
+        let started: Vec<_> = (0..count).map_while(start).collect();
         drop(closed);
-        possible
+        // The end of the scope waits until they have done their work only. Their stacks are free for others once they are joined.
+        started.into_iter().filter_map(|thread| thread.join().ok()).count()
     })
 }
 

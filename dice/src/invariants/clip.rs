@@ -6,8 +6,12 @@ use crate::{clip_ring, share_before_crossing};
 use glam::DVec2;
 
 /// A ring, convex or not, with finite corners: both its parts lie on their sides of the line within rounding, keep the corners of their side,
-/// share their new corners bit for bit, and their areas add up to that of the ring.
+/// share their new corners bit for bit, and their areas add up to that of the ring. (Without a normal, all of the plane is its border, and both
+/// parts are the whole ring.)
 pub fn clipping_divides(ring: &[DVec2], half: &HalfPlane) -> Result<(), String> {
+    if half.normal == DVec2::ZERO {
+        return Ok(());
+    }
     let part = |sign: f64| {
         let (mut corners, mut new) = (vec![], vec![]);
         let crossing = |(a, va): (DVec2, f64), (b, vb): (DVec2, f64)| {
