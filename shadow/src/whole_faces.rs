@@ -71,6 +71,7 @@ pub(crate) struct WholeFace {
     ends: ShadowEnds,
     /// The face's corners.
     corners: Corners,
+    /// Casters whose bounds overlap those of the face, by their places in the list.
     found: Vec<u32>,
 }
 
